@@ -38,6 +38,9 @@ NEURONS = 32
 #: What a spike of the network is worth, rad/s².
 WORTH = 60.0
 
+#: Neurons that return to 0, compare after each event, as they were trained, and are tuned on the whole lesson.
+HOW = "--live --reset zero --compare spike --no-held-out".split()
+
 POSITION = sw.Position(centres=(np.sinh(np.linspace(-3, 3, CENTRES)) / np.sinh(3) * RANGE).tolist())
 
 
@@ -74,7 +77,7 @@ class Chip:
         with tempfile.NamedTemporaryFile("w", suffix=".txt") as steps:
             steps.writelines(line(event) for event in lesson)
             steps.flush()
-            command = [program, "network", str(NETWORK), steps.name, "--live"]
+            command = [program, "network", str(NETWORK), steps.name, *HOW]
             self._process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
             )

@@ -17,7 +17,7 @@ pub use akd1500::{Akd1500, ConvolutionEvent, DenseEvent};
 pub use error::ChipError;
 pub use family::{
     AerPort, Counters, Describe, FormatError, Gated, Input, Inputs, Network, NetworkBytes,
-    OdinChip, Phase, Progress, Running, Spikes, neurons_from,
+    OdinChip, Phase, Progress, Running, Spikes, Steps, StepsLayer, StepsState, neurons_from,
 };
 pub use odin::{
     Odin, OdinInput, OdinLearning, OdinNetwork, OdinNeuron, OdinRegisters, OdinSynapse,

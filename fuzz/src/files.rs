@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use flight_logs::{Damage, Kind, Reading};
 use lab::coding::Coding;
 use lab::events::{Format, read_events};
+use lab::flight::Flight;
 use lab::frames;
 use lab::input::messages::overview;
 use lab::input::{ChannelOptions, Chunk, InputOptions};
@@ -143,9 +144,13 @@ pub fn events(bytes: &[u8]) {
     }
 }
 
-/// Files of parameters.
+/// Files of parameters, and of flights.
 pub fn toml(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(flight) = Flight::parse(text) {
+        let again = Flight::parse(&flight.to_toml(&[])).expect("what is written is read");
+        assert_eq!(again.to_toml(&[]), flight.to_toml(&[]));
+    }
     let Ok(coding) = Coding::parse("the input", text) else { return };
     let again = Coding::parse("written", &coding.to_toml(&[])).expect("what is written is read");
     assert_eq!(again.to_toml(&[]), coding.to_toml(&[]));
@@ -154,9 +159,12 @@ pub fn toml(bytes: &[u8]) {
 /// Trained networks: NIR graphs and the plain form.
 pub fn network(bytes: &[u8]) {
     let path = file("network", bytes);
-    for step in [None, Some(0.001)] {
+    for (framework, dt) in
+        [(network::Framework::SpikingJelly, None), (network::Framework::Norse, Some(0.001))]
+    {
+        let asked = network::Asked { framework: Some(framework), dt, ..Default::default() };
         if let Ok(file) = network::File::read(&path)
-            && let Ok(trained) = file.in_steps(step)
+            && let Ok(trained) = file.on_chip(&asked, None)
         {
             let inputs = trained.inputs();
             assert!(inputs > 0, "a network without inputs");

@@ -781,7 +781,11 @@ where
                     |truth: &Truth<_>| tick.since(Tick::from_micros(truth.time)).unsigned_abs();
                 let all = truth.iter().flat_map(|truth| truth.iter().rev());
                 let same = all.filter(|truth| truth.session == session && away(truth) <= near);
-                let own = same.min_by_key(|truth| away(truth));
+                // Between two samples, where one that was late was the first to be heard, it may be either.
+                let is_told = |truth: &Truth<P::Sample>| {
+                    truth.values[channel].to_bits32() == told.to_bits32()
+                };
+                let own = same.min_by_key(|truth| (!is_told(truth), away(truth)));
                 self.tally.claim(told, own.map(|truth| truth.values[channel]));
             }
         }

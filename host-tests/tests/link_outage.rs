@@ -77,6 +77,8 @@ struct World<'a, P: Scheme> {
     /// The numbers of the first frame of the session, and of the last one sent.
     first: u64,
     last: u64,
+    /// Whether the reader has heard that first frame.
+    is_first_heard: bool,
     now: u64,
     /// When the last sample was taken.
     taken: u64,
@@ -146,6 +148,7 @@ where
             remainder: 0,
             first: 0,
             last: 0,
+            is_first_heard: false,
             now: 0,
             taken: 0,
             at: random.next_u32() as usize % samples.len(),
@@ -193,14 +196,14 @@ where
         near - near % u64::from(self.period)
     }
 
-    /// A session near the one before, or that one again. One whose first frame is lost lies ahead of all that was sent:
-    /// among numbers that were sent, nothing tells it from the one before.
+    /// A session near the one before, or that one again if the first frames of both are heard. One whose first frame is
+    /// lost lies ahead of all that was sent: among numbers that were sent, nothing tells it from the one before.
     fn near_session(&mut self, is_heard: bool) -> Session {
         let ahead = 1_u64 << self.draw(33);
         let ahead = self.draw(ahead);
         let first = match self.draw(3) {
-            0 if is_heard => self.first,
-            1 if is_heard => self.first.wrapping_sub(ahead),
+            0 if is_heard && self.is_first_heard => self.first,
+            1 if is_heard && self.is_first_heard => self.first.wrapping_sub(ahead),
             _ => self.last.wrapping_add(1 + ahead),
         };
         self.first = first & ((1 << 48) - 1);
@@ -236,7 +239,7 @@ where
         let beat = Item::Heartbeat { tick: Tick::from(0), address: 0 };
         let bytes = first.next_frame(FromItems([beat].into_iter()), &mut frame).unwrap();
         self.first = FrameView::new(bytes.unwrap()).unwrap().0.number();
-        self.last = self.first;
+        (self.last, self.is_first_heard) = (self.first, false);
         self.silent = [0; CHANNELS];
         self.unsent = None;
         self.claimed = [0; CHANNELS];
@@ -346,6 +349,7 @@ where
                 } else {
                     exact(&self.receiver)
                 };
+                self.is_first_heard |= received.is_start && received.frame.is_first();
                 let values = &mut self.values;
                 values.clear();
                 let on_value = |channel, tick, value| values.push((channel, tick, value));
@@ -486,7 +490,8 @@ where
 
     /// The link is whole again for as long as the code needs: then all is known.
     fn whole(&mut self) {
-        let samples = 2 * self.beat + self.recovery() as u32 + 5;
+        // A sender whose first frame was lost tells its fingerprint with every fourth frame at the latest.
+        let samples = 6 * self.beat + self.recovery() as u32 + 5;
         let from = self.truth.len();
         let is_attack = std::mem::take(&mut self.is_attack);
         for sample in 1..=samples {
@@ -532,6 +537,7 @@ where
                 }
                 1 => {
                     self.reader = Reader::new();
+                    self.is_first_heard = false;
                     self.receiver = Receiver::new(self.scheme)
                         .with_slot_ticks(self.slot_ticks)
                         .with_clock_tolerance(self.tolerance);

@@ -155,6 +155,7 @@ const steps = {
       await page.fill("#parameter-threshold", given);
       await settled(page);
       assert.match(await page.textContent("#error"), words);
+      assert.equal(await page.getAttribute("#parameter-threshold", "aria-invalid"), "true");
     }
     await page.click("#reset");
     await settled(page);
@@ -443,7 +444,7 @@ const steps = {
     await page.evaluate(() => ([globalThis.stays, globalThis.speaks] = [false, Array(500).fill(65)]));
     await page.click("#connect");
     await page.waitForSelector("#board-error:visible");
-    assert.match(await page.textContent("#board-error"), /no link frame in the 500 bytes of the board/);
+    assert.match(await page.textContent("#board-error"), /the board: no link frame in the 500 bytes/);
     await page.evaluate(() => (globalThis.speaks = undefined));
     await page.click("#connect");
     await page.waitForFunction(() => /no port was chosen/.test(document.getElementById("board-error").textContent));

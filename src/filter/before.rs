@@ -72,7 +72,6 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
-    const HOLDS_KEYFRAMES: bool = P::HOLDS_KEYFRAMES;
 
     fn fingerprint(&self) -> Fingerprint {
         self.filter.fingerprint().and(self.scheme.fingerprint())
@@ -171,6 +170,10 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
 
     fn fits_decoder(&self, state: &P::DecoderState) -> bool {
         self.scheme.fits_decoder(state)
+    }
+
+    fn holds_keyframes(&self) -> bool {
+        self.scheme.holds_keyframes()
     }
 
     fn neurons(&self) -> usize {

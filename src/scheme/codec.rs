@@ -34,10 +34,6 @@ pub trait Scheme: Sized {
     /// that of the longest filter; [`recovery`](Self::recovery) gives that of this filter.
     const RECOVERY: Recovery;
 
-    /// Whether a keyframe has the bits of the value that a decoder holds already which lost nothing, so that another value
-    /// shows that sender and receiver have other schemes.
-    const HOLDS_KEYFRAMES: bool = false;
-
     /// The fingerprint of the scheme's name and of all its parameters, by which a link's receiver knows whether it has the
     /// sender's; see its [specification](Fingerprint#specification). For set-up, not for the hot path.
     fn fingerprint(&self) -> Fingerprint;
@@ -138,6 +134,12 @@ pub trait Scheme: Sized {
     /// [`fits`](Self::fits) for a decoder's state.
     fn fits_decoder(&self, _state: &Self::DecoderState) -> bool {
         true
+    }
+
+    /// Whether a keyframe has the bits of the value that a decoder holds already which lost nothing, so that another value
+    /// shows that sender and receiver have other schemes.
+    fn holds_keyframes(&self) -> bool {
+        false
     }
 
     /// How many neurons a channel has. Channels of one bank, readout or receiver have the same number.

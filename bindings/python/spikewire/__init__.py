@@ -16,6 +16,8 @@ from . import _native
 from ._bank import EVENTS, Bank
 from ._files import Log, read, read_events, read_ulog, write_events
 from ._filters import Filter, low_pass
+from ._flight import Flight
+from ._native import Error
 from ._laptop import Advice, Picture, Tuned, advise, plot, score, tune
 from ._link import Receiver, Sender
 from ._network import Network, Ran
@@ -35,7 +37,9 @@ __all__ = [
     "Bank",
     "Decoder",
     "Encoder",
+    "Error",
     "Filter",
+    "Flight",
     "Log",
     "Network",
     "Picture",

@@ -149,6 +149,7 @@ def advise(
     max_rmse: float | None = None,
     max_latency: float | None = None,
     loop_bandwidth: float | None = None,
+    frame_loss: float | None = None,
     core: str | None = None,
     seconds: float | None = None,
     evaluations: int | None = None,
@@ -161,12 +162,14 @@ def advise(
 
     All schemes are tuned for a moment. Of those within `max_rmse`, a fifth of the signal's deviation unless given, the
     one with the fewest bytes a second on the link is advised. `loop_bandwidth` is the frequency in Hz up to which the
-    control loop acts that is to fly on it: codes that are late for it, or that fall behind the signal, are not advised.
+    control loop acts that is to fly on it: codes that are late for it, or that fall behind the signal, are not advised, nor
+    those that a simulated drone did not fly on well with `frame_loss` percent of its frames lost, 1 unless given.
     """
     options = {
         "max_rmse": max_rmse,
         "max_latency": max_latency,
         "loop_bandwidth": loop_bandwidth,
+        "frame_loss": frame_loss,
         "core": core,
         "seconds": seconds,
         "evaluations": evaluations,

@@ -13,10 +13,10 @@ class TemporalContrast(Scheme):
     threshold:
         what the difference from the sample before must exceed, above 0 (a number, in the signal's unit, such as 0.1)
     factor:
-        in the place of `threshold`: the differences' mean and this many of their standard deviations (a number, such
+        in the place of a threshold: the differences' mean and this many of their standard deviations (a number, such
         as 0.5)
     magnitudes:
-        with `factor`: mean and deviation of the differences' magnitudes (True or False)
+        with a factor: mean and deviation of the differences' magnitudes (True or False)
     step:
         what the decoder adds for a spike, as a number or in thresholds, `2x` (a text, a number or numbers, in the
         signal's unit; 1x unless given)
@@ -517,7 +517,7 @@ class Slots(Scheme):
     beta:
         distance of the centres in widths of a field, so the smaller, the wider, above 0 (a number; 1.5 unless given)
     floor:
-        neurons below this level of `slots` are silent (a whole number; 1 unless given)
+        neurons below this level of the slots are silent (a whole number; 1 unless given)
     sample:
         the type that it computes in: "f32", "i16", "i32", or fixed point such as "q8.8" and "q16.16"; samples are
         rounded to it
@@ -636,7 +636,7 @@ class NonLinearSlots(Scheme):
     beta:
         distance of the centres in widths of a field, so the smaller, the wider, above 0 (a number; 1.5 unless given)
     floor:
-        neurons below this level of `slots` are silent (a whole number; 1 unless given)
+        neurons below this level of the slots are silent (a whole number; 1 unless given)
     sample:
         the type that it computes in: "f32", "i16", "i32", or fixed point such as "q8.8" and "q16.16"; samples are
         rounded to it

@@ -131,7 +131,7 @@ impl Samples<'_> {
 /// Says how many samples were cut to the range of the sample type, if any. Fixed point cuts; beyond `f32` is an error.
 #[pyfunction]
 pub(crate) fn cut(py: Python, sample: &str, samples: Samples) -> PyResult<Option<String>> {
-    let sample: SampleType = sample.parse().map_err(|error| value(&error))?;
+    let sample: SampleType = sample.parse().map_err(value)?;
     if sample == SampleType::F32 {
         return Ok(None);
     }

@@ -42,7 +42,7 @@ impl Coder {
             bail!("{} needs {what} before it has seen a signal; fit(x) finds it", self.name());
         }
         let known = Known { calibrated, first, can_calibrate: calibrated.is_some() };
-        self.scheme.resolve(self.sample, &self.asked, &known)
+        Ok(self.scheme.resolve(self.sample, &self.asked, &known)?)
     }
 
     /// The same for one channel of so many, which may have values of its own.
@@ -66,7 +66,7 @@ impl Coder {
 
     /// A codec as it starts on these settings.
     pub(crate) fn start(&self, settings: &Settings) -> Result<Codec> {
-        self.scheme.codec_from(settings, settings.first_value())
+        Ok(self.scheme.codec_from(settings, settings.first_value())?)
     }
 
     /// Refuses what makes no sense whatever the signal is.
@@ -164,10 +164,10 @@ impl Coder {
     #[new]
     fn new(scheme: &str, sample: &str, given: Vec<(String, Given)>, paper: bool) -> PyResult<Self> {
         let scheme = named(scheme)?;
-        let asked = values::asked(scheme.info(), given, paper).map_err(|error| value(&error))?;
-        let sample = sample.parse().map_err(|error| value(&error))?;
+        let asked = values::asked(scheme.info(), given, paper).map_err(value)?;
+        let sample = sample.parse().map_err(value)?;
         let coder = Self { scheme, sample, asked };
-        coder.any().and_then(|any| any.check()).map_err(|error| value(&error))?;
+        coder.any().and_then(|any| any.check()).map_err(value)?;
         Ok(coder)
     }
 
@@ -179,22 +179,21 @@ impl Coder {
 
     /// How many neurons and sub-timesteps a channel has.
     fn shape(&self) -> PyResult<(usize, usize)> {
-        let settings = self.of_ramp().map_err(|error| value(&error))?;
-        let shape = self.scheme.shape(&settings).map_err(|error| value(&error))?;
+        let settings = self.of_ramp().map_err(value)?;
+        let shape = self.scheme.shape(&settings).map_err(value)?;
         Ok((shape.neurons, shape.slots))
     }
 
     /// What a signal must tell, if anything.
     fn needs_signal(&self) -> Option<String> {
-        self.scheme.needs_signal(&self.asked)
+        self.scheme.needs_signal(&self.asked).map(|needs| needs.to_string())
     }
 
     /// With what these samples tell: each channel by itself, or one scheme for all.
     fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
         let lanes = samples.lanes();
         let is_wide = is_wide(lanes.len(), lanes.iter().map(Lane::len).sum());
-        work::detached(py, is_wide, || self.fitted(&lanes, is_shared))?
-            .map_err(|error| value(&error))
+        work::detached(py, is_wide, || self.fitted(&lanes, is_shared))?.map_err(value)
     }
 
     /// It with draws that start from this seed.
@@ -206,14 +205,14 @@ impl Coder {
 
     /// How many samples after its own the code of a sample comes out.
     fn latency(&self) -> PyResult<usize> {
-        let settings = self.of_ramp().map_err(|error| value(&error))?;
+        let settings = self.of_ramp().map_err(value)?;
         let channel = self.start(&settings);
-        channel.map(|channel| channel.latency()).map_err(|error| value(&error))
+        channel.map(|channel| channel.latency()).map_err(value)
     }
 
     /// Instructions of a Cortex-M4F to encode a sample, by the measured table; none if they were not measured.
     fn instructions(&self) -> PyResult<Option<f64>> {
-        let settings = self.of_ramp().map_err(|error| value(&error))?;
+        let settings = self.of_ramp().map_err(value)?;
         Ok(Costs::new(self.scheme.into(), &settings, self.latency()?, "M4F").instructions)
     }
 
@@ -221,7 +220,7 @@ impl Coder {
     fn encoder(&self, channels: usize) -> PyResult<Encoder> {
         if let Some(what) = self.scheme.needs_signal(&self.asked) {
             let error = anyhow!("{} needs {what} to begin a stream; fit(x) finds it", self.name());
-            return Err(value(&error));
+            return Err(value(error));
         }
         Ok(Encoder::new(self.clone(), channels, self.shape()?))
     }
@@ -231,10 +230,10 @@ impl Coder {
         let channels = first.iter().enumerate().map(|(place, own)| {
             let past = vec![own.unwrap_or_default(); self.looks_back()];
             let settings = self.channel(place, first.len())?.settle(&past, None)?;
-            self.scheme.codec_from(&settings, settings.first_value().or(*own))
+            Ok(self.scheme.codec_from(&settings, settings.first_value().or(*own))?)
         });
         let channels = channels.collect::<Result<Vec<_>>>();
-        Ok(Decoder::new(channels.map_err(|error| value(&error))?, self.sample))
+        Ok(Decoder::new(channels.map_err(value)?, self.sample))
     }
 }
 
@@ -256,7 +255,7 @@ impl Fitted {
 
     fn start(&self, channel: usize) -> Result<Codec> {
         let settings = self.settings(channel)?.with_stream(channel as u64);
-        self.scheme.codec_from(&settings, settings.first_value())
+        Ok(self.scheme.codec_from(&settings, settings.first_value())?)
     }
 
     /// How many cells a row has.
@@ -295,13 +294,13 @@ pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
 impl Fitted {
     /// How many neurons and sub-timesteps a channel has.
     fn shape(&self) -> PyResult<(usize, usize)> {
-        let shape = self.settings(0).and_then(|settings| self.scheme.shape(settings));
-        shape.map(|shape| (shape.neurons, shape.slots)).map_err(|error| value(&error))
+        let shape = self.settings(0).and_then(|settings| Ok(self.scheme.shape(settings)?));
+        shape.map(|shape| (shape.neurons, shape.slots)).map_err(value)
     }
 
     /// How many samples after its own the code of a sample comes out.
     fn latency(&self) -> PyResult<usize> {
-        self.start(0).map(|channel| channel.latency()).map_err(|error| value(&error))
+        self.start(0).map(|channel| channel.latency()).map_err(value)
     }
 
     /// The parameters of each channel, as a file lists them.
@@ -311,7 +310,7 @@ impl Fitted {
 
     /// The parameters of a channel as keywords that bring them about again.
     fn keywords(&self, channel: usize) -> PyResult<Vec<(&'static str, Given)>> {
-        let settings = self.settings(channel).map_err(|error| value(&error))?;
+        let settings = self.settings(channel).map_err(value)?;
         Ok(values::keywords(&settings.to_asked(self.scheme.info())))
     }
 
@@ -324,7 +323,7 @@ impl Fitted {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let lanes = samples.lanes();
         let length = samples.shape().last().copied().unwrap_or_default();
-        let width = self.width().map_err(|error| value(&error))?;
+        let width = self.width().map_err(value)?;
         let total = length * lanes.len();
         let output = PyArray1::zeros(py, total * width, false);
         let mut access = output.readwrite();
@@ -342,7 +341,7 @@ impl Fitted {
                 lanes.iter().zip(cells.chunks_mut(size)).enumerate().try_for_each(encode)
             }
         })?;
-        done.map_err(|error| value(&error))?;
+        done.map_err(value)?;
         drop(access);
         Ok(output)
     }
@@ -356,7 +355,7 @@ impl Fitted {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let cells = cells.as_slice()?;
-        let width = self.width().map_err(|error| value(&error))?;
+        let width = self.width().map_err(value)?;
         let total = cells.len() / width;
         let progress = progress.as_ref();
         macro_rules! decoded {
@@ -391,7 +390,7 @@ impl Fitted {
                         rows.zip(rooms).enumerate().try_for_each(decode)
                     }
                 })?;
-                done.map_err(|error: anyhow::Error| value(&error))?;
+                done.map_err(|error: anyhow::Error| value(error))?;
                 drop(access);
                 Ok(output.into_any())
             }};
@@ -418,14 +417,14 @@ impl Fitted {
     #[staticmethod]
     fn of_parts(scheme: &str, sample: &str, channels: Vec<Parts>) -> PyResult<Self> {
         let scheme = named(scheme)?;
-        let sample = sample.parse().map_err(|error| value(&error))?;
+        let sample = sample.parse().map_err(value)?;
         let settings = |(mut texts, first): Parts| {
             let mut settings = Settings::take(scheme.info(), sample, &mut texts)?;
             settings.first = first;
             Ok(settings)
         };
         let channels = channels.into_iter().map(settings).collect::<Result<_>>();
-        Ok(Self { scheme, sample, channels: channels.map_err(|error| value(&error))? })
+        Ok(Self { scheme, sample, channels: channels.map_err(value)? })
     }
 }
 

@@ -47,7 +47,7 @@ impl Filter {
 
     /// By how many samples a slow signal comes late.
     fn delay(&self) -> PyResult<f32> {
-        self.build::<f32>().map(|chain| chain.delay()).map_err(|error| value(&error))
+        self.build::<f32>().map(|chain| chain.delay()).map_err(value)
     }
 
     /// Filters samples in a sample type.
@@ -57,21 +57,21 @@ impl Filter {
         samples: PyReadonlyArray1<'py, f64>,
         sample: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let sample: SampleType = sample.parse().map_err(|error| value(&error))?;
+        let sample: SampleType = sample.parse().map_err(value)?;
         let samples = samples.as_array();
         let filtered: Result<Vec<f64>> = for_sample_type!(sample, S => self.build::<S>().map(|mut chain| {
             let one = sample.one();
             let next = |&x: &f64| chain.next(S::from_f64(x * one)).to_f64() / one;
             samples.iter().map(next).collect()
         }));
-        Ok(PyArray1::from_vec(py, filtered.map_err(|error| value(&error))?))
+        Ok(PyArray1::from_vec(py, filtered.map_err(value)?))
     }
 }
 
 impl Filter {
     fn checked(stage: Stage) -> PyResult<Self> {
         let own = Self(vec![stage]);
-        own.build::<f32>().map_err(|error| value(&error))?;
+        own.build::<f32>().map_err(value)?;
         Ok(own)
     }
 

@@ -8,6 +8,7 @@ mod coder;
 mod error;
 mod filter;
 mod fingerprint;
+mod flight;
 mod library;
 mod link;
 mod network;
@@ -25,9 +26,13 @@ mod _native {
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
     #[pymodule_export]
+    use super::error::Error;
+    #[pymodule_export]
     use super::filter::Filter;
     #[pymodule_export]
     use super::fingerprint::fingerprint;
+    #[pymodule_export]
+    use super::flight::flight;
     #[pymodule_export]
     use super::info::schemes;
     #[pymodule_export]

@@ -5,11 +5,11 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail};
 use lab::advise::AdviseRequest;
 use lab::coding::Coding;
 use lab::emit::Codec;
-use lab::input::{ChannelOptions, InputOptions};
+use lab::input::{ChannelOptions, InputOptions, TableKind};
 use lab::look::known_unit;
 use lab::plot::Picture;
 use lab::scheme::Scheme;
@@ -26,11 +26,12 @@ use spikewire::{Event, Polarity, Tick};
 
 use crate::coder::Coder;
 use crate::error::value;
-use crate::values::{self, Given, keywords};
+use crate::values::{self, Given as Keyword, keywords};
 use crate::work;
+use catalogue::run::Given;
 
 /// A tuned scheme: its name, its keywords, its figures as JSON, and what a file says of it.
-type Told = (&'static str, Vec<(&'static str, Given)>, String, Vec<String>);
+type Told = (&'static str, Vec<(&'static str, Keyword)>, String, Vec<String>);
 
 /// Long work tells this many parts.
 const PARTS: usize = 1_000_000;
@@ -62,7 +63,7 @@ impl Coder {
     }
 
     fn trial(&self, recording: &Recording) -> Result<Trial> {
-        Trial::new(self.scheme.into(), &self.asked, self.sample, recording)
+        Ok(Trial::new(self.scheme.into(), &self.asked, self.sample, recording)?)
     }
 }
 
@@ -77,7 +78,7 @@ fn watched<T: Send>(
         let done = job(&Watch { is_stopped: &|| meter.is_stopped(), tell: &tell });
         if meter.is_stopped() { Err(anyhow!("stopped")) } else { done }
     })?;
-    done.map_err(|error| value(&error))
+    done.map_err(value)
 }
 
 /// The figures of a scheme on a signal, as JSON.
@@ -89,8 +90,10 @@ pub(crate) fn score(
     rate: Option<f64>,
 ) -> PyResult<String> {
     let recording = recording("x", &values, rate)?;
-    let scored = || Ok(serde_json::to_string(&Figures::of(&recording, &coder.trial(&recording)?))?);
-    work::detached(py, true, scored)?.map_err(|error| value(&error))
+    let scored = || -> Result<_> {
+        Ok(serde_json::to_string(&Figures::of(&recording, &coder.trial(&recording)?))?)
+    };
+    work::detached(py, true, scored)?.map_err(value)
 }
 
 /// A picture of a signal through schemes, as the bytes of a file.
@@ -115,15 +118,15 @@ pub(crate) fn plot<'py>(
         let text = format!("samples {start}..{end}: two samples at least, within 0..{samples}");
         return Err(PyValueError::new_err(text));
     }
-    let drawn = || {
+    let drawn = || -> Result<_> {
         let trials = coders.iter().map(|coder| coder.trial(&recording));
         let trials = trials.collect::<Result<Vec<_>>>()?;
         let unit = unit.as_deref().or_else(|| known_unit(&recording.name));
         let picture = Picture { recording: &recording, trials: &trials, unit, shown };
-        lab::plot::bytes(ending, &picture)
+        Ok(lab::plot::bytes(ending, &picture)?)
     };
     let bytes = work::detached(py, true, drawn)?;
-    Ok(PyBytes::new(py, &bytes.map_err(|error| value(&error))?))
+    Ok(PyBytes::new(py, &bytes.map_err(value)?))
 }
 
 /// Keywords of `tune`; what is `None` is as the library has it.
@@ -146,7 +149,7 @@ pub(crate) struct Tune {
     seed: Option<u64>,
     anyway: bool,
     below: Option<f64>,
-    kept: BTreeMap<String, Given>,
+    kept: BTreeMap<String, Keyword>,
 }
 
 impl Tune {
@@ -154,13 +157,13 @@ impl Tune {
         let schemes = match self.scheme.as_str() {
             "all" => Scheme::all().collect(),
             name => {
-                vec![Scheme::named(name).with_context(|| format!("there is no scheme `{name}`"))?]
+                vec![Scheme::named(name).ok_or_else(|| catalogue::run::Error::no_scheme(name))?]
             }
         };
         let logs = recordings.into_iter().map(|recording| vec![recording]).collect();
         let mut request = TuneRequest::new(logs, schemes);
         let mut kept = self.kept;
-        if matches!(kept.get("filter"), Some(Given::Word(word)) if word == "free") {
+        if matches!(kept.get("filter"), Some(Keyword::Word(word)) if word == "free") {
             request.free_taps = true;
             kept.remove("filter");
         }
@@ -209,13 +212,12 @@ pub(crate) fn tune(
         let all = lab::tune::tune(&keywords.request(recordings)?, watch)?;
         let Some(tuned) = all.first() else { bail!("there is no signal") };
         if tuned.rows.is_empty() {
-            bail!(
-                "{name}: of the settings tried none keeps to all limits: {}",
-                tuned.missed.join("; ")
-            );
+            let missed: Vec<String> = tuned.missed.iter().map(ToString::to_string).collect();
+            bail!("{name}: of the settings tried none keeps to all limits: {}", missed.join("; "));
         }
         let rows = tuned.rows.iter().map(|(scheme, row)| told(*scheme, row, name));
-        Ok((rows.collect::<Result<_>>()?, tuned.missed.clone()))
+        let missed = tuned.missed.iter().map(ToString::to_string).collect();
+        Ok((rows.collect::<Result<_>>()?, missed))
     })
 }
 
@@ -227,6 +229,7 @@ pub(crate) struct Advise {
     max_rmse: Option<f64>,
     max_latency: Option<f64>,
     loop_bandwidth: Option<f64>,
+    frame_loss: Option<f64>,
     core: Option<String>,
     seconds: Option<f64>,
     evaluations: Option<usize>,
@@ -241,6 +244,7 @@ impl Advise {
             max_rmse: self.max_rmse,
             max_latency: self.max_latency,
             loop_bandwidth: self.loop_bandwidth,
+            frame_loss: self.frame_loss.unwrap_or(request.frame_loss),
             core: self.core.unwrap_or(request.core),
             seconds: self.seconds,
             evaluations: self.evaluations.unwrap_or(request.evaluations),
@@ -275,7 +279,7 @@ pub(crate) fn advise(
 /// A scheme as a constant in Rust.
 #[pyfunction]
 pub(crate) fn to_rust(coder: &Coder, name: &str, comments: Vec<String>) -> PyResult<String> {
-    lab::emit::rust(&coder.coding(), name, &comments).map_err(|error| value(&error))
+    lab::emit::rust(&coder.coding(), name, &comments).map_err(value)
 }
 
 /// A crate that makes the library for C of a scheme, in a new directory.
@@ -287,13 +291,13 @@ pub(crate) fn to_c(
     spikewire: Option<PathBuf>,
 ) -> PyResult<()> {
     let named = Codec { name: name.to_owned(), coding: coder.coding() };
-    lab::emit::c_crate(&[named], &directory, spikewire.as_deref()).map_err(|error| value(&error))
+    lab::emit::c_crate(&[named], &directory, spikewire.as_deref()).map_err(value)
 }
 
 /// A scheme as a file of parameters.
 #[pyfunction]
 pub(crate) fn to_toml(coder: &Coder, comments: Vec<String>) -> PyResult<String> {
-    lab::emit::toml(&coder.coding(), &comments).map_err(|error| value(&error))
+    lab::emit::toml(&coder.coding(), &comments).map_err(value)
 }
 
 /// Channels of a file: names, samples, times in µs, notes.
@@ -320,7 +324,8 @@ impl Input {
     fn options(self, path: &str) -> Result<InputOptions> {
         for (name, value) in [("rate", self.rate), ("gap", self.gap)] {
             if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
-                bail!("{name} {value} must be above 0 and finite");
+                let error = lab::Error::from(TableKind::NotAboveZero);
+                return Err(error.about(Given::new(name, value)).into());
             }
         }
         let usual = ChannelOptions::default();
@@ -337,13 +342,19 @@ impl Input {
             accept_cut: self.accept_cut,
             ..usual
         };
-        InputOptions { input: path.into(), channel }.or_all()
+        Ok(InputOptions { input: path.into(), channel }.or_all()?)
     }
 }
 
 /// Reads the text of a keyword.
-fn parsed<T: FromStr<Err = String>>(name: &str, text: Option<String>) -> Result<Option<T>> {
-    text.map(|text| text.parse().map_err(|error| anyhow!("{name}={text}: {error}"))).transpose()
+fn parsed<T: FromStr<Err = lab::Error>>(
+    name: &'static str,
+    text: Option<String>,
+) -> Result<Option<T>> {
+    let read = |text: String| {
+        text.parse().map_err(|error: lab::Error| error.about(Given::new(name, text)))
+    };
+    Ok(text.map(read).transpose()?)
 }
 
 /// Reads channels of a flight log or a table.
@@ -353,9 +364,9 @@ pub(crate) fn read<'py>(py: Python<'py>, path: &str, keywords: Input) -> PyResul
         let mut source = keywords.options(path)?.open()?;
         let all = source.rest()?;
         let names = source.names().into_iter().map(str::to_owned).collect();
-        anyhow::Ok((names, all, source.notes().to_vec()))
+        anyhow::Ok((names, all, source.notes().iter().map(ToString::to_string).collect()))
     })?;
-    let (names, all, notes) = done.map_err(|error| value(&error))?;
+    let (names, all, notes) = done.map_err(value)?;
     let columns = all.columns.into_iter().map(|column| column.into_pyarray(py)).collect();
     Ok((names, columns, all.times.into_pyarray(py), notes))
 }
@@ -371,8 +382,7 @@ pub(crate) fn read_events<'py>(
     bytes: &[u8],
     format: &str,
 ) -> PyResult<Events<'py>> {
-    let read =
-        py.detach(|| lab::events::read_events(bytes, format)).map_err(|error| value(&error))?;
+    let read = py.detach(|| lab::events::read_events(bytes, format)).map_err(value)?;
     let ticks: Vec<u32> = read.events.iter().map(|event| event.tick.micros()).collect();
     let addresses: Vec<u16> = read.events.iter().map(|event| event.address).collect();
     let are_up: Vec<bool> =
@@ -399,6 +409,6 @@ pub(crate) fn write_events<'py>(
         })
         .collect();
     let written = py.detach(|| lab::events::write_events(&events, format));
-    let (bytes, notes) = written.map_err(|error| value(&error))?;
+    let (bytes, notes) = written.map_err(value)?;
     Ok((PyBytes::new(py, &bytes), notes))
 }

@@ -125,22 +125,22 @@ struct Build<'a> {
 }
 
 impl<S: Sample> Visit<S> for Build<'_> {
-    type Output = Ends;
+    type Output = Result<Ends>;
 
-    fn visit<P: Runs<S>>(self, _: P, _: P::EncoderState) -> Result<Ends> {
-        self.ends::<S, P, EVENTS>()
+    fn visit<P: Runs<S>>(self, _: P, _: P::EncoderState) -> catalogue::run::Result<Result<Ends>> {
+        Ok(self.ends::<S, P, EVENTS>())
     }
 
     fn visit_steps<P: Runs<S> + Scheme<Code = Spike>>(
         self,
         _: P,
         _: P::EncoderState,
-    ) -> Result<Ends> {
-        if P::RECOVERY == Recovery::Keyframe {
+    ) -> catalogue::run::Result<Result<Ends>> {
+        Ok(if P::RECOVERY == Recovery::Keyframe {
             self.ends::<S, P, 0>()
         } else {
             self.ends::<S, P, CHANNELS>()
-        }
+        })
     }
 }
 
@@ -210,7 +210,11 @@ struct Boxed;
 impl<S: Sample> Visit<S> for Boxed {
     type Output = Box<dyn Any>;
 
-    fn visit<P: Runs<S>>(self, scheme: P, start: P::EncoderState) -> Result<Box<dyn Any>> {
+    fn visit<P: Runs<S>>(
+        self,
+        scheme: P,
+        start: P::EncoderState,
+    ) -> catalogue::run::Result<Box<dyn Any>> {
         Ok(Box::new((scheme, start)))
     }
 }
@@ -243,7 +247,7 @@ fn ends(
     let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
     let (scheme, sample) = (first.scheme, first.sample);
     let build = Build { scheme, settings, filters, sample, period, clock_tolerance };
-    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))
+    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))?
 }
 
 /// The frames of a sample, and for each of its events the address and whether it went up.
@@ -273,7 +277,7 @@ impl Sender {
         session: u32,
     ) -> PyResult<Self> {
         let Ends { near, coding, fingerprint, .. } =
-            ends(&coders, &filters, period, 0).map_err(|error| value(&error))?;
+            ends(&coders, &filters, period, 0).map_err(value)?;
         let session = Session::counted(session);
         let transmitter = Transmitter::new(coding, session).with_fingerprint(fingerprint);
         Ok(Self(Mutex::new(Sending {
@@ -308,7 +312,7 @@ impl Sender {
         let mut buffer = [0; MAX_FRAME];
         while let Some(frame) = transmitter
             .next_frame(&mut source, &mut buffer)
-            .map_err(|error| value(&anyhow!("{error}")))?
+            .map_err(|error| value(anyhow!("{error}")))?
         {
             frames.append(PyBytes::new(py, frame))?;
         }
@@ -330,12 +334,11 @@ impl Hearer {
     #[new]
     fn new(coders: Vec<Coder>, period: u16, clock_tolerance: f64) -> PyResult<Self> {
         if !(0.0..=0.1).contains(&clock_tolerance) {
-            return Err(value(&anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
+            return Err(value(anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
         }
         let millionths = (clock_tolerance * 1e6).ceil() as u32;
         let unfiltered = vec![None; CHANNELS];
-        let Ends { far, .. } =
-            ends(&coders, &unfiltered, period, millionths).map_err(|error| value(&error))?;
+        let Ends { far, .. } = ends(&coders, &unfiltered, period, millionths).map_err(value)?;
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 

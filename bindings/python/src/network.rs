@@ -72,7 +72,7 @@ impl Network {
             dt,
         };
         let model = File::read(&path).and_then(|file| file.on_controller(&asked));
-        let model = model.map_err(|error| value(&error))?;
+        let model = model.map_err(value)?;
         Ok(Self { flown: model.as_flown() })
     }
 

@@ -20,7 +20,7 @@ use crate::work;
 type Pickled = (String, Vec<Vec<f64>>, Vec<Vec<u8>>);
 
 fn pickled(waiting: &[Vec<f64>], running: &[Codec]) -> Result<Pickled> {
-    let states = running.iter().map(Codec::state).collect::<Result<_>>()?;
+    let states = running.iter().map(Codec::state).collect::<Result<_, _>>()?;
     Ok((env!("CARGO_PKG_VERSION").to_owned(), waiting.to_vec(), states))
 }
 
@@ -187,18 +187,18 @@ impl Encoder {
         let count = held + lanes.iter().map(Lane::len).sum::<usize>();
         let is_wide = is_wide(lanes.len(), count * own.width());
         let cells = work::detached(py, is_wide, || own.encode_all(&lanes))?;
-        Ok(cells.map_err(|error| value(&error))?.concat().into_pyarray(py))
+        Ok(cells.map_err(value)?.concat().into_pyarray(py))
     }
 
     /// All that it keeps from chunk to chunk.
     fn state(&self) -> PyResult<Pickled> {
         let own = self.taken()?;
-        pickled(&own.waiting, &own.running).map_err(|error| value(&error))
+        pickled(&own.waiting, &own.running).map_err(value)
     }
 
     /// Goes on from a state of an encoder of the same scheme and as many channels.
     fn set_state(&self, state: Pickled) -> PyResult<()> {
-        self.taken()?.set(&state).map_err(|error| value(&error))
+        self.taken()?.set(&state).map_err(value)
     }
 
     /// The cells of the samples that wait for later ones; the encoder is as at its start then.
@@ -208,7 +208,7 @@ impl Encoder {
         let held: usize = own.waiting.iter().map(Vec::len).sum();
         let is_wide = is_wide(own.waiting.len(), held * own.width());
         let cells = work::detached(py, is_wide, || own.finish_all())?;
-        Ok(cells.map_err(|error| value(&error))?.concat().into_pyarray(py))
+        Ok(cells.map_err(value)?.concat().into_pyarray(py))
     }
 }
 
@@ -236,7 +236,7 @@ fn decode_all<T: Copy + Default>(
     rows: usize,
     as_values: impl Fn(&mut [T]) -> Values<'_>,
 ) -> Result<Vec<T>> {
-    let before = channels.iter().map(Codec::state).collect::<Result<Vec<_>>>()?;
+    let before = channels.iter().map(Codec::state).collect::<Result<Vec<_>, _>>()?;
     let own = (cells.len() / channels.len().max(1)).max(1);
     let mut values = vec![T::default(); rows * channels.len()];
     let mut rooms = values.chunks_mut(rows.max(1));
@@ -259,12 +259,12 @@ fn decode_all<T: Copy + Default>(
 impl Decoder {
     /// All that it keeps from chunk to chunk.
     fn state(&self) -> PyResult<Pickled> {
-        pickled(&[], &self.taken()?).map_err(|error| value(&error))
+        pickled(&[], &self.taken()?).map_err(value)
     }
 
     /// Goes on from a state of a decoder of the same scheme and as many channels.
     fn set_state(&self, state: Pickled) -> PyResult<()> {
-        set_states(&mut self.taken()?, &state).map_err(|error| value(&error))
+        set_states(&mut self.taken()?, &state).map_err(value)
     }
 
     /// The values of the next rows of cells, this many of each channel, one channel after the other.
@@ -280,7 +280,7 @@ impl Decoder {
         macro_rules! decoded {
             ($type:ty, $kind:ident) => {{
                 let values = decode_all::<$type>(own, cells, rows, |room| Values::$kind(room));
-                Ok(values.map_err(|error| value(&error))?.into_pyarray(py).into_any())
+                Ok(values.map_err(value)?.into_pyarray(py).into_any())
             }};
         }
         match self.sample {

@@ -1,8 +1,7 @@
 //! Values of parameters between Python and the catalogue.
 
-use anyhow::{Context, Result, anyhow};
 use catalogue::Info;
-use catalogue::run::{Asked, SET, Value, takes_no};
+use catalogue::run::{Asked, Error, Result, SET, Value};
 use pyo3::prelude::*;
 
 /// A keyword's value, as Python has it.
@@ -24,21 +23,26 @@ pub(crate) enum Given {
 ///
 /// # Errors
 /// There is no such parameter, or the value is none of it. The error names the keyword.
-pub(crate) fn asked(info: &Info, given: Vec<(String, Given)>, paper: bool) -> Result<Asked> {
+pub(crate) fn asked(
+    info: &'static Info,
+    given: Vec<(String, Given)>,
+    paper: bool,
+) -> Result<Asked> {
     let mut asked = Asked::default();
     asked.paper = paper;
     for (name, given) in given {
-        let parameter = info.parameter(&name).with_context(|| takes_no(info, &name))?;
-        let (value, text) = match given {
-            Given::Flag(false) => continue,
-            Given::Flag(true) => (Ok(SET), "True".to_owned()),
-            Given::Word(text) => (parameter.read(&text), text),
-            Given::Count(count) => (Ok(Value::Count(count)), count.to_string()),
-            Given::Number(number) => (Ok(Value::Number(number)), number.to_string()),
-            Given::Numbers(all) => (Ok(Value::Numbers(all.clone())), format!("{all:?}")),
+        let Some(parameter) = info.parameter(&name) else {
+            return Err(Error::takes_no(info, name));
         };
-        let value = value.and_then(|value| parameter.check(value));
-        asked.set(parameter.name, value.map_err(|error| anyhow!("{name}={text}: {error:#}"))?);
+        let value = match given {
+            Given::Flag(false) => continue,
+            Given::Flag(true) => SET,
+            Given::Word(text) => parameter.read(&text)?,
+            Given::Count(count) => Value::Count(count),
+            Given::Number(number) => Value::Number(number),
+            Given::Numbers(all) => Value::Numbers(all),
+        };
+        asked.set(parameter.name, parameter.check(value)?);
     }
     Ok(asked)
 }

@@ -26,15 +26,23 @@ def test_a_recording_is_read_by_name(log):
         sw.read(FLIGHT, "gyro_q")
     with pytest.raises(ValueError, match="cannot be opened"):
         sw.read("nowhere.csv")
+    with pytest.raises(sw.Error) as caught:
+        sw.StepForward(threshold="half")
+    error = caught.value
+    assert (error.parameter, error.value, error.kind, error.file) == ("threshold", "half", "NotANumber", None)
+    with pytest.raises(sw.Error) as caught:
+        sw.read("nowhere.csv")
+    assert (caught.value.file, caught.value.kind) == ("nowhere.csv", "Open")
     with pytest.raises(TypeError, match="colour"):
         sw.read(FLIGHT, colour="red")
     for bad, words in [
         ({"topic": "imu"}, "a CSV table takes no `topic`"),
-        ({"time_unit": "hours"}, "time_unit=hours: must be `s`, `ms`, `us` or `ns`"),
-        ({"rate": 0}, "rate 0 must be above 0 and finite"),
+        ({"time_unit": "hours"}, "`time_unit` hours must be `s`, `ms`, `us` or `ns`"),
+        ({"rate": 0}, "`rate` 0 must be a number above 0 and finite"),
     ]:
-        with pytest.raises(ValueError, match=words):
+        with pytest.raises(sw.Error, match=words) as caught:
             sw.read(FLIGHT, **bad)
+        assert caught.value.parameter == next(iter(bad))
 
 
 def test_a_name_with_a_comma_is_one_name(tmp_path):

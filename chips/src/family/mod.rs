@@ -12,6 +12,7 @@ mod outputs;
 mod port;
 mod running;
 mod step;
+mod steps;
 mod time;
 mod wire;
 
@@ -38,6 +39,7 @@ pub use network::{Describe, Inputs, Network, neurons_from};
 pub use outputs::Spikes;
 pub use port::AerPort;
 pub use running::Running;
+pub use steps::{Steps, StepsLayer, StepsState};
 
 /// A chip of the ODIN family, on an SPI device and a port.
 ///

@@ -13,6 +13,7 @@ mod reckon;
 mod reckon_pairs;
 mod reckon_pins;
 mod search;
+mod steps;
 mod words;
 mod xylo;
 

@@ -303,9 +303,10 @@ impl Parameter {
         .searched(Search::Whole(2, 32));
 
     /// The lowest level of receptive fields that fires.
-    pub const FLOOR: Self = Self::count("floor", "neurons below this level of `slots` are silent")
-        .with_default("1")
-        .searched(Search::Whole(1, 2));
+    pub const FLOOR: Self =
+        Self::count("floor", "neurons below this level of the slots are silent")
+            .with_default("1")
+            .searched(Search::Whole(1, 2));
 
     /// How the mean of spikes is taken.
     pub const MEAN: Self = Self::new(

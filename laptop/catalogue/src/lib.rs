@@ -94,13 +94,13 @@ macro_rules! schemes {
             name: &str,
             settings: &run::Settings,
             visitor: V,
-        ) -> anyhow::Result<V::Output> {
+        ) -> run::Result<V::Output> {
             $(
                 if name == <schemes::$module::Scheme as Entry>::INFO.name {
                     return <schemes::$module::Scheme as run::Build>::build(settings, visitor);
                 }
             )*
-            anyhow::bail!("there is no scheme `{name}`")
+            Err(run::Error::no_scheme(name))
         }
     };
 }

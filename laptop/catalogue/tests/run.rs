@@ -3,7 +3,10 @@
 
 #![cfg(feature = "run")]
 
-use catalogue::run::{Asked, Calibrated, Event, Known, RunTime, SampleType, Settings};
+use catalogue::run::{
+    Asked, Calibrated, ErrorKind, Event, Known, Needs, Result, RunTime, SampleType, Settings,
+    Worded,
+};
 use catalogue::{ALL, Found, Kind};
 
 const SAMPLES: [&str; 6] = ["f32", "i32", "q16.16", "q8.24", "q4.12", "q8.8"];
@@ -26,7 +29,7 @@ fn paper() -> Asked {
     asked
 }
 
-fn resolve(scheme: &dyn RunTime, options: &Asked, sample: SampleType) -> anyhow::Result<Settings> {
+fn resolve(scheme: &dyn RunTime, options: &Asked, sample: SampleType) -> Result<Settings> {
     let signal = signal_for(sample);
     let mut calibrated = Calibrated::new(sample);
     calibrated.observe(&signal);
@@ -156,8 +159,11 @@ fn a_file_without_one_of_the_entries_is_refused_by_its_name() {
                 others.map(|(name, text)| ((*name).to_owned(), text.to_string())).collect();
             let lacking = Settings::take(scheme.info(), SampleType::F32, &mut keys).unwrap();
             let what = format!("{} {name}={text}", scheme.info().name);
-            let error = scheme.codec(&lacking).err().expect(&what).to_string();
-            assert!(error.contains(&format!("`# {name}=`")), "{what}: {error}");
+            let error = scheme.codec(&lacking).err().expect(&what);
+            let told = error.to_string();
+            assert!(told.contains(&format!("`# {name}=`")), "{what}: {told}");
+            assert!(matches!(error.kind, ErrorKind::Lacking { .. }), "{what}: {error:?}");
+            assert!(error.parameter.is_some_and(|own| own.name == *name), "{what}: {told}");
             // And one that makes no sense.
             let mut keys: Vec<_> = settings
                 .entries()
@@ -169,8 +175,9 @@ fn a_file_without_one_of_the_entries_is_refused_by_its_name() {
                 .collect();
             let wrong = Settings::take(scheme.info(), SampleType::F32, &mut keys);
             let error = wrong.and_then(|wrong| scheme.codec(&wrong).map(drop)).unwrap_err();
-            let error = format!("{error:#}");
-            assert!(error.contains(name) && error.contains('x'), "{name}=1,x: {error}");
+            let told = error.to_string();
+            assert!(told.contains(name) && told.contains('x'), "{name}=1,x: {told}");
+            assert!(error.parameter.is_some_and(|own| own.name == *name), "{name}=1,x: {told}");
         }
     }
 }
@@ -193,7 +200,7 @@ fn events_that_no_encoder_emits_together_are_refused() {
 fn what_is_wanted_of_a_signal_is_said() {
     for scheme in ALL {
         let info = scheme.info();
-        assert!(scheme.needs_signal(&paper()).is_some_and(|what| what.contains("`paper`")));
+        assert!(scheme.needs_signal(&paper()) == Some(Needs::Paper));
         let mut options = Asked::default();
         for parameter in info.parameters {
             if parameter.is_recorded && !matches!(parameter.kind, Kind::Choice(_)) {
@@ -240,8 +247,14 @@ fn centres_at_the_quantiles_of_the_signal() {
         let (_, values) = there_and_back(*scheme, &settings, 100);
         assert_eq!(values.len(), signal().len());
         options.set("companding", 20.0);
-        let error = resolve(*scheme, &options, sample).unwrap_err().to_string();
-        assert_eq!(error, "`centres` quantiles says it all; `companding` contradicts it");
+        let error = resolve(*scheme, &options, sample).unwrap_err();
+        assert!(matches!(&error.kind, ErrorKind::SaysItAll { by } if by.name == "centres"));
+        let told = "`centres` quantiles says it all; `companding` contradicts it";
+        assert_eq!(error.to_string(), told);
+        assert_eq!(
+            error.spelled(|name| format!("--{name}")).to_string(),
+            told.replace('`', "").replace("ce", "--ce").replace("; ", "; --")
+        );
     }
 }
 

@@ -5,10 +5,10 @@ mod inputs;
 mod live;
 mod options;
 mod stop;
+mod words;
 
 use clap::{Parser, Subcommand};
 use commands::{capture, convert, decode, encode, info, listen, score, signal};
-use std::io;
 use std::process::ExitCode;
 
 /// Spikes from recordings and back, with the code that flies.
@@ -64,14 +64,10 @@ pub fn run() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         // Whoever reads has read enough.
-        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if words::is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", options::spelled(&format!("{error:#}")));
+            eprintln!("error: {}", words::of(&error));
             ExitCode::from(FAILURE)
         }
     }
-}
-
-fn is_closed_pipe(error: &anyhow::Error) -> bool {
-    error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
 }

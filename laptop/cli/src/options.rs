@@ -1,19 +1,17 @@
 //! The parameters of the catalogue's schemes as options.
 
-use crate::Program;
+use crate::words;
 use anyhow::{Result as Checked, bail};
-use catalogue::run::{Asked, SET, SampleType, Value};
+use catalogue::run::{Asked, SET, SampleType, Value, Worded};
 use catalogue::{Found, Info, Kind, Parameter, Unit};
 use clap::builder::{MapValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, CommandFactory};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command};
 use lab::coding::Coding as File;
 use lab::output::Output;
 use lab::scheme::Scheme;
-use std::collections::BTreeSet;
 use std::fmt::{Display, Write as _};
 use std::io::Write as _;
 use std::str::FromStr;
-use std::sync::LazyLock;
 
 /// The scheme to run and its settings: from the command line, and from a file if that leaves some open.
 #[derive(Args, Clone, Debug)]
@@ -38,7 +36,7 @@ pub(crate) fn whole<T: FromStr>(text: &str) -> Result<T, String> {
 
 /// The value of `--params`.
 pub(crate) fn read(path: &str) -> Result<File, String> {
-    File::read(path).map_err(|error| format!("{error:#}"))
+    File::read(path).map_err(|error| words::of_lab(&error))
 }
 
 /// A scheme if one was named, the sample type, and the parameters given.
@@ -197,7 +195,7 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     if parameter.kind == Kind::Filter && text == FREE {
         return Ok(FREE.into());
     }
-    parameter.read(text).map_err(|error| format!("{error:#}"))
+    parameter.read(text).map_err(|error| error.without_subject().spelled(words::option).to_string())
 }
 
 /// The filter that asks for the taps themselves.
@@ -235,7 +233,7 @@ fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
 }
 
 fn meaning(parameter: &Parameter) -> String {
-    let mut text = spelled_of(parameter.help, is_parameter);
+    let mut text = parameter.help.to_owned();
     // Writing to a string cannot fail.
     let _ = match parameter.unit {
         Unit::Signal if parameter.kind == Kind::Number => write!(text, ", in the signal's unit"),
@@ -254,39 +252,6 @@ fn meaning(parameter: &Parameter) -> String {
     text
 }
 
-/// A text of the library as the command line has it: the name of a setting in backticks becomes its option.
-pub(crate) fn spelled(text: &str) -> String {
-    spelled_of(text, is_setting)
-}
-
-fn spelled_of(text: &str, is_setting: fn(&str) -> bool) -> String {
-    /// Words behind which text in backticks came from the user or a file.
-    const DATA: [&str; 10] = [
-        "value ",
-        "channel ",
-        "column ",
-        "core ",
-        "field ",
-        "format ",
-        "scheme ",
-        "topic ",
-        "type ",
-        "values of ",
-    ];
-    let mut parts = text.split('`');
-    let mut all = parts.next().unwrap_or_default().to_owned();
-    while let Some(inside) = parts.next() {
-        let is_data = DATA.iter().any(|word| all.ends_with(word));
-        if parts.clone().next().is_some() && is_setting(inside) && !is_data {
-            all = all + "--" + &inside.replace('_', "-");
-        } else {
-            all = all + "`" + inside + if parts.clone().next().is_some() { "`" } else { "" };
-        }
-        all += parts.next().unwrap_or_default();
-    }
-    all
-}
-
 /// Writes an answer to standard output.
 ///
 /// # Errors
@@ -294,50 +259,5 @@ fn spelled_of(text: &str, is_setting: fn(&str) -> bool) -> String {
 pub(crate) fn answer(text: impl Display) -> Checked<()> {
     let mut output = Output::to(None)?;
     write!(output, "{text}")?;
-    output.finish()
-}
-
-/// Writes what the library says to standard error.
-pub(crate) fn tell(text: impl Display) {
-    eprint!("{}", spelled(&text.to_string()));
-}
-
-/// Writes notes of the library to standard error, a line each.
-pub(crate) fn tell_each<'a>(notes: impl IntoIterator<Item = &'a String>) {
-    notes.into_iter().for_each(|note| tell(format_args!("{note}\n")));
-}
-
-/// Whether an option is of this name, of any command.
-fn is_setting(name: &str) -> bool {
-    static OPTIONS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
-        let program = Program::command();
-        let arguments = program.get_subcommands().flat_map(Command::get_arguments);
-        let options = arguments.filter(|argument| argument.get_long().is_some());
-        options.map(|option| option.get_id().to_string()).collect()
-    });
-    OPTIONS.contains(name)
-}
-
-/// Whether a parameter of a scheme is of this name.
-fn is_parameter(name: &str) -> bool {
-    catalogue::INFO.iter().any(|info| info.parameter(name).is_some())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::spelled;
-
-    #[test]
-    fn settings_are_options() {
-        for (text, spelt) in [
-            ("sf needs `threshold` (or `paper`)", "sf needs --threshold (or --paper)"),
-            ("no column `min`", "no column `min`"),
-            ("column x: value `min` is not a number", "column x: value `min` is not a number"),
-            ("2 values of `threshold` for 1 neurons", "2 values of `threshold` for 1 neurons"),
-            ("`linear` and `max`", "`linear` and --max"),
-            ("an open ` alone", "an open ` alone"),
-        ] {
-            assert_eq!(spelled(text), spelt);
-        }
-    }
+    Ok(output.finish()?)
 }

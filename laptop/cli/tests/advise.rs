@@ -13,7 +13,7 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     let (_directory, log) = file("signal.csv", good("signal --seconds 6", "").output);
     let arguments = format!("advise {log} --channel signal --max-rmse 0.4 {SHORT}");
     let told: Value = ran!("{arguments} --json").json();
-    let advice = &told[0];
+    let advice = &told["channels"][0];
     assert_eq!(advice["look"]["verdict"], "good");
     assert!((advice["look"]["rate"].as_f64().unwrap() - 100.0).abs() < 0.1);
     let reaching = advice["reaching"].as_array().unwrap();
@@ -48,28 +48,32 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
         let asked = format!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 16");
         let ran = ran!("{asked} --json {more}");
         let told: Value = ran.json();
-        let reaching = told[0]["reaching"].as_array().unwrap().iter();
+        let reaching = told["channels"][0]["reaching"].as_array().unwrap().iter();
         let latencies = reaching.map(|one| {
             let latency = one["costs"]["latency"].as_f64().unwrap();
             (one["scheme"].as_str().unwrap().to_owned(), latency)
         });
-        (latencies.collect::<Vec<_>>(), told[0].clone())
+        (latencies.collect::<Vec<_>>(), told["channels"][0].clone())
     };
     let (any, advice) = ask("");
     assert!(any.iter().any(|(_, latency)| *latency > 1.0), "{any:?}");
     assert!(any.iter().any(|(scheme, _)| scheme == "sf"), "{any:?}");
     assert!(advice["loop_latency"].is_null());
+    let others = advice["others"].to_string();
+    assert!(
+        others.contains("at the nearest of 16 settings") && !others.contains("at best"),
+        "{others}"
+    );
 
     let (within, advice) = ask("--loop-bandwidth 5");
     assert_eq!(advice["loop_latency"], 1.0);
     assert!(!within.is_empty(), "{advice:#}");
     assert!(within.iter().all(|(scheme, latency)| *latency <= 1.0 && scheme != "sf"), "{within:?}");
     let others = advice["others"].to_string();
-    assert!(
-        others.contains("at the nearest of 16 settings") && !others.contains("at best"),
-        "{others}"
-    );
-    assert!(others.contains("in a loop sf follows this signal but for"), "{others}");
+    for words in ["tbr was not flown with rotors that shake the sensor", "bernoulli was not flown"]
+    {
+        assert!(others.contains(words), "{words}: {others}");
+    }
     // A quarter of the rate is the most that a loop can act on, and Nyquist's frequency is twice that.
     ran!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 1 --loop-bandwidth 25");
     refused(
@@ -80,6 +84,59 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     // Without a rate nobody knows what a sample is in the loop's time.
     let unknown = format!("advise {log} --column x --loop-bandwidth 5");
     refused(&unknown, "", &["--loop-bandwidth needs the rate of x"]);
+}
+
+/// Of two channels that move apart, each by itself would take another count of spikes, or another scheme.
+#[test]
+fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
+    let row = |place: u32| {
+        let at = f64::from(place);
+        let (slow, fast) = ((at * 0.02).sin() * 3.0, (at * 0.11).sin() + (at * 0.013).cos() * 4.0);
+        format!("{},{slow},{fast}\n", place * 2000)
+    };
+    let rows: String = (0..1500).map(row).collect();
+    let (_directory, log) = file("log.csv", format!("time_us,gyro_x,accel_z\n{rows}"));
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("flight.toml");
+    let asked = format!("advise {log} --loop-bandwidth 5 --evaluations 16 -o {}", path.display());
+    let told: Value = ran!("{asked} --json").json();
+    let banks = told["bank"]["banks"].as_array().unwrap();
+    let bytes: Vec<f64> =
+        banks.iter().map(|own| own["bytes_per_second"].as_f64().unwrap()).collect();
+    assert!(bytes.is_sorted() && !bytes.is_empty(), "{banks:#?}");
+    let flown = std::fs::read_to_string("../../loop/verdicts.json").unwrap();
+    let flown: Value = serde_json::from_str(&flown).unwrap();
+    for bank in banks {
+        let scheme = bank["scheme"].as_str().unwrap();
+        let own = &flown["banks"][scheme];
+        let cells = own["everywhere"].as_object().unwrap().values().chain([&own["here"]]);
+        assert!(cells.clone().all(|cell| cell["lost"].as_array().unwrap().is_empty()), "{scheme}");
+        // The keyframes of that bank, at 500 samples a second.
+        assert_eq!(bank["keyframe_every"], own["keyframe_ms"].as_u64().unwrap() / 2, "{scheme}");
+    }
+    let unknown = told["bank"]["unknown"].to_string();
+    assert!(unknown.contains("in a simulator"), "{unknown}");
+
+    let written = std::fs::read_to_string(&path).unwrap();
+    let scheme = format!("scheme = \"{}\"\n", banks[0]["scheme"].as_str().unwrap());
+    assert!(written.contains(&scheme) && written.contains("period = 2000"), "{written}");
+    let spikes = ran!("encode --flight {} {log}", path.display()).output;
+    assert!(
+        spikes.contains("# column=gyro_x,accel_z\n") || spikes.contains("gyro_x,accel_z"),
+        "{spikes}"
+    );
+    let module = ran!("emit rust --flight {}", path.display()).output;
+    assert!(
+        module.contains("pub const NAMES: [&str; CHANNELS] = [\"gyro_x\", \"accel_z\"];"),
+        "{module}"
+    );
+}
+
+#[test]
+fn more_lost_frames_than_were_flown_are_refused() {
+    let (_directory, log) = file("log.csv", table(&[0.0, 1.0, 2.0]));
+    let refusal = &["--frame-loss 11 must be 0 to 10 percent: more was not flown"];
+    refused(&format!("advise {log} --rate 100 --frame-loss 11"), "", refusal);
 }
 
 /// A flight on which motors shake the sensor moves little more than its noise, and is no noise: deviation 0.206, noise
@@ -102,14 +159,14 @@ fn a_shaken_flight_is_advised_on() {
         "",
     );
     let told: Value = ran.json();
-    let look = &told[0]["look"];
+    let look = &told["channels"][0]["look"];
     let (deviation, noise) = (look["deviation"].as_f64().unwrap(), look["noise"].as_f64().unwrap());
     assert!(
         (deviation - 0.206).abs() < 0.02 && (noise - 0.124).abs() < 0.02,
         "{deviation} {noise}"
     );
     assert_eq!(look["verdict"], "good");
-    assert!(!told[0]["reaching"].as_array().unwrap().is_empty());
+    assert!(!told["channels"][0]["reaching"].as_array().unwrap().is_empty());
 }
 
 /// A verdict, and no scheme.

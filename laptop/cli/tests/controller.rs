@@ -172,8 +172,9 @@ fn a_file_that_does_not_say_the_rule_is_refused_with_the_choices() {
     // What the choice named leaves open is all that is asked for.
     let told = common::spikewire(&network("braille_subtract.nir", "--as snntorch"), "").told;
     assert!(!told.contains("--fires") && !told.contains("--dt"), "{told}");
-    let chip = network("braille_subtract.nir", "--as snntorch").replace("controller", "tinyodin");
-    refused(&chip, "", &["--on controller"]);
+    let chip = network("braille_subtract.nir", "--as snntorch --reset zero")
+        .replace("controller", "tinyodin");
+    refused(&format!("{chip} --numbers i8"), "", &["--on controller"]);
 }
 
 #[test]

@@ -208,7 +208,11 @@ fn bytes_of_another_format_are_refused() {
         ("eieio", "no eieio event in the 324 bytes"),
     ] {
         let from = format!("--from {format}");
-        refused(&format!("convert {from} --to es"), &words, &[what, "standard input; is it of"]);
+        refused(
+            &format!("convert {from} --to es"),
+            &words,
+            &[what, "standard input: no ", "are they of another format?"],
+        );
         refused(&format!("listen {from}"), &words, &[what, "\n324 bytes skipped\n"]);
     }
     let zeros = "\x7f".repeat(400);

@@ -92,7 +92,8 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
 
 /// A board whose code is decoded a sample at a time: its values after each sample, by the address of each channel.
 fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
-    board_since_boot(scheme, slot_ticks, 0, 100)
+    // Sub-timesteps take heartbeats by which the pace of samples can be measured.
+    board_since_boot(scheme, slot_ticks, 0, if slot_ticks > 0 { 20 } else { 100 })
 }
 
 /// The same so many µs after its boot, with a heartbeat every so many samples.
@@ -385,7 +386,7 @@ fn slots_are_heard_after_any_uptime() {
     let options = "--scheme grf-slots --neurons 15 --slots 10 --min=-100 --max 100 --slot-ticks";
     for minutes in [0_u64, 36, 37, 71, 72, 83, 5_256_000] {
         let uptime = minutes * 60_000_000 + 42_000_123;
-        let board = board_since_boot(&scheme, 50, uptime, 100);
+        let board = board_since_boot(&scheme, 50, uptime, 20);
         assert_sampled(&board, &board.frames, &format!("{options} 50"));
     }
     let silent = board_since_boot(&scheme, 50, 83 * 60_000_000, u32::MAX);
@@ -393,7 +394,7 @@ fn slots_are_heard_after_any_uptime() {
     let heard = good_bytes(&format!("listen {options} 50"), &silent.frames[2..].concat());
     assert_eq!(values(&heard.output).len(), 0);
     assert!(heard.told.contains("\nno value is exact: no heartbeat since"), "{}", heard.told);
-    let board = board_since_boot(&scheme, 50, 0, 100);
+    let board = board_since_boot(&scheme, 50, 0, 20);
     let heard = good_bytes(&format!("listen {options} 101"), &board.frames.concat());
     let why = "\nno value is exact: 10 sub-timesteps of 101 µs are longer than the link's period of 1000 µs\n";
     assert!(heard.told.contains(why), "{}", heard.told);

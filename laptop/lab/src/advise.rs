@@ -1,19 +1,26 @@
 //! Advice on a recording: the character of each channel, and the scheme that suits it.
 
+mod bank;
+mod flown;
+
+pub use bank::BankAdvice;
+
+use crate::Result;
 use crate::brief::{brief, short};
 use crate::events::{Format, Item};
+use crate::flight::{Filter, Filtering};
 use crate::look::{Look, Verdict, known_unit};
 use crate::scheme::Scheme;
 use crate::steep::Steep;
 use crate::trial::{Recording, Trial};
+use crate::tune::RequestKind;
 use crate::tune::problem::Limit;
 use crate::tune::report::{Cut, DRIFTS, Row};
 use crate::tune::search::{Budget, Method, search, share};
 use crate::tune::stretch::{HoldOut, cut};
 use crate::tune::{Goal, Limits, Problem, Stretch, costs};
 use crate::watch::{Progress, Watch};
-use anyhow::{Result, bail};
-use catalogue::run::{Asked, SampleType};
+use catalogue::run::{Asked, Given, SampleType};
 use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
@@ -48,6 +55,9 @@ pub struct AdviseRequest {
     /// The frequency up to which the control loop acts that is to fly on the code, in Hz, a quarter of the rate at most. Codes that are too late for it, or
     /// that fall behind the signal, are not advised.
     pub loop_bandwidth: Option<f64>,
+    /// Percent of the frames that the link loses, 0 to 10. With a loop, codes are not advised that a simulated drone did
+    /// not fly on well at this loss.
+    pub frame_loss: f64,
     /// Core of the measured table that tells instructions.
     pub core: String,
     /// Number of settings of each scheme and channel to score, 1 or more.
@@ -62,6 +72,9 @@ impl AdviseRequest {
     /// Settings of each scheme and channel to score unless said otherwise.
     pub const EVALUATIONS: usize = 300;
 
+    /// Percent of the frames that are lost unless said otherwise.
+    pub const FRAME_LOSS: f64 = 1.0;
+
     /// Asks for advice on recordings, in `f32`, for a fifth of the deviation.
     pub fn new(recordings: Vec<Recording>) -> Self {
         Self {
@@ -70,6 +83,7 @@ impl AdviseRequest {
             max_rmse: None,
             max_latency: None,
             loop_bandwidth: None,
+            frame_loss: Self::FRAME_LOSS,
             core: "M4F".to_owned(),
             evaluations: Self::EVALUATIONS,
             seconds: None,
@@ -99,6 +113,42 @@ pub struct Advice {
     sample: SampleType,
     #[serde(skip)]
     core: String,
+    /// Whether other channels are to share its scheme.
+    #[serde(skip)]
+    is_one_of_many: bool,
+}
+
+/// A filter that fits the rate of a recording.
+#[derive(Clone, Copy)]
+struct Filtered {
+    filter: Filter,
+    sample: SampleType,
+    rate: f32,
+    /// By how many samples a slow signal comes late.
+    delay: f64,
+}
+
+impl Filtered {
+    /// `None` if its corner does not fit the rate.
+    fn new(filter: Filter, sample: SampleType, rate: f64) -> Option<Self> {
+        let rate = rate as f32;
+        drop(filter.start(sample, rate).ok()?);
+        let delay = filter.delay(rate).ok()?;
+        Some(Self { filter, sample, rate, delay: delay.into() })
+    }
+
+    fn start(&self) -> Filtering {
+        // That it fits was tried.
+        self.filter.start(self.sample, self.rate).unwrap_or_else(|_| Box::new(|sample| sample))
+    }
+}
+
+/// What a search of one scheme on one channel came to.
+enum Tuning {
+    /// Settings within the error.
+    Reached(Box<Candidate>),
+    /// The reason that there are none, behind the scheme's name.
+    Missed(String),
 }
 
 #[derive(Debug, Serialize)]
@@ -116,7 +166,11 @@ struct Candidate {
 /// A recording is too short to hold something out, or there is no setting to score.
 pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     if request.evaluations == 0 {
-        bail!("`evaluations` 0 must be above 0");
+        return Err(RequestKind::NotAboveZero.of(Given::new("evaluations", 0)));
+    }
+    let most = flown::LOSSES[flown::LOSSES.len() - 1];
+    if !(0.0..=most).contains(&request.frame_loss) {
+        return Err(RequestKind::NotFlown { most }.of(Given::new("frame_loss", request.frame_loss)));
     }
     costs::core(&request.core)?;
     let end = request.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
@@ -166,16 +220,23 @@ impl Advice {
         let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };
         let loop_latency = match (request.loop_bandwidth, recording.rate) {
             (None, _) => None,
-            (Some(bandwidth), Some(rate)) if bandwidth * FEWEST > rate => bail!(
-                "`loop_bandwidth` {bandwidth} must be {} or less: {} has {} samples a second, and a loop acts on {FEWEST} \
-                 or more in a period of its bandwidth",
-                short(rate / FEWEST),
-                recording.name,
-                short(rate)
-            ),
+            (Some(bandwidth), Some(rate)) if bandwidth * FEWEST > rate => {
+                let kind = RequestKind::TooFast {
+                    most: short(rate / FEWEST),
+                    recording: recording.name.clone(),
+                    rate: short(rate),
+                    fewest: FEWEST,
+                };
+                return Err(kind.of(Given::new("loop_bandwidth", bandwidth)));
+            }
             (Some(bandwidth), Some(rate)) if bandwidth > 0.0 => Some(borne(bandwidth, rate)),
-            (Some(_), None) => bail!("`loop_bandwidth` needs the rate of {}", recording.name),
-            (Some(bandwidth), _) => bail!("`loop_bandwidth` {bandwidth} must be above 0"),
+            (Some(_), None) => {
+                let kind = RequestKind::NeedsRate { recording: recording.name.clone() };
+                return Err(kind.of(Given::named("loop_bandwidth")));
+            }
+            (Some(bandwidth), _) => {
+                return Err(RequestKind::NotAboveZero.of(Given::new("loop_bandwidth", bandwidth)));
+            }
         };
         Ok(Self {
             objection,
@@ -185,13 +246,14 @@ impl Advice {
             others: Vec::new(),
             is_cut_short: false,
             raw_bytes_per_second: recording.rate.map(|rate| rate * bytes),
+            is_one_of_many: request.recordings.len() > 1,
             sample: request.sample,
             core: costs::core(&request.core).unwrap_or_default(),
             look,
         })
     }
 
-    /// Tunes a scheme for a moment.
+    /// Tunes a scheme for a moment, unless it is known not to fly.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -199,24 +261,59 @@ impl Advice {
         recording: &Recording,
         budget: &Budget,
     ) -> Result<()> {
+        let objection = match self.loop_latency {
+            Some(_) => flown::objection(scheme.name(), request.frame_loss),
+            None => None,
+        };
+        let tuning = match objection {
+            Some(words) => Tuning::Missed(words),
+            None => self.tuned(request, scheme, recording, &Asked::default(), budget)?,
+        };
+        match tuning {
+            Tuning::Reached(candidate) => {
+                self.is_cut_short |= candidate.row.is_cut_short;
+                self.reaching.push(*candidate);
+            }
+            Tuning::Missed(words) => self.others.push(format!("{} {words}", scheme.name())),
+        }
+        Ok(())
+    }
+
+    /// Tunes a scheme for a moment, with these parameters fixed.
+    fn tuned(
+        &self,
+        request: &AdviseRequest,
+        scheme: Scheme,
+        recording: &Recording,
+        fixed: &Asked,
+        budget: &Budget,
+    ) -> Result<Tuning> {
         /// A chance difference between blocks is no failure.
         const MARGIN: f64 = 1.25;
+        let filtered = self.filter(scheme, request.sample);
+        let own;
+        let recording = match &filtered {
+            Some(filter) => {
+                own = recording.filtered(|| filter.start());
+                &own
+            }
+            None => recording,
+        };
         let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
         let whole = Stretch::whole(recording);
         let cut = Cut { name: recording.name.clone(), train, held_out, whole };
-        let latencies = [request.max_latency, self.loop_latency].into_iter().flatten();
+        let delay = filtered.map_or(0.0, |own| own.delay);
+        let borne = self.loop_latency.map(|borne| borne - delay);
+        let latencies = [request.max_latency, borne].into_iter().flatten();
         let limits = Limits { latency: latencies.reduce(f64::min), ..Limits::default() };
         let goal = Goal::MostEfficient(self.max_rmse);
-        let core = self.core.clone();
-        let known = (goal, &limits, core.as_str());
-        let problem = Problem::new(scheme, request.sample, &Asked::default(), &cut.train, known);
+        let known = (goal, &limits, self.core.as_str());
+        let problem = Problem::new(scheme, request.sample, fixed, &cut.train, known);
         let method = Method { seed: request.seed, free_taps: false };
         let found = search(&problem, method, budget);
-        self.is_cut_short |= found.is_cut_short;
-        let Some(best) = &found.best else {
-            self.others.push(format!("{} cannot be built", scheme.name()));
-            return Ok(());
-        };
+        let cut_short = if found.is_cut_short { ", its search cut short" } else { "" };
+        let missed = |words: String| Ok(Tuning::Missed(words + cut_short));
+        let Some(best) = &found.best else { return missed("cannot be built".to_owned()) };
         if !best.is_allowed() {
             let what = match best.excess.first() {
                 Some(excess) if excess.limit == Limit::Latency => {
@@ -229,23 +326,18 @@ impl Advice {
                 ),
             };
             let ends = found.ends.iter().map(|end| format!(" ({})", end.words()));
-            let what = what + &ends.collect::<String>();
-            self.others.push(format!("{} {what}", scheme.name()));
-            return Ok(());
+            return missed(what + &ends.collect::<String>());
         }
         let row = Row::new(&problem, &cut, &found, best, None)?;
         if let Some(held_out) = row.held_out.filter(|own| own.rmse > MARGIN * self.max_rmse) {
-            self.others.push(format!(
-                "{} reaches it where it is tuned only: {} on held-out blocks",
-                scheme.name(),
+            return missed(format!(
+                "reaches it where it is tuned only: {} on held-out blocks",
                 short(held_out.rmse)
             ));
-            return Ok(());
         }
         let steep = Steep::new(scheme, recording, &row.settings).filter(|own| own.part() > STEEP);
         if let Some(steep) = steep.filter(|_| self.loop_latency.is_some()) {
-            self.others.push(format!("in a loop {}", steep.words()));
-            return Ok(());
+            return missed(format!("falls behind in a loop: {}", steep.words()));
         }
         let options = row.settings.to_asked(scheme.info());
         let trial = Trial::new(scheme, &options, problem.sample, recording)?;
@@ -253,8 +345,21 @@ impl Advice {
             Some(rate) => Some(link_bytes(&trial, rate)? * rate / recording.values.len() as f64),
             None => None,
         };
-        self.reaching.push(Candidate { link_bytes_per_second, row, scheme: Some(scheme) });
-        Ok(())
+        let scheme = Some(scheme);
+        Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
+    }
+
+    /// The filter before a scheme in a loop: that with which it flew, if it fits the rate.
+    fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
+        self.loop_latency?;
+        let filter = flown::flown(scheme.name())?.filter()?;
+        Filtered::new(filter, sample, self.look.rate?)
+    }
+
+    /// The settings of a scheme that reach the error, if some do.
+    fn row(&self, scheme: Scheme) -> Option<&Row> {
+        let own = self.reaching.iter().find(|own| own.scheme == Some(scheme));
+        own.map(|own| &own.row)
     }
 
     /// The fewest bytes first, or events where no rate is known.
@@ -344,8 +449,9 @@ impl Advice {
         } else {
             format!("next: {}", next.join(", "))
         };
+        let take = if self.is_one_of_many { "alone" } else { "take" };
         let mut reasons = vec![
-            format!("  take {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
+            format!("  {take} {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
             format!(
                 "    RMSE {}{held_out}, {:.1} % of the samples without a spike, {} events a second",
                 short(row.tuned_on.rmse),

@@ -1,7 +1,8 @@
 //! Several channels of a recording, each with a codec of its own.
 
+use crate::Result;
 use crate::scheme::Scheme;
-use anyhow::{Result, bail};
+use crate::tune::RequestKind;
 use catalogue::run::{Codec, Event, Settings};
 
 /// Codecs of one scheme. The neurons of the second channel are numbered on from those of the first.
@@ -24,12 +25,13 @@ impl Bank {
             None => 1,
         };
         if channels.len() * neurons > usize::from(u16::MAX) + 1 {
-            bail!("{} channels of {neurons} neurons are too many addresses", channels.len());
+            let kind = RequestKind::Addresses { channels: channels.len(), neurons };
+            return Err(kind.into());
         }
         let codecs = (0..)
             .zip(channels)
             .map(|(stream, settings)| scheme.codec(&settings.with_stream(stream)));
-        let codecs = codecs.collect::<Result<_>>()?;
+        let codecs = codecs.collect::<Result<_, _>>()?;
         Ok(Self { codecs, neurons: neurons as u16, own: Vec::new() })
     }
 

@@ -1,9 +1,11 @@
 //! A scheme with what is asked of its parameters, and files of that: TOML, as tuning writes it.
 
+use crate::error::At;
 use crate::scheme::Scheme;
-use anyhow::{Context, Result, anyhow, bail};
+use crate::tune::RequestKind;
+use crate::{Error, Place, Result, Spot};
 use catalogue::Parameter;
-use catalogue::run::{Asked, Known, SET, SampleType, Settings, Value, takes_no};
+use catalogue::run::{Asked, Given, Known, SET, SampleType, Settings, Value};
 use std::fs;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table};
@@ -31,7 +33,7 @@ impl Coding {
     /// Returns an error, with file and line, if the file is missing, is no TOML, names no scheme, or holds what the
     /// scheme does not take.
     pub fn read(path: &str) -> Result<Self> {
-        let text = fs::read_to_string(path).with_context(|| format!("{path}: cannot be opened"))?;
+        let text = fs::read_to_string(path).map_err(|error| Error::open(path, error))?;
         Self::parse(path, &text)
     }
 
@@ -40,27 +42,32 @@ impl Coding {
     /// # Errors
     /// See [`read`](Self::read).
     pub fn parse(file: &str, text: &str) -> Result<Self> {
-        let table = DeTable::parse(text).map_err(|error| anyhow!("{file}: no TOML: {error}"))?;
+        let table =
+            DeTable::parse(text).map_err(|error| RequestKind::NotToml { error }.at(file))?;
         let mut table = table.into_inner();
         let place = |at: usize| {
-            format!("{file}:{}", 1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count())
+            let before = text.bytes().take(at).filter(|byte| *byte == b'\n').count();
+            Place::spot(file, Spot::Entry(1 + before as u64))
         };
         let mut word = |name: &str| match table.remove(name) {
             None => Ok(None),
-            Some(value) => match value.get_ref() {
-                DeValue::String(word) => Ok(Some((word.to_string(), value.span().start))),
-                _ => bail!("{}: {name} must be a text", place(value.span().start)),
-            },
+            Some(value) => {
+                let at = value.span().start;
+                if let DeValue::String(word) = value.get_ref() {
+                    return Ok(Some((word.to_string(), at)));
+                }
+                let given = Given::listed(name, None::<&str>);
+                Err(RequestKind::NotAText.of(given).at(place(at)))
+            }
         };
         let Some((name, at)) = word("scheme")? else {
-            bail!("{file}: `scheme = \"...\"` is missing")
+            return Err(RequestKind::NoSchemeNamed.at(file));
         };
         let Some(scheme) = Scheme::named(&name) else {
-            let names: Vec<&str> = Scheme::all().map(Scheme::name).collect();
-            bail!("{}: there is no scheme `{name}`; there are {}", place(at), names.join(", "))
+            return Err(Error::from(catalogue::run::Error::no_scheme(&name)).at(place(at)));
         };
         let sample = match word("sample")? {
-            Some((name, at)) => name.parse().with_context(|| place(at))?,
+            Some((name, at)) => name.parse().at(|| place(at))?,
             None => SampleType::default(),
         };
         let mut asked = Asked::default();
@@ -68,11 +75,14 @@ impl Coding {
         for (name, value) in table {
             let at = value.span().start;
             let Some(parameter) = scheme.info().parameter(name.get_ref()) else {
-                bail!("{}: {}", place(at), takes_no(scheme.info(), name.get_ref()))
+                let name = name.get_ref().to_string();
+                let error = catalogue::run::Error::takes_no(scheme.info(), name);
+                return Err(Error::from(error).at(place(at)));
             };
-            let value = read(parameter, &value).with_context(|| {
+            let value = read(parameter, &value).map_err(|error| {
                 let said = text.get(value.span()).unwrap_or_default();
-                format!("{}: {} = {said}", place(at), parameter.name)
+                let given = Given::listed(parameter.name, Some(format_args!("= {said}")));
+                Error { parameter: Some(given), ..error }.at(place(at))
             })?;
             if let Some(value) = value {
                 asked.set(parameter.name, value);
@@ -80,11 +90,17 @@ impl Coding {
             }
         }
         let coding = Self { scheme, sample, asked };
-        coding.built_alone().map_err(|error| {
-            let said = format!("{error:#}");
-            let named =
-                lines.iter().find(|(name, _)| said.split([' ', '`']).any(|word| word == *name));
-            error.context(named.map_or(file.to_owned(), |&(_, at)| place(at)))
+        coding.built_alone().map_err(|mut error| {
+            let line = |name: &str| {
+                let is_it = |own: &Parameter| own.name == name || own.key() == name;
+                let own = scheme.info().parameters.iter().find(|own| is_it(own))?;
+                lines.iter().find(|(name, _)| *name == own.name).map(|&(_, at)| at)
+            };
+            let named = error.parameter.as_mut().and_then(|own| {
+                own.is_listed = true;
+                line(&own.name)
+            });
+            error.at(named.map_or_else(|| Place::of(file), place))
         })?;
         Ok(coding)
     }
@@ -105,7 +121,8 @@ impl Coding {
         let channels = asked.channels(info)?.unwrap_or(1);
         (0..channels).try_for_each(|channel| {
             let asked = asked.channel(info, channel, channels)?;
-            scheme.codec(&scheme.resolve(*sample, &asked, &known)?).map(drop)
+            scheme.codec(&scheme.resolve(*sample, &asked, &known)?)?;
+            Ok(())
         })
     }
 
@@ -142,20 +159,22 @@ fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>
             DeValue::Float(number) => number.as_str().parse().ok(),
             _ => None,
         };
-        number.context("must be a number")
+        number.ok_or_else(|| RequestKind::NotANumber.into())
     };
     let value = match value.get_ref() {
         DeValue::Boolean(false) => return Ok(None),
         DeValue::Boolean(true) => SET,
-        DeValue::String(text) => return parameter.read(text).map(Some),
+        DeValue::String(text) => return Ok(Some(parameter.read(text)?)),
         DeValue::Array(all) => {
             let all = all.iter().map(|value| number(value.get_ref()));
             Value::Numbers(all.collect::<Result<_>>()?)
         }
-        DeValue::Table(_) | DeValue::Datetime(_) => bail!("must be a number or a text"),
+        DeValue::Table(_) | DeValue::Datetime(_) => {
+            return Err(RequestKind::NeitherNumberNorText.into());
+        }
         value => Value::Number(number(value)?),
     };
-    parameter.check(value).map(Some)
+    Ok(Some(parameter.check(value)?))
 }
 
 /// A whole number without a point.
@@ -171,7 +190,7 @@ mod tests {
     use super::Coding;
     use catalogue::run::{SET, Value};
 
-    fn read(text: &str) -> anyhow::Result<Coding> {
+    fn read(text: &str) -> crate::Result<Coding> {
         Coding::parse("own.toml", text)
     }
 
@@ -199,7 +218,7 @@ mod tests {
             ("scheme = \"sf\"\n\nwindow = 5", "own.toml:3: sf takes no `window`"),
             (
                 "scheme = \"sf\"\n# half\nthreshold = \"abc\"",
-                "own.toml:3: threshold = \"abc\": is not a number",
+                "own.toml:3: threshold = \"abc\" is not a number",
             ),
             (
                 "scheme = \"sf\"\nthreshold = [\"a\"]",
@@ -209,10 +228,13 @@ mod tests {
             ("scheme = \"sf\"\n\nthreshold = -1", "own.toml:3: threshold -1 must be above 0"),
             ("scheme = \"sf\"\nthreshold = [1, -1]", "own.toml:2: "),
             ("scheme = \"mw\"\nthreshold = 1\nwindow = 99999", "own.toml:3: "),
-            ("scheme = \"position\"\nneurons = 4\nmin = 5\nmax = 1", "own.toml:4: min and max"),
+            (
+                "scheme = \"position\"\nneurons = 4\nmin = 5\nmax = 1",
+                "own.toml:3: min 5 must be below",
+            ),
             ("scheme = \"sf\"\nsample = \"q8.8\"\nthreshold = 0.0001", "own.toml:3: "),
         ] {
-            let told = format!("{:#}", read(text).unwrap_err());
+            let told = read(text).unwrap_err().to_string();
             assert!(told.contains(words), "{text}: {told}");
         }
     }

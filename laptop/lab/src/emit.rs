@@ -1,11 +1,17 @@
 //! Sources for firmware: a constant in Rust, a file of parameters, a crate that makes the library for C.
 
+use crate::c_bank::CBank;
 use crate::coding::Coding;
+use crate::error::At;
+use crate::flight::Flight;
+use crate::output::OutputKind;
+use crate::scheme::Scheme;
+use crate::tune::RequestKind;
 use crate::tune::emit;
-use anyhow::{Context, Result, bail};
-use catalogue::run::{Constant, Known, Settings};
-use std::fs;
+use crate::{Place, Result, Spot};
+use catalogue::run::{Constant, ErrorKind, Known, Settings};
 use std::path::Path;
+use std::{fs, io};
 
 /// Writes a constant in Rust of this name, below these comments.
 ///
@@ -28,10 +34,11 @@ fn settings(coding: &Coding) -> Result<Settings> {
     let Coding { scheme, sample, asked } = coding;
     let past = vec![0.0; scheme.looks_back(asked)];
     let known = Known { calibrated: None, first: &past, can_calibrate: false };
-    if let Some(what) = scheme.needs_signal(asked) {
-        bail!("{} needs {what}", scheme.name());
+    if let Some(needs) = scheme.needs_signal(asked) {
+        let kind = ErrorKind::NeedsSignal { scheme: scheme.info(), needs };
+        return Err(catalogue::run::Error::from(kind).into());
     }
-    scheme.resolve(*sample, asked, &known)
+    Ok(scheme.resolve(*sample, asked, &known)?)
 }
 
 /// A codec of the library for C.
@@ -53,12 +60,31 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     let mut all = Vec::new();
     for (place, codec) in codecs.iter().enumerate() {
         if codecs[..place].iter().any(|other| other.name == codec.name) {
-            bail!("there are two codecs `{}`; a codec has the name of its file", codec.name);
+            return Err(RequestKind::TwoCodecs { name: codec.name.clone() }.into());
         }
-        all.push(declared(codec).with_context(|| format!("codec `{}`", codec.name))?);
+        let part = || Place::from(Spot::Part(format!("codec `{}`", codec.name)));
+        all.push(declared(codec).at(part)?);
     }
-    write(directory, &all, spikewire)
-        .with_context(|| format!("{}: cannot be written", directory.display()))
+    let unwritten = |error| OutputKind::Unwritten { error }.at(directory);
+    write(directory, &all, spikewire).map_err(unwritten)
+}
+
+/// Writes a crate that makes the library for C of a flight's codecs, as [`c_crate`] does, and `flight_bank.h` with its bank
+/// and its writer.
+///
+/// # Errors
+/// Returns an error if the library has no such scheme or sample type, or the directory is there.
+pub fn c_flight(flight: &Flight, directory: &Path, spikewire: Option<&Path>) -> Result<()> {
+    let bank = CBank::new(flight)?;
+    let scheme = Scheme::from(flight.run_time());
+    let declared = bank.codecs().iter();
+    let declared: Vec<String> =
+        declared.map(|(name, own, constant)| declaration(name, scheme, own, constant)).collect();
+    let written = write(directory, &declared, spikewire).and_then(|()| {
+        fs::create_dir_all(directory.join("include"))?;
+        fs::write(directory.join("include/flight_bank.h"), bank.header(directory))
+    });
+    written.map_err(|error| OutputKind::Unwritten { error }.at(directory))
 }
 
 /// The declaration of a codec.
@@ -68,25 +94,31 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     let is_in_c =
         catalogue::IN_C.iter().any(|(own, codecs)| own.name == info.name && !codecs.is_empty());
     if !is_in_c {
-        bail!("{} draws from a generator, which the library for C has not", info.name);
+        return Err(RequestKind::Draws { scheme: info.name }.into());
     }
-    if let Some(missing) = scheme.needs_signal(asked) {
-        bail!("{} needs {missing}, which a signal tells; `tune` writes it", info.name);
+    if let Some(needs) = scheme.needs_signal(asked) {
+        return Err(
+            catalogue::run::Error::from(ErrorKind::NeedsSignal { scheme: info, needs }).into()
+        );
     }
     let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
     let settings = scheme.resolve(*sample, asked, &known)?;
     scheme.codec(&settings)?; // what makes no sense is told here, not by the compiler
-    let Constant { scheme: kind, value } = scheme.constant(&settings)?;
-    let text = Coding::of_settings(*scheme, &settings).to_toml(&[]);
-    let lines: Vec<String> = text.lines().map(|line| format!("    /// {line}\n")).collect();
-    let text = lines.concat();
-    Ok(format!(
-        "    /// {}, in {sample}.\n    ///\n{text}    {name}: {kind} {{\n        constant {value};\n    }}\n",
-        info.words
-    ))
+    Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
 }
 
-fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> Result<()> {
+/// The declaration of a codec of this name and constant.
+fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
+    let Constant { scheme: kind, value } = constant;
+    let text = Coding::of_settings(scheme, settings).to_toml(&[]);
+    let lines: Vec<String> = text.lines().map(|line| format!("    /// {line}\n")).collect();
+    let (text, words, sample) = (lines.concat(), scheme.info().words, settings.sample);
+    format!(
+        "    /// {words}, in {sample}.\n    ///\n{text}    {name}: {kind} {{\n        constant {value};\n    }}\n"
+    )
+}
+
+fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> io::Result<()> {
     fs::create_dir(directory)?;
     fs::create_dir_all(directory.join("src/bin"))?;
     let name = directory.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
@@ -94,7 +126,7 @@ fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> Res
         .chars()
         .map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' })
         .collect();
-    let place = |part: &str| -> Result<String> {
+    let place = |part: &str| -> io::Result<String> {
         Ok(match spikewire {
             Some(path) => {
                 let path = fs::canonicalize(path)?.join(part);
@@ -106,7 +138,7 @@ fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> Res
     let manifest = MANIFEST
         .replace("@NAME@", &name)
         .replace("@SPIKEWIRE@", &place("")?)
-        .replace("@C@", &place("c")?);
+        .replace("@C@", &place("bindings/c")?);
     let codecs = CODECS.replace("@CODECS@", &declared.concat());
     for (path, text) in [
         ("Cargo.toml", manifest.as_str()),

@@ -1,13 +1,34 @@
 //! A recording to a file of spikes, in constant memory.
 
+use crate::Result;
 use crate::bank::Bank;
+use crate::coding::Coding;
 use crate::fit::{Fit, explained, rounding};
+use crate::flight::{self, Flight, Sampled};
+use crate::input::TableKind;
 use crate::input::{Chunk, Clock, InputOptions, Source};
 use crate::output::Output;
 use crate::scheme::Scheme;
 use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorded};
-use anyhow::{Result, bail};
-use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings};
+use crate::tune::RequestKind;
+use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
+
+/// Encodes the channels of a flight out of a recording, as its sender does; see [`encode`].
+///
+/// # Errors
+/// Returns an error if the recording lacks a channel, or the output is not good.
+pub fn encode_flight(
+    flight: &Flight,
+    input: &InputOptions,
+    format: Option<Format>,
+    output: impl FnOnce() -> Result<Output>,
+) -> Result<(Output, Vec<Words>)> {
+    let Coding { scheme, sample, asked } = Coding::of_flight(flight);
+    let input = flight::input(flight, input);
+    let open =
+        || -> Result<Box<dyn Source + '_>> { Ok(Box::new(Sampled::new(flight, input.open()?)?)) };
+    encode_from(&open, &input, (scheme, sample, &asked), format, output)
+}
 
 /// Encodes channels of a recording into an output, which is opened once all else is known to be good. Without a format
 /// it is a table. Returns the output, to be finished, and what a user should know, a line each.
@@ -21,27 +42,40 @@ pub fn encode(
     parameters: &Asked,
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
-) -> Result<(Output, Vec<String>)> {
+) -> Result<(Output, Vec<Words>)> {
+    let open = || input.open().map(|own| -> Box<dyn Source> { own });
+    encode_from(&open, input, (scheme, sample, parameters), format, output)
+}
+
+/// Opens a recording at its start.
+type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
+
+fn encode_from(
+    open: &Open<'_>,
+    input: &InputOptions,
+    (scheme, sample, parameters): (Scheme, SampleType, &Asked),
+    format: Option<Format>,
+    output: impl FnOnce() -> Result<Output>,
+) -> Result<(Output, Vec<Words>)> {
     parameters.check(scheme.info())?;
     if format.is_some() && input.is_stdin() {
-        bail!("messages tell the signal's range, which standard input gives only at its end");
+        return Err(RequestKind::RangeAtEnd.into());
     }
     let calibrated = match scheme.needs_signal(parameters) {
         None => None,
-        Some(what) if input.is_stdin() => bail!(
-            "{} calibrates over the whole signal, which standard input gives only once; give {what}",
-            scheme.name()
-        ),
-        Some(_) => Some(calibrate(input, sample)?),
+        Some(needs) if input.is_stdin() => {
+            return Err(RequestKind::ReadOnce { scheme: scheme.name(), needs }.into());
+        }
+        Some(_) => Some(calibrate(open, sample)?),
     };
 
-    let mut source = input.open()?;
+    let mut source = open()?;
     let mut chunk = first(source.as_mut(), scheme.looks_back(parameters))?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
     let rows = chunk.finite_rows();
     let (count, firsts) = (rows.len(), chunk.kept(&rows));
     if firsts.first().is_none_or(Vec::is_empty) {
-        bail!("{}: none of the {count} samples is finite", input.name());
+        return Err(TableKind::NoneFinite { samples: count }.at(input.name()));
     }
     let mut told = Vec::new();
     let mut channels: Vec<Settings> = Vec::new();
@@ -50,7 +84,7 @@ pub fn encode(
         let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
         let own = parameters.channel(scheme.info(), channel, firsts.len())?;
         let settings = scheme.resolve(sample, &own, &known);
-        let settings = settings.map_err(|error| explained(error, sample, first))?;
+        let settings = settings.map_err(|error| explained(error.into(), sample, first))?;
         told.extend(rounding(&settings).filter(|rounding| !told.contains(rounding)));
         channels.push(settings);
     }
@@ -69,7 +103,7 @@ pub fn encode(
     let mut writer: Box<dyn Record> = match format {
         None => Box::new(Writer::new(output, &header, is_timed)?),
         Some(format) => {
-            let calibrated = calibrated.map_or_else(|| calibrate(input, sample), Ok)?;
+            let calibrated = calibrated.map_or_else(|| calibrate(open, sample), Ok)?;
             let ranges: Vec<_> = calibrated.iter().filter_map(Calibrated::range).collect();
             Box::new(Recorder::new(output, format, &header, is_timed, &ranges)?)
         }
@@ -100,14 +134,14 @@ pub fn encode(
     count(&events);
     let (output, summary) = writer.finish(&mut events)?;
     let mut notes = source.notes().to_vec();
-    notes.append(&mut told);
-    notes.extend(report(&summary, &clock, header.channels.len()));
+    let lines = report(&summary, &clock, header.channels.len());
+    notes.extend(told.into_iter().chain(lines).map(Words::from));
     for (((fit, settings), spikes), name) in
         fits.iter().zip(&header.channels).zip(spikes).zip(source.names())
     {
         let of = if fits.len() > 1 { format!("{name}: ") } else { String::new() };
         for note in fit.notes(settings, spikes).lines() {
-            notes.push(format!("{of}{note}"));
+            notes.push(format!("{of}{note}").into());
         }
     }
     Ok((output, notes))
@@ -132,9 +166,9 @@ fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
 ///
 /// # Errors
 /// Returns an error if the input cannot be read.
-fn calibrate(input: &InputOptions, sample: SampleType) -> Result<Vec<Calibrated>> {
+fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
     let mut calibrated = Vec::new();
-    let (mut source, mut chunk) = (input.open()?, Chunk::default());
+    let (mut source, mut chunk) = (open()?, Chunk::default());
     loop {
         source.next(&mut chunk)?;
         if chunk.is_empty() {

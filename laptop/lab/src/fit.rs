@@ -1,8 +1,10 @@
 //! Whether a sample type and the parameters suit a recording.
 
+use crate::Error;
 use crate::brief::short;
 use crate::resolution::Resolution;
 use crate::scheme::Scheme;
+use crate::tune::RequestKind;
 use catalogue::run::{SampleType, Settings};
 use std::fmt::Write;
 
@@ -141,9 +143,13 @@ pub fn rounding(settings: &Settings) -> Option<String> {
 }
 
 /// An error of settings that a column gives, with why where the sample type does not hold the column's steps.
-pub fn explained(error: anyhow::Error, sample: SampleType, values: &[f64]) -> anyhow::Error {
+pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
-        Some(lost) => error.context(lost),
+        Some(why) => {
+            let parameter = error.parameter.clone();
+            let kind = RequestKind::NotHeld { why, error: Box::new(error) };
+            Error { parameter, ..kind.into() }
+        }
         None => error,
     }
 }

@@ -6,11 +6,14 @@ pub mod advise;
 pub mod bank;
 pub mod bench;
 pub mod brief;
+mod c_bank;
 pub mod coding;
 pub mod emit;
 pub mod encode;
+mod error;
 pub mod events;
 pub mod fit;
+pub mod flight;
 #[cfg(feature = "frames")]
 pub mod frames;
 pub mod input;
@@ -34,3 +37,5 @@ pub mod trial;
 pub mod tune;
 pub mod values;
 pub mod watch;
+
+pub use error::{Error, ErrorKind, Place, Result, Spot};

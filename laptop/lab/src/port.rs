@@ -1,10 +1,22 @@
 //! Sources of captured bytes: a serial port, a file, standard input.
 
-use anyhow::{Context, Result, bail};
+use crate::error::room;
+use crate::{Error, Result};
+use catalogue::kinds;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 use std::time::Duration;
+
+kinds! {
+    /// The reason that a port cannot be read.
+    pub enum PortKind by spell of subject {
+        NotOpened { baud: u32, error: serialport::Error } => ("cannot be opened at {baud} baud: {error}"),
+        NeedsBaud => ("a device; {} says how fast it is", spell("baud")),
+        Gone => ("the port is gone"),
+    }
+}
+room!(PortKind, Port);
 
 /// A source of bytes that may have none just now.
 pub struct Port {
@@ -34,18 +46,18 @@ impl Port {
         let name = path.display().to_string();
         if let Some(baud) = baud {
             let port = serialport::new(&name, baud).timeout(PATIENCE).open();
-            let port = port.with_context(|| format!("{name}: cannot be opened at {baud} baud"))?;
+            let port = port.map_err(|error| PortKind::NotOpened { baud, error }.at(&name))?;
             return Ok(Self { bytes: Box::new(port), name, is_file: false });
         }
         if path == Path::new("-") {
             let bytes = Box::new(io::stdin().lock());
             return Ok(Self { bytes, name: "standard input".to_owned(), is_file: false });
         }
-        let cannot = || format!("{name}: cannot be opened");
-        if is_device(&fs::metadata(path).with_context(cannot)?) {
-            bail!("{name}: a device; `baud` says how fast it is");
+        let cannot = |error| Error::open(&name, error);
+        if is_device(&fs::metadata(path).map_err(cannot)?) {
+            return Err(PortKind::NeedsBaud.at(name));
         }
-        let bytes = Box::new(File::open(path).with_context(cannot)?);
+        let bytes = Box::new(File::open(path).map_err(cannot)?);
         Ok(Self { bytes, name, is_file: true })
     }
 
@@ -71,9 +83,9 @@ impl Port {
             Err(error) if matches!(error.kind(), Interrupted | TimedOut | WouldBlock) => {
                 Ok(Bytes::NotYet)
             }
-            // Told as text: a broken pipe itself would pass for a reader who has read enough.
-            Err(error) if error.kind() == BrokenPipe => bail!("{}: the port is gone", self.name),
-            Err(error) => bail!("{}: {error}", self.name),
+            // A broken pipe itself would pass for a reader who has read enough.
+            Err(error) if error.kind() == BrokenPipe => Err(PortKind::Gone.at(&self.name)),
+            Err(error) => Err(Error::from(error).at(&self.name)),
         }
     }
 }

@@ -1,11 +1,13 @@
 //! A recording there and back, for looking at and for scoring.
 
+use crate::Result;
 use crate::brief::short;
 use crate::fit::{Fit, explained, rounding};
+use crate::input::TableKind;
 use crate::input::{Clock, InputOptions, Kind};
 use crate::scheme::Scheme;
-use anyhow::{Context, Result, anyhow, bail};
-use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings, Shape};
+use crate::tune::RequestKind;
+use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
 /// A recording in memory.
@@ -24,7 +26,7 @@ pub struct Recording {
     rejected: usize,
     clock: Clock,
     /// How it was read.
-    notes: Vec<String>,
+    notes: Vec<Words>,
 }
 
 impl Recording {
@@ -44,7 +46,7 @@ impl Recording {
     /// Returns an error if the input cannot be read, has several channels, or no finite sample.
     pub fn read(input: &InputOptions) -> Result<Self> {
         input.single("this command")?;
-        Self::read_all(input)?.pop().with_context(|| format!("{}: no channel", input.name()))
+        Self::read_all(input)?.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
     }
 
     /// Reads all of every channel asked for.
@@ -70,7 +72,8 @@ impl Recording {
         channels
             .map(|(values, name)| {
                 if values.is_empty() {
-                    bail!("{}: none of the {} samples is finite", input.name(), rows.len());
+                    let kind = TableKind::NoneFinite { samples: rows.len() };
+                    return Err(kind.at(input.name()));
                 }
                 Ok(Self {
                     rejected: rows.len() - values.len(),
@@ -86,15 +89,38 @@ impl Recording {
             .collect()
     }
 
-    /// Notes for the user on the recording, a line each.
-    pub fn notes(&self) -> String {
+    /// This recording with a function of each sample in its place, which starts anew in each segment.
+    #[must_use]
+    pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
+        let mut values = self.values.clone();
+        for segment in &self.segments {
+            let mut filter = start();
+            for value in values.get_mut(segment.clone()).into_iter().flatten() {
+                *value = filter(*value);
+            }
+        }
+        Self {
+            values,
+            times: self.times.clone(),
+            segments: self.segments.clone(),
+            rate: self.rate,
+            name: self.name.clone(),
+            rejected: self.rejected,
+            clock: self.clock.clone(),
+            notes: self.notes.clone(),
+        }
+    }
+
+    /// Notes for the user on the recording.
+    pub fn notes(&self) -> Vec<Words> {
         let mut notes = self.notes.clone();
         if self.rejected > 0 {
             let count = self.rejected;
-            notes.push(format!("{count} samples were not finite or missing and emitted nothing"));
+            let what = "samples were not finite or missing and emitted nothing";
+            notes.push(format!("{count} {what}").into());
         }
-        notes.push(format!("{}\n", self.clock));
-        notes.join("\n")
+        notes.push(self.clock.to_string().into());
+        notes
     }
 
     /// How many samples were missing or not finite.
@@ -167,7 +193,7 @@ impl Trial {
         let resolved = |first: &[f64]| {
             let known = Known { calibrated: Some(&calibrated), first, can_calibrate: true };
             let settings = scheme.resolve(sample, &asked, &known);
-            settings.map_err(|error| explained(error, sample, first))
+            settings.map_err(|error| explained(error.into(), sample, first))
         };
         let settings = resolved(&recording.values)?;
         let (mut latency, mut all, mut decoded) = (0, Vec::new(), Vec::new());
@@ -179,7 +205,8 @@ impl Trial {
             codec.finish(&mut events);
             let start = segment.start as u64;
             codec.decode(values.len(), &events, &mut decoded).map_err(|event| {
-                anyhow!("{}: sample {} does not decode", scheme.name(), start + event.sample)
+                let sample = start + event.sample;
+                RequestKind::NotDecoded { scheme: scheme.name(), sample }
             })?;
             latency = codec.latency();
             all.extend(events.into_iter().map(|own| Event { sample: start + own.sample, ..own }));

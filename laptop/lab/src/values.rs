@@ -1,8 +1,9 @@
 //! Decodes frames to values, with the receiver that runs on boards, in any sample type.
 
+use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
 use crate::scheme::Scheme as Chosen;
-use anyhow::{Context, Result, bail};
+use crate::tune::RequestKind;
 use catalogue::for_sample_type;
 use catalogue::run::{SampleType, Settings, Visit};
 use spikewire::link::{Received, Receiver};
@@ -21,6 +22,21 @@ const EVENTS: usize = 1 << 14;
 /// A function that uses a receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
+/// What a sender has beside its schemes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Link {
+    /// The length of its sub-timesteps in µs, if it has some.
+    pub slot_ticks: Option<u32>,
+    /// The fingerprint of the filter before its schemes, if there is one.
+    pub filter: Option<Fingerprint>,
+}
+
+impl From<Option<u32>> for Link {
+    fn from(slot_ticks: Option<u32>) -> Self {
+        Self { slot_ticks, filter: None }
+    }
+}
+
 /// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
 ///
 /// # Errors
@@ -29,61 +45,66 @@ pub fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
-    slot_ticks: Option<u32>,
+    link: impl Into<Link>,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
 ) -> Result<()> {
-    let first = settings.first().context("a receiver has at least one channel")?;
-    let visitor = Receive { scheme, sample, settings, slot_ticks, then: Box::new(then) };
-    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), first, visitor))
+    let first = settings.first().ok_or(RequestKind::NoChannel)?;
+    let link = link.into();
+    let visitor = Receive { scheme, sample, settings, link, then: Box::new(then) };
+    for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.name(), first, visitor))?
 }
 
 struct Receive<'a> {
     scheme: Chosen,
     sample: SampleType,
     settings: &'a [Settings],
-    slot_ticks: Option<u32>,
+    link: Link,
     then: Then<'a>,
 }
 
 impl<S: Sample> Visit<S> for Receive<'_> {
-    type Output = ();
+    type Output = Result<()>;
 
-    fn visit<P: Scheme<Sample = S> + 'static>(self, _: P, _: P::EncoderState) -> Result<()> {
-        self.receive::<P, FEWER, EVENTS>()
+    fn visit<P: Scheme<Sample = S> + 'static>(
+        self,
+        _: P,
+        _: P::EncoderState,
+    ) -> catalogue::run::Result<Result<()>> {
+        Ok(self.receive::<P, FEWER, EVENTS>())
     }
 
     fn visit_steps<P: Scheme<Sample = S, Code = Spike> + 'static>(
         self,
         _: P,
         _: P::EncoderState,
-    ) -> Result<()> {
-        self.receive::<P, MOST, 0>()
+    ) -> catalogue::run::Result<Result<()>> {
+        Ok(self.receive::<P, MOST, 0>())
     }
 }
 
 impl Receive<'_> {
     /// Makes a receiver of `N` channels for this scheme.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
-        let Self { scheme, sample, settings, slot_ticks, then } = self;
+        let Self { scheme, sample, settings, link: Link { slot_ticks, filter }, then } = self;
         if settings.len() > N {
-            bail!(
-                "{} channels are too many: {} has 1 to {N} channels",
-                settings.len(),
-                scheme.name()
-            );
+            let (channels, scheme) = (settings.len(), scheme.name());
+            return Err(RequestKind::Channels { channels, scheme, most: N }.into());
         }
         let mut started = Vec::new();
-        for own in settings {
+        // The last one stands beyond the channels that were given.
+        let beyond = settings.first().filter(|_| settings.len() > 1);
+        for (place, own) in settings.iter().chain(beyond).enumerate() {
             let built = catalogue::visit::<P::Sample, _>(scheme.name(), own, Boxed)?;
             let start = own.first_value().map(|start| P::Sample::from_f64(start * sample.one()));
             let Ok(scheme) = built.downcast::<P>() else {
-                bail!("channels of one scheme differ in more than numbers")
+                return Err(RequestKind::Differ.into());
             };
-            started.push(Started { scheme: *scheme, start });
+            started.push(Started { scheme: *scheme, is_given: place < settings.len(), start });
         }
-        let first = started.first().context("a receiver has at least one channel")?;
-        let channels = if started.len() == 1 { N } else { started.len() };
-        let schemes = std::array::from_fn(|channel| started.get(channel).unwrap_or(first));
+        let last = started.last().ok_or(RequestKind::NoChannel)?;
+        let given = started.get(..settings.len()).unwrap_or_default();
+        let channels = if given.len() == 1 { N } else { given.len() };
+        let schemes = std::array::from_fn(|channel| given.get(channel).unwrap_or(last));
         let mut receiver = Receiver::<_, N, EVENTS>::per_channel(schemes);
         if let Some(length) = slot_ticks {
             receiver = receiver.with_slot_ticks(length);
@@ -91,7 +112,7 @@ impl Receive<'_> {
         then(Box::new(Receiving {
             receiver,
             channels,
-            neurons: first.neurons(),
+            neurons: last.neurons(),
             has_fired: [P::RECOVERY == Recovery::Keyframe; N],
             end: None,
             unused_keyframes: 0,
@@ -99,7 +120,10 @@ impl Receive<'_> {
             kind: kind(sample),
             outside: 0,
             slot_ticks: slot_ticks.unwrap_or(0),
-            schemes: started.iter().map(Scheme::fingerprint).collect(),
+            schemes: given
+                .iter()
+                .map(|own| filter.map_or(own.fingerprint(), |filter| filter.and(own.fingerprint())))
+                .collect(),
             has_exact: false,
             decoded: Vec::new(),
         }))
@@ -116,7 +140,7 @@ impl<S: Sample> Visit<S> for Boxed {
         self,
         scheme: P,
         _: P::EncoderState,
-    ) -> Result<Box<dyn Any>> {
+    ) -> catalogue::run::Result<Box<dyn Any>> {
         Ok(Box::new(scheme))
     }
 }
@@ -133,6 +157,8 @@ fn kind(sample: SampleType) -> SampleKind {
 /// A scheme whose decoders start from a given value. Only the decoding half is of use.
 struct Started<P: Scheme> {
     scheme: P,
+    /// Whether there is such a channel; false for what stands in its place beyond the last one.
+    is_given: bool,
     start: Option<P::Sample>,
 }
 
@@ -145,10 +171,13 @@ impl<P: Scheme> Scheme for Started<P> {
 
     const LATENCY: usize = P::LATENCY;
     const RECOVERY: Recovery = P::RECOVERY;
-    const HOLDS_KEYFRAMES: bool = P::HOLDS_KEYFRAMES;
 
     fn fingerprint(&self) -> Fingerprint {
         self.scheme.fingerprint()
+    }
+
+    fn holds_keyframes(&self) -> bool {
+        self.is_given && self.scheme.holds_keyframes()
     }
 
     fn encode(&self, state: &mut P::EncoderState, sample: P::Sample) -> P::Output {

@@ -33,19 +33,20 @@ let runs = []; // of each setting: { key, answer } or { key, error }
 let current = 0;
 let showParameters = () => {};
 
-/** Words of the library for a page, where options are boxes. */
-function words(error) {
-  return error.message
-    .replace(/`accept_cut`/g, "“take the whole messages of a damaged log”")
-    .replace(/`skip_non_finite`/g, "“pass over missing values”")
-    .replace(/`rate`/g, "“samples a second”")
-    .replace(/`hold_out` 0 with nothing to check the settings on/g, "a longer recording")
-    .replace(/; `spikewire info` lists them/g, "");
-}
+/** Boxes of settings that are no parameters of schemes. */
+const BOXES = { accept_cut: "accept-cut", skip_non_finite: "skip", rate: "rate", topic: "topic", field: "field", column: "field", sample: "sample", max_rmse: "max-rmse", evaluations: "evaluations" };
 
+/** Shows an error, or none, and marks the box of the setting at fault. */
 function fail(id, error) {
-  at(id).textContent = error ? words(error) : "";
+  at(id).textContent = error?.message ?? "";
   at(id).hidden = !error;
+  for (const own of document.querySelectorAll(`[aria-errormessage="${id}"]`)) {
+    own.removeAttribute("aria-invalid");
+    own.removeAttribute("aria-errormessage");
+  }
+  const box = error?.parameter && at(BOXES[error.parameter] ?? `parameter-${error.parameter}`);
+  box?.setAttribute("aria-invalid", "true");
+  box?.setAttribute("aria-errormessage", id);
 }
 
 // --- The recording ---
@@ -118,11 +119,11 @@ async function openNow({ files: given = [], example }, wanted = {}) {
     isReading = false;
     forget();
     at("channel").hidden = true;
-    const isDamaged = /`accept_cut`/.test(error.message) || at("accept-cut").checked;
+    const isDamaged = error.remedy === "accept_cut" || at("accept-cut").checked;
     at("damaged").hidden = !isDamaged;
     opened = isDamaged ? { files, topics: [] } : undefined;
-    const name = named && !error.message.startsWith(named.name) ? `${named.name}: ` : "";
-    fail("file-error", new Error(name + error.message));
+    const name = named && error.file !== named.name ? `${named.name}: ` : "";
+    fail("file-error", Object.assign(error, { message: name + error.message }));
   }
 }
 
@@ -161,7 +162,7 @@ async function loadNow() {
     if (error.isStopped) return;
     isReading = false;
     forget();
-    at("rate-field").hidden = !(/`rate`/.test(error.message) || rate);
+    at("rate-field").hidden = !([error.parameter, error.remedy].includes("rate") || rate);
     fail("file-error", error);
     return;
   }
@@ -431,7 +432,7 @@ async function tune(thread, names) {
       fronts.push(await thread.ask({ ask: "front", choice, evaluations }, { onProgress: progress(place, names.length, scheme) }));
     } catch (error) {
       if (error.isStopped || names.length === 1 || error.isFatal) throw error;
-      refused.push(words(error));
+      refused.push(error.message);
     }
     drawFront(at("front"), fronts, recording.unit, take);
     const dots = fronts.reduce((sum, own) => sum + own.points.length, 0);

@@ -16,13 +16,13 @@ export class Library {
   #ready = compiled.then((wasm) => this.#worker.postMessage({ wasm }));
 
   constructor() {
-    this.#worker.onmessage = ({ data: { id, answer, error, isFatal, progress, arrays } }) => {
+    this.#worker.onmessage = ({ data: { id, answer, error, progress, arrays } }) => {
       const own = this.#waiting.get(id);
       if (!own) return;
       if (progress) return own.onProgress?.(progress, arrays);
       this.#waiting.delete(id);
       if (error === undefined) own.resolve(answer);
-      else own.reject(Object.assign(new Error(error), { isFatal }));
+      else own.reject(Object.assign(new Error(error.message), error));
     };
     this.#worker.onerror = (event) => {
       for (const own of this.#waiting.values()) own.reject(new Error(event.message));

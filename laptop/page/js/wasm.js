@@ -45,7 +45,7 @@ export async function start(wasm, onProgress, pull) {
     },
   });
 
-  /** Asks; `given` are the files that the request names. Throws errors in words. */
+  /** Asks; `given` are the files that the request names. Throws errors in words, with the parameter, file and remedy that the library names. */
   return async function ask(request, given) {
     if (given) files = given;
     [answered, arrays] = [undefined, {}];
@@ -64,7 +64,7 @@ export async function start(wasm, onProgress, pull) {
       broken.isFatal = true;
       throw broken;
     }
-    if (answered.error !== undefined) throw new Error(answered.error);
+    if (answered.error !== undefined) throw Object.assign(new Error(answered.error.message), answered.error);
     return { ...answered, arrays };
   };
 }

@@ -34,6 +34,6 @@ onmessage = async ({ data }) => {
   } catch (error) {
     // After a panic the library starts anew, without a recording.
     if (error.isFatal) started = undefined;
-    postMessage({ id: data.id, error: error.message, isFatal: error.isFatal });
+    postMessage({ id: data.id, error: { ...error, message: error.message } });
   }
 };

@@ -1,7 +1,7 @@
 //! What the page can ask for.
 
 use crate::run::Choice;
-use crate::{board, catalogue, export, frames, front, recording, run};
+use crate::{board, catalogue, export, frames, front, recording, run, words};
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ enum Ask {
 
 /// The answer to a request, or `{"error": …}`.
 pub(crate) fn answered(request: &[u8]) -> Value {
-    answer(request).unwrap_or_else(|error| json!({ "error": format!("{error:#}") }))
+    answer(request).unwrap_or_else(|error| json!({ "error": words::of(&error) }))
 }
 
 fn answer(request: &[u8]) -> Result<Value> {

@@ -4,8 +4,9 @@
 
 use crate::host::{self, send, tell};
 use crate::run::Choice;
+use crate::words::label;
 use anyhow::{Context, Result, bail};
-use catalogue::run::Known as Given;
+use catalogue::run::{Known as Given, Worded};
 use lab::events::{EventReader, EventWriter, Item, Known, LinkReader, values_writer};
 use lab::events::{Format, Stream};
 use lab::fit::rounding;
@@ -46,6 +47,7 @@ pub(crate) fn listen(options: &Listen) -> Result<Value> {
         }
     }
     if let Some(missing) = scheme.needs_signal(&asked) {
+        let missing = missing.spelled(label);
         bail!("{} needs {missing}, as the sender has it", scheme.name());
     }
     let known = Given { calibrated: None, first: &[0.0], can_calibrate: false };
@@ -62,12 +64,13 @@ pub(crate) fn listen(options: &Listen) -> Result<Value> {
     let slot_ticks = options.slot_ticks.filter(|_| has_slots);
     let mut said: Vec<String> = settings.iter().filter_map(rounding).collect();
     said.dedup();
-    let mut answer = Value::Null;
+    let mut heard = Ok(Value::Null);
     with_receiver(scheme, sample, &settings, slot_ticks, |values| {
         let reader = Box::new(LinkReader::new(Some(values)));
-        answer = hear(Some((reader, values_writer(sample))))?;
+        heard = hear(Some((reader, values_writer(sample))));
         Ok(())
     })?;
+    let mut answer = heard?;
     answer["rounding"] = said.into();
     Ok(answer)
 }
@@ -104,8 +107,8 @@ fn hear(values: Option<(Box<dyn EventReader + '_>, Box<dyn EventWriter>)>) -> Re
         if is_end {
             let stream = values.as_ref().unwrap_or(&spikes);
             let wrong = stream.check_format(format, "the board").err();
-            let words = stream.to_string();
-            let error = wrong.map(|error| error.to_string());
+            let words = stream.spelled(label).to_string();
+            let error = wrong.map(|error| error.spelled(label).to_string());
             return Ok(json!({ "words": words, "wrong": error }));
         }
     }
@@ -144,7 +147,7 @@ struct Told {
 }
 
 impl EventWriter for Told {
-    fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
+    fn write(&mut self, item: &Item, output: &mut dyn Write) -> lab::Result<()> {
         let mut heard = self.heard.borrow_mut();
         match *item {
             Item::Event(event) if !self.is_values => {
@@ -163,7 +166,7 @@ impl EventWriter for Told {
         self.own.write(item, output)
     }
 
-    fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
+    fn finish(&mut self, output: &mut dyn Write) -> lab::Result<()> {
         self.own.finish(output)
     }
 

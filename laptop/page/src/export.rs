@@ -29,7 +29,7 @@ pub(crate) fn export(kind: &str, choice: &Choice) -> Result<Value> {
 fn as_text(kind: &str, open: &Open, trial: &Trial) -> Result<String> {
     let (scheme, settings) = (trial.scheme, &trial.settings);
     match kind {
-        "rust" => emit::rust(&[], &open.recording.name, scheme, settings),
+        "rust" => Ok(emit::rust(&[], &open.recording.name, scheme, settings)?),
         "toml" => Ok(emit::toml(&[], scheme, settings)),
         "python" => Ok(python(&Coding::of_settings(scheme, settings))),
         _ => bail!("there is no export `{kind}`"),

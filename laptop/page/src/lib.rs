@@ -11,3 +11,4 @@ mod front;
 mod host;
 mod recording;
 mod run;
+mod words;

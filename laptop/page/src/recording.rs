@@ -1,7 +1,9 @@
 //! The recording that is looked at.
 
 use crate::host::{Dropped, send};
+use crate::words::label;
 use anyhow::{Context, Result, bail};
+use catalogue::run::Worded;
 use flight_logs::Kind;
 use flight_logs::files::{Bytes, lend, take_back};
 use lab::bench::signal::{RATE, Waveform};
@@ -111,7 +113,8 @@ fn list(path: &Path, accept_cut: bool) -> Result<Value> {
             options.columns = vec!["all".to_owned()];
             let source = InputOptions { input: path.to_owned(), channel: options }.open()?;
             let names = source.names().into_iter().map(str::to_owned).collect();
-            (vec![topic("", names, String::new())], source.notes().to_vec())
+            let notes = source.notes().iter().map(|note| note.spelled(label).to_string());
+            (vec![topic("", names, String::new())], notes.collect())
         }
         Some(kind) => {
             let (topics, notes) = overview(path, kind, accept_cut, GAP)?;
@@ -186,13 +189,14 @@ pub(crate) fn load(channel: Channel) -> Result<Value> {
         let seconds = |time: &i64| time.saturating_sub(*first) as f64 * 1e-6;
         send("times", &recording.times.iter().map(seconds).collect::<Vec<_>>());
     }
+    let notes = recording.notes().into_iter().map(|note| note.spelled(label).to_string());
     let told = json!({
         "name": recording.name,
         "samples": recording.values.len(),
         "rate": recording.rate,
         "seconds": recording.seconds(),
         "unit": known_unit(&recording.name),
-        "notes": recording.notes().lines().collect::<Vec<_>>(),
+        "notes": notes.collect::<Vec<_>>(),
         "segments": recording.segments.iter().map(|own| own.start).collect::<Vec<_>>(),
     });
     OPEN.set(Some(Open { recording, input: Some(input) }));

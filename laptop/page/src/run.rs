@@ -2,8 +2,8 @@
 
 use crate::host::send;
 use crate::recording;
-use anyhow::{Context, Result};
-use catalogue::run::{Asked, SampleType};
+use anyhow::Result;
+use catalogue::run::{Asked, Error, SampleType};
 use lab::advise::link_bytes;
 use lab::scheme::Scheme;
 use lab::score::Figures;
@@ -31,16 +31,14 @@ impl Choice {
     /// # Errors
     /// There is no such scheme or type, or a text is no value of its parameter.
     pub(crate) fn read(&self) -> Result<(Scheme, SampleType, Asked)> {
-        let scheme = Scheme::named(&self.scheme)
-            .with_context(|| format!("there is no scheme `{}`", self.scheme))?;
+        let scheme =
+            Scheme::named(&self.scheme).ok_or_else(|| Error::no_scheme(&self.scheme))?;
         let mut asked = Asked::default();
         asked.paper = true;
         for (name, text) in &self.parameters {
-            let parameter = scheme.info().parameter(name);
-            let parameter =
-                parameter.with_context(|| catalogue::run::takes_no(scheme.info(), name))?;
-            let value = parameter.read(text).with_context(|| format!("{name} {text}"))?;
-            asked.set(parameter.name, value);
+            let unknown = || Error::takes_no(scheme.info(), name.clone());
+            let parameter = scheme.info().parameter(name).ok_or_else(unknown)?;
+            asked.set(parameter.name, parameter.read(text)?);
         }
         Ok((scheme, self.sample.parse()?, asked))
     }
@@ -51,7 +49,7 @@ impl Choice {
     /// The choice makes no sense on it.
     pub(crate) fn trial(&self, open: &recording::Open) -> Result<Trial> {
         let (scheme, sample, asked) = self.read()?;
-        Trial::new(scheme, &asked, sample, &open.recording)
+        Ok(Trial::new(scheme, &asked, sample, &open.recording)?)
     }
 }
 

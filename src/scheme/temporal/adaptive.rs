@@ -192,7 +192,10 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
     const LATENCY: usize = 0;
     /// Each silent sample halves the step: after as many as there are doublings it is the smallest.
     const RECOVERY: Recovery = Recovery::TimedKeyframe(MOST_DOUBLINGS as usize);
-    const HOLDS_KEYFRAMES: bool = true;
+
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
 
     fn fingerprint(&self) -> Fingerprint {
         let Self { threshold, doublings, run } = *self;

@@ -212,7 +212,10 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
-    const HOLDS_KEYFRAMES: bool = true;
+
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
 
     fn fingerprint(&self) -> Fingerprint {
         let most = u32::from(self.most.unsigned_abs());

@@ -105,7 +105,10 @@ impl<S: Sample> Scheme for StepForward<S> {
 
     const LATENCY: usize = 0;
     const RECOVERY: Recovery = Recovery::Keyframe;
-    const HOLDS_KEYFRAMES: bool = true;
+
+    fn holds_keyframes(&self) -> bool {
+        true
+    }
 
     fn fingerprint(&self) -> Fingerprint {
         Fingerprint::new("StepForward").sample(self.threshold)

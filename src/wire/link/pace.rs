@@ -26,6 +26,8 @@ pub(super) struct Pace {
     span: u32,
     /// In so many pieces, between which the time of samples was not known: the ticks at the ends of each have a jitter.
     pieces: u32,
+    /// Whether the next time comes right after those learned.
+    is_linked: bool,
 }
 
 /// What a time since the last known sample means.
@@ -43,7 +45,7 @@ pub(super) enum Elapsed {
 
 impl Pace {
     pub(super) const fn new(tolerance: u32) -> Self {
-        Self { period: 1, unit: 1, tolerance, samples: 0, span: 0, pieces: 0 }
+        Self { period: 1, unit: 1, tolerance, samples: 0, span: 0, pieces: 0, is_linked: false }
     }
 
     pub(super) const fn with_tolerance(self, tolerance: u32) -> Self {
@@ -71,8 +73,14 @@ impl Pace {
         (self.samples, self.span, self.pieces) = (0, 0, 1);
     }
 
+    /// Notes that the clock may have stepped since the last known sample, or be that of another start.
+    pub(super) fn cut(&mut self) {
+        self.is_linked = false;
+    }
+
     /// Begins a piece: what comes is not right after what was learned before.
     pub(super) fn begin(&mut self) {
+        self.is_linked = true;
         self.pieces = self.pieces.saturating_add(1);
         if self.samples == 0 || self.pieces > 8 {
             self.forget();
@@ -81,6 +89,9 @@ impl Pace {
 
     /// Learns that so many samples took so many µs, right after those learned before.
     pub(super) fn learn(&mut self, since: i64, samples: u64) {
+        if !self.is_linked {
+            return self.begin();
+        }
         let (Ok(since), Ok(samples)) = (u32::try_from(since), u32::try_from(samples)) else {
             return self.forget();
         };

@@ -185,7 +185,8 @@ impl<const N: usize> Reader<N> {
                 let [second, third, _] = *earlier;
                 *earlier = [*present, second, third];
             }
-            *present = Run::NONE;
+            let first = present.first.filter(|_| !is_other);
+            *present = Run { first, ..Run::NONE };
         }
         let delivered = present.delivered.saturating_add(1).min(OVERLAP);
         if delivered == OVERLAP {
@@ -277,13 +278,20 @@ impl<const N: usize> Reader<N> {
         const BEFORE: i64 = -LATE;
         let [present, earlier @ ..] = &self.sessions;
         let ahead = present.ahead(frame);
+        let since = frame.time().since(self.time);
         if frame.is_first() {
-            // The first frame of the present session once more, or of another start with the same session.
-            if ahead.is_some_and(|ahead| ahead < 0) && present.first == Some(checksum) {
-                return if ahead == Some(-1) { Standing::Repeated } else { Standing::Late };
+            // The first frame of the present session once more, or late; or of another start with the same session.
+            let is_known = match present.first {
+                Some(first) => first == checksum,
+                None => since <= DISORDER,
+            };
+            match ahead {
+                Some(-1) if is_known => return Standing::Repeated,
+                Some(BEFORE..0) if is_known => return Standing::Late,
+                Some(BEFORE..0) => return Standing::First,
+                _ => {}
             }
         } else if let Some(ahead) = ahead {
-            let since = frame.time().since(self.time);
             match ahead {
                 -1 if checksum == self.checksum => return Standing::Repeated,
                 -1 => return Standing::First,
@@ -303,7 +311,7 @@ impl<const N: usize> Reader<N> {
         // A frame that was on its way when the sender restarted is late.
         let is_stray = |run: &Run| {
             let is_near = run.ahead(frame).is_some_and(|ahead| ahead.abs() < i64::from(OVERLAP));
-            is_near && (!frame.is_first() || run.first == Some(checksum))
+            is_near && (!frame.is_first() || run.first.is_none_or(|first| first == checksum))
         };
         if self.strays < RETURN - 1 && earlier.iter().any(is_stray) {
             Standing::Stray

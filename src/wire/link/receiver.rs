@@ -296,6 +296,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
     ) {
         self.mark_stale();
+        self.sample.pace.cut();
         if is_start || self.has_slots() {
             if self.sample.count > 0 {
                 self.finish(1, on_value);
@@ -356,7 +357,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.misfits
     }
 
-    /// Number of keyframes of codes whose decoders [hold](Scheme::HOLDS_KEYFRAMES) what a keyframe says, after a value
+    /// Number of keyframes of codes whose decoders [hold](Scheme::holds_keyframes) what a keyframe says, after a value
     /// without a loss.
     pub const fn compared(&self) -> u32 {
         self.compared
@@ -408,7 +409,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         };
         match keyframe.value::<SampleOf<T, N>>() {
             Some(value) if Self::HAS_KEYFRAMES => {
-                if T::Scheme::HOLDS_KEYFRAMES && known.is_exact {
+                if known.is_exact && scheme.holds_keyframes() {
                     self.compared = self.compared.saturating_add(1);
                     if value.to_bits32() != known.value.to_bits32() {
                         self.contradicted = self.contradicted.saturating_add(1);

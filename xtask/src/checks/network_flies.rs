@@ -1,4 +1,4 @@
-//! `cargo verify network-flies`: a simulated drone on the committed network, which does what a cascade does.
+//! `cargo verify net-flies`: a simulated drone on the committed network, which does what a cascade does.
 
 use super::network::everywhere;
 use super::simulated_drone::{environment, program};

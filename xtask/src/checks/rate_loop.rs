@@ -10,11 +10,11 @@ const PROGRAM: &str = "rate-loop";
 
 /// The first network of the firmware, from the file of its training: as `trained.rs` of the program encodes.
 const ROLL: &str = "network laptop/cli/tests/peers/roll.nir --scheme position --neurons 20 --min -2 --max 2 \
-                       --column gyro_x data/hexarotor.csv";
+                       --reset zero --compare spike --no-held-out --column gyro_x data/hexarotor.csv";
 
 /// The second, on ReckOn: as `recurrent.rs` of the program encodes. Behind it come the two tables.
 const TURNS: &str = "network laptop/cli/tests/peers/turns.nir --chip reckon --scheme position --neurons 25 --min=-1.2 \
-                     --max 1.2 --dt 0.005 --column gyro_x";
+                     --max 1.2 --dt 0.005 --reset zero --column gyro_x";
 
 /// Samples of a stretch of the flight; every third is held out from the training of the second network.
 const STRETCH: usize = 250;

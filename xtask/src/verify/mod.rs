@@ -59,7 +59,7 @@ const HOST: &[&str] = &["flight-logs", "host-tests", "laptop/cli", "laptop/lab"]
 const LAST: &[&str] =
     &["bindings/c", "bindings/python", "bindings/ros", "fuzz", "laptop/page", "loop"];
 /// What the crate does not use.
-const REST: &[&str] = &["data", "examples", "laptop/catalogue", "memory.x"];
+const REST: &[&str] = &["data", "examples", "laptop/catalogue", "laptop/flight", "memory.x"];
 /// For checks of emulated boards.
 const BOARDS: Apart = &[PROSE, HOST, LAST];
 
@@ -229,7 +229,7 @@ const LONG: &[Step] = &[
     ),
     step("flown", "the same, on an emulated board: bit for bit", simulated_drone::board),
     step("chip-flies", "the same, on a network on tinyODIN's model", simulated_drone::chip),
-    step("network-flies", "the same, on a network in place of the cascade", network_flies::verify),
+    step("net-flies", "the same, on a network in place of the cascade", network_flies::verify),
     step("reckon", "the model of ReckOn against the chip's own code", reckon::reckon),
     step("cores", "instruction counts on all five cores, and the log of the smallest", long::cores),
     step(

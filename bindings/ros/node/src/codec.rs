@@ -4,7 +4,7 @@ use crate::settings::Settings;
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{
     Asked, Calibrated, Codec as Running, Known, RunTime, SampleType, Samples, Settings as Complete,
-    Value, Values,
+    Value, Values, Worded,
 };
 
 /// Schemes whose messages have a number for each neuron.
@@ -32,7 +32,7 @@ impl Request {
             let names: Vec<&str> = catalogue::ALL.iter().map(|own| own.info().name).collect();
             format!("encoding_scheme {scheme}: there are {}", names.join(", "))
         })?;
-        let asked = settings.asked(own.info()).map_err(plain)?;
+        let asked = settings.asked(own.info())?;
         let Settings { sample, calibrate, .. } = *settings;
         Ok(Self { scheme: *own, sample, asked, calibrate })
     }
@@ -67,7 +67,7 @@ impl Request {
             None => None,
             Some(what) if self.calibrate == 0 => {
                 let name = self.scheme.info().name;
-                let what = what.replace('`', "");
+                let what = what.spelled(str::to_owned);
                 bail!("{name} needs {what}, or calibrate: as many samples as tell it");
             }
             Some(_) => {
@@ -207,8 +207,8 @@ impl Codec {
     }
 }
 
-/// Names parameters as YAML does, without the backticks of the catalogue.
+/// An error of the catalogue in the words of a node: parameters are named as in YAML.
 #[allow(clippy::needless_pass_by_value)] // as `map_err` gives it
-fn plain(error: anyhow::Error) -> anyhow::Error {
-    anyhow!("{}", format!("{error:#}").replace('`', ""))
+pub(crate) fn plain(error: catalogue::run::Error) -> anyhow::Error {
+    anyhow!("{}", error.spelled(str::to_owned))
 }

@@ -1,9 +1,10 @@
 //! Parameters of the nodes.
 
+use crate::codec::plain;
 use crate::names::of_catalogue;
 use anyhow::{Context, Result, bail};
 use catalogue::Info;
-use catalogue::run::{Asked, SET, SampleType, Value, takes_no};
+use catalogue::run::{Asked, Error, SET, SampleType, Value};
 use std::collections::BTreeMap;
 use yaml_rust2::{Yaml, YamlLoader};
 
@@ -82,17 +83,19 @@ impl Settings {
     ///
     /// # Errors
     /// The scheme takes no such parameter, or it is not good.
-    pub(crate) fn asked(&self, info: &Info) -> Result<Asked> {
+    pub(crate) fn asked(&self, info: &'static Info) -> Result<Asked> {
         let mut asked = Asked::default();
         for (name, value) in &self.own {
-            let Some(parameter) = info.parameter(name) else { bail!(takes_no(info, name)) };
+            let Some(parameter) = info.parameter(name) else {
+                return Err(plain(Error::takes_no(info, name.clone())));
+            };
             let value = match value {
                 Yaml::Boolean(false) => continue,
                 Yaml::Boolean(true) => parameter.check(SET),
-                Yaml::Array(items) => numbers(items).and_then(|all| parameter.check(all)),
-                other => text(other).and_then(|text| parameter.read(&text)),
+                Yaml::Array(items) => parameter.check(numbers(items).context(name.clone())?),
+                other => parameter.read(&text(other).context(name.clone())?),
             };
-            asked.set(parameter.name, value.with_context(|| name.clone())?);
+            asked.set(parameter.name, value.map_err(plain)?);
         }
         Ok(asked)
     }

@@ -1,8 +1,8 @@
 //! The parameters that a user asks for.
 
-use anyhow::{Result, bail};
-
 use super::Value;
+use super::error::{Error, ErrorKind, Result};
+use super::words::Given;
 use crate::{Info, Kind};
 
 /// Values of parameters, by the names of the catalogue; a signal and the paper may stand in for the rest.
@@ -67,9 +67,9 @@ impl Asked {
     ///
     /// # Errors
     /// Returns an error if a parameter is given that the scheme does not take.
-    pub fn check(&self, info: &Info) -> Result<()> {
+    pub fn check(&self, info: &'static Info) -> Result<()> {
         match self.values.iter().find(|(name, _)| info.parameter(name).is_none()) {
-            Some((name, _)) => bail!(takes_no(info, name)),
+            Some((name, _)) => Err(Error::takes_no(info, *name)),
             None => Ok(()),
         }
     }
@@ -79,13 +79,13 @@ impl Asked {
     /// # Errors
     /// Two parameters have another number of values.
     pub fn channels(&self, info: &Info) -> Result<Option<usize>> {
-        let mut all: Option<(&str, usize)> = None;
+        let mut all: Option<(&'static str, usize)> = None;
         for (name, value) in self.each(info) {
             match all {
-                Some((other, count)) if count != value.len() => bail!(
-                    "`{name}` has {} values, one a channel, and `{other}` {count}",
-                    value.len()
-                ),
+                Some((other, count)) if count != value.len() => {
+                    let kind = ErrorKind::OtherChannels { values: value.len(), other, count };
+                    return Err(Error::of(Given::named(name), kind));
+                }
                 _ => all = Some((name, value.len())),
             }
         }
@@ -101,11 +101,10 @@ impl Asked {
         for (name, values) in self.each(info) {
             match values.get(channel) {
                 Some(value) if values.len() == channels => own.set(name, *value),
-                _ => bail!(
-                    "`{name}` has {} values, one a channel, for {channels} channel{}",
-                    values.len(),
-                    if channels == 1 { "" } else { "s" }
-                ),
+                _ => {
+                    let kind = ErrorKind::OneAChannel { values: values.len(), channels };
+                    return Err(Error::of(Given::named(name), kind));
+                }
             }
         }
         Ok(own)
@@ -121,12 +120,6 @@ impl Asked {
             _ => None,
         })
     }
-}
-
-/// The message that a scheme has no parameter of this name.
-pub fn takes_no(info: &Info, name: &str) -> String {
-    let taken: Vec<String> = info.parameters.iter().map(|own| format!("`{}`", own.name)).collect();
-    format!("{} takes no `{name}`; it takes {}", info.name, taken.join(" "))
 }
 
 #[cfg(test)]

@@ -5,14 +5,13 @@
 
 use std::{any::Any, array, iter};
 
-use anyhow::Result;
-#[cfg(feature = "states")]
-use anyhow::{Context, ensure};
 use spikewire::{
     Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme, timing::PhaseBits,
 };
 
-use super::{Runs, Settings, Shape, Visit};
+#[cfg(feature = "states")]
+use super::ErrorKind;
+use super::{Result, Runs, Settings, Shape, Visit};
 use crate::State;
 
 /// One neuron's spike for one sample.
@@ -418,17 +417,18 @@ impl<P: Scheme<EncoderState: State, DecoderState: State> + 'static> Running for 
 
     #[cfg(feature = "states")]
     fn state(&self) -> Result<Vec<u8>> {
-        Ok(postcard::to_allocvec(&(&self.encoder, &self.decoder, self.is_first_held))?)
+        let states = (&self.encoder, &self.decoder, self.is_first_held);
+        postcard::to_allocvec(&states).map_err(|_| ErrorKind::UnwrittenState.into())
     }
 
     #[cfg(feature = "states")]
     fn set_state(&mut self, bytes: &[u8]) -> Result<()> {
         let read = postcard::take_from_bytes::<(P::EncoderState, P::DecoderState, bool)>(bytes);
-        let ((encoder, decoder, is_first_held), rest) = read.context("the state is damaged")?;
-        ensure!(
-            rest.is_empty() && self.scheme.fits(&encoder) && self.scheme.fits_decoder(&decoder),
-            "the state is damaged, or another scheme's"
-        );
+        let ((encoder, decoder, is_first_held), rest) =
+            read.map_err(|_| ErrorKind::DamagedState)?;
+        if !(rest.is_empty() && self.scheme.fits(&encoder) && self.scheme.fits_decoder(&decoder)) {
+            return Err(ErrorKind::DamagedState.into());
+        }
         (self.encoder, self.decoder, self.is_first_held) = (encoder, decoder, is_first_held);
         Ok(())
     }

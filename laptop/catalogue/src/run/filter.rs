@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use anyhow::{Context, Result, bail};
 use spikewire::rate::Shape;
 
 use super::Value;
+use super::error::{ErrorKind, Result};
 
 /// Reads taps as listed, from a file, or the name of a shape, which must be one.
 ///
@@ -24,10 +24,8 @@ pub(super) fn read(text: &str) -> Result<Value> {
 /// # Errors
 /// Returns an error if there is no such shape.
 pub fn taps(text: &str) -> Result<Vec<f64>> {
-    shape(text).unwrap_or_else(|| bail!("there is no such shape; there are {SHAPES}"))
+    shape(text).unwrap_or_else(|| Err(ErrorKind::NoShape.into()))
 }
-
-const SHAPES: &str = "triang:N, hann:N, gauss:N or gauss:N:ALPHA";
 
 /// The taps of a shape, if the text names one.
 fn shape(text: &str) -> Option<Result<Vec<f64>>> {
@@ -37,10 +35,8 @@ fn shape(text: &str) -> Option<Result<Vec<f64>>> {
         ["triang", length] => shaped(Shape::Triangular, length, scale),
         ["hann", length] => shaped(Shape::Hann, length, scale),
         ["gauss", length] => shaped(Shape::Gaussian { alpha: 2.5 }, length, scale),
-        ["gauss", length, alpha] => match positive(alpha) {
-            Ok(alpha) => shaped(Shape::Gaussian { alpha }, length, scale),
-            Err(error) => Err(error.context("alpha")),
-        },
+        ["gauss", length, alpha] => positive("alpha", alpha)
+            .and_then(|alpha| shaped(Shape::Gaussian { alpha }, length, scale)),
         _ => return None,
     })
 }
@@ -56,46 +52,47 @@ fn listed(text: &str) -> Option<Vec<f64>> {
 fn shaped(shape: Shape, length: &str, scale: Option<&str>) -> Result<Vec<f64>> {
     const LONGEST: usize = 4096;
     let Ok(length @ 1..=LONGEST) = length.parse() else {
-        bail!("the length `{length}` must be 1 to {LONGEST}");
+        let length = length.to_owned();
+        return Err(ErrorKind::LengthOfShape { length, most: LONGEST }.into());
     };
     let taps = (0..length).map(|tap| shape.at(tap, length));
     let factor = match scale.map(|scale| scale.split_once('=')) {
         None => 1.0,
-        Some(Some(("peak", peak))) => positive(peak).context("peak")?,
+        Some(Some(("peak", peak))) => positive("peak", peak)?,
         Some(Some(("sum", sum))) => {
-            let sum = positive(sum).context("sum")?;
+            let sum = positive("sum", sum)?;
             sum / taps.clone().sum::<f64>()
         }
-        Some(_) => {
-            bail!("what is after the comma must be peak=NUMBER or sum=NUMBER")
-        }
+        Some(_) => return Err(ErrorKind::ScaleOfShape.into()),
     };
     Ok(taps.map(|tap| tap * factor).collect())
 }
 
-fn positive(text: &str) -> Result<f64> {
+fn positive(part: &'static str, text: &str) -> Result<f64> {
     match text.parse() {
         Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
-        _ => bail!("`{text}` must be a number above 0"),
+        _ => Err(ErrorKind::PartOfShape { part, text: text.to_owned() }.into()),
     }
 }
 
 fn from_file(path: &str) -> Result<Vec<f64>> {
-    let text = fs::read_to_string(path).with_context(|| {
-        format!("neither {SHAPES}, nor taps such as 0.5,1,0.5, nor a file that can be read")
-    })?;
+    let text = fs::read_to_string(path).map_err(|error| ErrorKind::NoTaps { error })?;
+    let file = path.to_owned();
     let mut taps = Vec::new();
     for (line, content) in (1..).zip(text.lines()) {
         let words = content.split([',', ' ', '\t']).filter(|word| !word.is_empty());
         for (place, word) in (1..).zip(words) {
             match word.parse::<f64>() {
                 Ok(tap) if tap.is_finite() => taps.push(tap),
-                _ => bail!("{path}: line {line}, number {place}: `{word}` is not a finite number"),
+                _ => {
+                    let word = word.to_owned();
+                    return Err(ErrorKind::BadTap { file, line, number: place, word }.into());
+                }
             }
         }
     }
     if taps.is_empty() {
-        bail!("{path}: empty; a filter needs a tap at least");
+        return Err(ErrorKind::NoTap { file }.into());
     }
     Ok(taps)
 }

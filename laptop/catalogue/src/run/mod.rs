@@ -7,8 +7,10 @@
 mod asked;
 mod calibrate;
 mod codec;
+mod error;
 mod exact;
 mod filter;
+mod needs;
 mod quantiles;
 mod resolve;
 mod rust;
@@ -16,20 +18,23 @@ mod sample_type;
 mod settings;
 mod sweep;
 mod value;
+mod words;
 
-pub use asked::{Asked, takes_no};
+pub use asked::Asked;
 pub use calibrate::Calibrated;
 pub use codec::{Codec, Event, Samples, Values};
+pub use error::{End, Error, ErrorKind, Result};
 pub use exact::{Outcome, Outcomes, Parabola, above, below, outcomes};
 pub use filter::taps;
+pub use needs::Needs;
 pub use resolve::{Known, Resolve, missing};
 pub use rust::{Constant, Counted, Rust, lengthened, state};
 pub use sample_type::{Fixed32, SampleType};
 pub use settings::Settings;
 pub use sweep::{LANES, Rule, sweep};
 pub use value::{SET, Value};
+pub use words::{Given, Spell, Spelled, Worded, Words, joined, quoted};
 
-use anyhow::{Result, bail};
 use spikewire::{Sample, Scheme, Spike};
 
 use crate::{Entry, Info, Parameter, Search, State, Unit, for_sample_type};
@@ -109,7 +114,7 @@ pub trait Build: Entry {
     }
 
     /// The parameters that would make a calibration over the whole signal unnecessary.
-    fn needs_signal(asked: &Asked) -> Option<String> {
+    fn needs_signal(asked: &Asked) -> Option<Needs> {
         missing(&Self::INFO, asked)
     }
 
@@ -138,7 +143,7 @@ pub trait Build: Entry {
     /// # Errors
     /// The settings lack its length, or it is not known.
     fn ram<S: Sample>(_: &Settings) -> Result<usize> {
-        bail!("the memory of {} is not known here", Self::INFO.name)
+        Err(ErrorKind::MemoryUnknown { scheme: &Self::INFO }.into())
     }
 
     /// The codec of the measured table that stands for its work.
@@ -146,7 +151,7 @@ pub trait Build: Entry {
     /// # Errors
     /// The settings lack its length, or none does.
     fn counted(_: &Settings) -> Result<Counted> {
-        bail!("{} is not among the codecs that were measured", Self::INFO.name)
+        Err(ErrorKind::NotMeasured { scheme: &Self::INFO }.into())
     }
 
     /// Returns the outcomes that thresholds of a range can have on stretches of a signal, each coded by itself. Lists
@@ -173,7 +178,7 @@ pub trait Build: Entry {
     /// The settings lack something, or it has no constant.
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let Some([scheme, shape, value]) = Self::CONSTANT else {
-            bail!("{} has no constant", Self::INFO.name)
+            return Err(ErrorKind::NoConstant { scheme: &Self::INFO }.into());
         };
         let filled = |template| rust.filled(template, &Self::INFO, settings);
         rust.constant(scheme, &filled(shape)?, &filled(value)?)
@@ -241,7 +246,7 @@ pub trait RunTime: Sync {
     fn info(&self) -> &'static Info;
 
     /// The parameters that would make a calibration over the whole signal unnecessary.
-    fn needs_signal(&self, asked: &Asked) -> Option<String>;
+    fn needs_signal(&self, asked: &Asked) -> Option<Needs>;
 
     /// How many samples its encoder takes to start from.
     fn looks_back(&self, asked: &Asked) -> usize;
@@ -318,9 +323,9 @@ impl<T: Build + Sync> RunTime for T {
         const { &T::INFO }
     }
 
-    fn needs_signal(&self, asked: &Asked) -> Option<String> {
+    fn needs_signal(&self, asked: &Asked) -> Option<Needs> {
         if asked.paper {
-            return Some("parameters in the place of `paper`".to_owned());
+            return Some(Needs::Paper);
         }
         T::needs_signal(asked)
     }
@@ -384,7 +389,8 @@ impl<T: Build + Sync> RunTime for T {
             return self.codec_from(settings, None);
         }
         let Some(name) = settings.first_key() else {
-            bail!("the header lacks `# first=` or `# start=`; is it a file of spikes?")
+            let kind = ErrorKind::Lacking { or: Some("start") };
+            return Err(Error::of(Given::listed("first", None::<&str>), kind));
         };
         self.codec_from(settings, Some(settings.number(name)?))
     }
@@ -423,11 +429,8 @@ fn rounded<T: Build>(sample: SampleType, asked: &Settings) -> Result<Settings> {
         asked.number().is_some_and(|number| number > 0.0) && ran.number() == Some(0.0)
     });
     if let (Err(_), Some(((name, asked), _))) = (&built, vanished) {
-        bail!(
-            "{name} {asked} is 0 in {sample}, whose step is {}; a type with more bits after the point, or f32, would \
-             hold it",
-            sample.step()
-        );
+        let kind = ErrorKind::Vanishes { sample };
+        return Err(Error::of(Given::listed(name, Some(asked)), kind));
     }
     built?;
     let changed = pairs().filter(|((_, asked), (_, ran))| asked != ran);

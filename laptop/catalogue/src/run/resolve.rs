@@ -1,8 +1,8 @@
 //! From what a user asks for, and from the paper and the signal where that leaves something open, to complete settings.
 
-use anyhow::{Context, Error, Result, anyhow, bail};
-
-use super::{Asked, Calibrated, Settings, Value, filter};
+use super::error::{End, Error, ErrorKind, Result};
+use super::words::Given;
+use super::{Asked, Calibrated, Needs, Settings, Value, filter};
 use crate::{Found, Info, Kind, Paper, Parameter, Scaled};
 
 /// The known figures of the signal.
@@ -17,7 +17,7 @@ pub struct Known<'a> {
 }
 
 /// The parameters in whose place a calibration stands, if one of them is not given. A list of centres needs none.
-pub fn missing(info: &Info, asked: &Asked) -> Option<String> {
+pub fn missing(info: &Info, asked: &Asked) -> Option<Needs> {
     if let Some(Value::Numbers(_)) = asked.get("centres") {
         return None;
     }
@@ -26,8 +26,7 @@ pub fn missing(info: &Info, asked: &Asked) -> Option<String> {
     if found.iter().all(|own| asked.get(own.name).is_some()) {
         return None;
     }
-    let names: Vec<String> = found.iter().map(|own| format!("`{}`", own.name)).collect();
-    Some(names.join(" and "))
+    Some(Needs::All(found.iter().map(|own| own.name).collect()))
 }
 
 /// The parameters that a user asks of a scheme, and all that may stand in for those not given.
@@ -46,13 +45,14 @@ impl<'a> Resolve<'a> {
         asked.check(info)?;
         let mut resolve = Self { info, asked, known, scale: None };
         if asked.paper {
-            let end = |name: &str, found| match asked.get(name) {
+            let end = |name: &'static str, found| match asked.get(name) {
                 Some(_) => resolve.number(name),
                 None => resolve.found(found),
             };
             let (min, max) = (end("min", Found::Min)?, end("max", Found::Max)?);
             if min >= max {
-                bail!("`paper`: the signal never leaves {min}");
+                let kind = ErrorKind::NeverLeaves { value: min };
+                return Err(Error::of(Given::named("paper"), kind));
             }
             resolve.scale = Some((max - min) / Scaled::<f32>::PAPER_RANGE);
         }
@@ -76,13 +76,14 @@ impl<'a> Resolve<'a> {
         let ends = ["min", "max"].map(|name| settings.get(name).and_then(Value::number));
         let [Some(min), Some(max)] = ends else { return Ok(()) };
         let is_given = ["min", "max"].map(|name| self.user(name).is_some());
-        match is_given {
-            _ if min < max => Ok(()),
-            [false, false] => Ok(()),
-            [true, true] => bail!("`min` {min} must be below `max` {max}"),
-            [true, false] => bail!("`min` {min} must be below {max}, the signal's maximum"),
-            [false, true] => bail!("`max` {max} must be above {min}, the signal's minimum"),
-        }
+        let (given, end) = match is_given {
+            _ if min < max => return Ok(()),
+            [false, false] => return Ok(()),
+            [true, true] => (Given::new("min", min), End::Max(max)),
+            [true, false] => (Given::new("min", min), End::SignalMax(max)),
+            [false, true] => (Given::new("max", max), End::SignalMin(min)),
+        };
+        Err(Error::of(given, ErrorKind::NotBelow { end }))
     }
 
     /// Settings of a population whose `centres` are a list, which says what its neurons and its range would; `None` if
@@ -95,7 +96,8 @@ impl<'a> Resolve<'a> {
         if let Some(option) =
             ["neurons", "min", "max"].iter().find(|name| self.user(name).is_some())
         {
-            bail!("`centres` {} says it all; `{option}` contradicts it", Value::from(centres));
+            let by = Given::new("centres", Value::from(centres));
+            return Err(Error::of(Given::named(*option), ErrorKind::SaysItAll { by }));
         }
         let mut settings = Settings::default();
         settings.set("centres", centres);
@@ -106,7 +108,7 @@ impl<'a> Resolve<'a> {
     ///
     /// # Errors
     /// Returns an error if the value is missing or makes no sense.
-    pub fn settle(&self, name: &str, settings: &mut Settings) -> Result<()> {
+    pub fn settle(&self, name: &'static str, settings: &mut Settings) -> Result<()> {
         let parameter = self.parameter(name)?;
         let value = match (self.value(name)?, parameter.found) {
             (None, Some(Found::First)) => {
@@ -114,12 +116,14 @@ impl<'a> Resolve<'a> {
                 return Ok(());
             }
             (None, Some(found)) => self.found(found)?.into(),
-            (None, None) => return Err(self.needs(name)),
+            (None, None) => return Err(self.needs(&[name])),
             (Some(Value::Numbers(all)), _) if parameter.kind == Kind::Number => {
-                bail!("`{name}` has {} values, one a channel, where it takes one", all.len())
+                let kind = ErrorKind::TakesOne { values: all.len() };
+                return Err(Error::of(Given::named(name), kind));
             }
             (Some(Value::Word(filter)), _) if parameter.kind == Kind::Filter => {
-                filter::taps(&filter).with_context(|| format!("`{name}` {filter}"))?.into()
+                let wrong = |error: Error| Error::of(Given::new(name, &filter), error.kind);
+                filter::taps(&filter).map_err(wrong)?.into()
             }
             (Some(value), _) => value,
         };
@@ -131,35 +135,35 @@ impl<'a> Resolve<'a> {
     ///
     /// # Errors
     /// Returns an error if the value is missing or not a finite number.
-    pub fn number(&self, name: &str) -> Result<f64> {
-        let value = self.value(name)?.ok_or_else(|| self.needs(name))?;
-        value.number().with_context(|| format!("`{name}` {value} is not a number"))
+    pub fn number(&self, name: &'static str) -> Result<f64> {
+        let value = self.needed(name)?;
+        let wrong = || Error::of(Given::new(name, &value), ErrorKind::NotANumber);
+        value.number().ok_or_else(wrong)
     }
 
     /// A value as given, as in the paper or by default.
     ///
     /// # Errors
     /// Returns an error if the value is missing or not one of this parameter.
-    pub fn needed(&self, name: &str) -> Result<Value> {
+    pub fn needed(&self, name: &'static str) -> Result<Value> {
         let value = self.value(name)?;
-        value.ok_or_else(|| self.needs(name))
+        value.ok_or_else(|| self.needs(&[name]))
     }
 
     /// A list of finite numbers; `None` if it is one of these words instead.
     ///
     /// # Errors
     /// Returns an error if the value is missing, or neither a list nor one of the words.
-    pub fn list(&self, name: &str, words: &[&str]) -> Result<Option<Vec<f64>>> {
-        let value = self.value(name)?.ok_or_else(|| self.needs(name))?;
+    pub fn list(&self, name: &'static str, words: &[&str]) -> Result<Option<Vec<f64>>> {
+        let value = self.needed(name)?;
         match value.word() {
             Some(word) if words.contains(&word) => Ok(None),
             Some(word) => {
                 let is_none = |part: &&str| part.trim().parse::<f64>().is_err();
                 let part = word.split(',').find(is_none).unwrap_or(word);
-                bail!(
-                    "`{name}` {word}: `{part}` is neither a finite number, nor is the whole {}",
-                    words.join(" or ")
-                )
+                let (part, words) = (part.to_owned(), words.join(" or "));
+                let kind = ErrorKind::NeitherListNorWord { part, words };
+                Err(Error::of(Given::new(name, word), kind))
             }
             None => Ok(value.numbers().map(<[f64]>::to_vec)),
         }
@@ -174,21 +178,20 @@ impl<'a> Resolve<'a> {
     ///
     /// # Errors
     /// The scheme has no such parameter, or the value is none of it.
-    pub fn value(&self, name: &str) -> Result<Option<Value>> {
+    pub fn value(&self, name: &'static str) -> Result<Option<Value>> {
         let parameter = self.parameter(name)?;
         if let Some(value) = self.user(name) {
-            let checked = parameter.check(value.clone());
-            return checked.with_context(|| format!("`{name}` {value}")).map(Some);
+            return parameter.check(value.clone()).map(Some);
         }
         let default = || parameter.default.map(|text| parameter.read_own(text));
         self.paper(parameter).or_else(default).transpose()
     }
 
-    /// The error that a parameter is missing, which is named in backticks.
-    pub fn needs(&self, what: &str) -> Error {
-        let otherwise = " (or `paper`, for the paper's settings scaled to the signal)";
-        let hint = if self.known.can_calibrate { otherwise } else { "" };
-        anyhow!("{} needs `{what}`{hint}", self.info.name)
+    /// The error that one of these parameters is missing.
+    pub fn needs(&self, or: &[&'static str]) -> Error {
+        let or = or.to_vec();
+        let can_be_papers = self.known.can_calibrate;
+        ErrorKind::Missing { scheme: self.info, or, can_be_papers }.into()
     }
 
     /// The samples that an encoder starts from: the value before the first, again and again, or the first themselves.
@@ -216,11 +219,10 @@ impl<'a> Resolve<'a> {
             Found::Min => range().map(|(min, _)| min),
             Found::Max => range().map(|(_, max)| max),
         };
-        value.context("there is no sample")
+        value.ok_or_else(|| ErrorKind::NoSample.into())
     }
 
-    fn parameter(&self, name: &str) -> Result<&'static Parameter> {
-        let own = self.info.parameter(name);
-        own.with_context(|| format!("{} has no parameter {name}", self.info.name))
+    fn parameter(&self, name: &'static str) -> Result<&'static Parameter> {
+        self.info.parameter(name).ok_or_else(|| Error::takes_no(self.info, name))
     }
 }

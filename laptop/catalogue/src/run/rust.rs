@@ -1,9 +1,8 @@
 //! Settings as firmware has them: a constant in Rust, its memory, and which measured codec stands for its work.
 
-use anyhow::{Result, bail};
 use spikewire::Scheme;
 
-use super::{SampleType, Settings, Value};
+use super::{ErrorKind, Result, SampleType, Settings, Value};
 use crate::{Info, Unit};
 
 /// A scheme as a constant.
@@ -158,7 +157,7 @@ impl Rust {
     pub fn constant(self, scheme: &str, shape: &str, value: &str) -> Result<Constant> {
         let sample = self.sample();
         if sample.contains("::I0F") {
-            bail!("{} has no name in Rust", self.sample);
+            return Err(ErrorKind::NoNameInRust { sample: self.sample }.into());
         }
         let shape = if shape.is_empty() { String::new() } else { format!(", {shape}") };
         let name = scheme.rsplit("::").next().unwrap_or(scheme);

@@ -1,6 +1,6 @@
 //! The numbers that samples are encoded in.
 
-use anyhow::{Error, bail};
+use super::error::{Error, ErrorKind};
 use std::fmt;
 use std::str::FromStr;
 
@@ -113,9 +113,7 @@ impl FromStr for SampleType {
             Some((whole @ 1.., fraction)) if whole.checked_add(fraction) == Some(32) => {
                 Ok(Self::Fixed32 { fraction })
             }
-            _ => bail!(
-                "no sample type `{name}`; there are f32, i16, i32, and qI.F with I + F = 16 or 32"
-            ),
+            _ => Err(ErrorKind::NoSampleType { name: name.to_owned() }.into()),
         }
     }
 }

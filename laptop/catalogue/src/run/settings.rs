@@ -2,11 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use anyhow::{Context, Result, bail};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use spikewire::{Sample, dynamic, rate};
 
+use super::error::{Error, ErrorKind, Result};
+use super::words::Given;
 use super::{Asked, SampleType, Value};
 use crate::{Found, Info};
 
@@ -96,7 +97,12 @@ impl Settings {
                 if let Some(place) = keys.iter().position(|(key, _)| key == name) {
                     let text = keys.remove(place).1;
                     let value = parameter.read_recorded(&text);
-                    settings.set(name, value.with_context(|| format!("{name}={text}"))?);
+                    settings.set(
+                        name,
+                        value.map_err(|error| {
+                            Error::of(Given::listed(name, Some(&text)), error.kind)
+                        })?,
+                    );
                 }
             }
         }
@@ -108,8 +114,9 @@ impl Settings {
     /// # Errors
     /// Returns an error if the setting is missing, as in a file that is none of spikes.
     pub fn value(&self, name: &str) -> Result<&Value> {
-        let value = self.get(name);
-        value.with_context(|| format!("the header lacks `# {name}=`; is it a file of spikes?"))
+        let lacking =
+            || Error::of(Given::listed(name, None::<&str>), ErrorKind::Lacking { or: None });
+        self.get(name).ok_or_else(lacking)
     }
 
     /// The word in the place of a list; `None` where there is a list.
@@ -126,7 +133,8 @@ impl Settings {
     /// Returns an error if the setting is missing or not a number.
     pub fn number(&self, name: &str) -> Result<f64> {
         let value = self.value(name)?;
-        value.number().with_context(|| format!("{name}={value} is not a number"))
+        let wrong = || Error::of(Given::listed(name, Some(value)), ErrorKind::NotANumber);
+        value.number().ok_or_else(wrong)
     }
 
     /// Finite numbers.
@@ -135,7 +143,8 @@ impl Settings {
     /// Returns an error if the setting is missing or a word.
     pub fn numbers(&self, name: &str) -> Result<&[f64]> {
         let value = self.value(name)?;
-        value.numbers().with_context(|| format!("{name}={value} is no list of numbers"))
+        let wrong = || Error::of(Given::listed(name, Some(value)), ErrorKind::NotAList);
+        value.numbers().ok_or_else(wrong)
     }
 
     /// A whole number within this range.
@@ -151,10 +160,13 @@ impl Settings {
         };
         match count {
             Some(count) if range.contains(&count) => Ok(count),
-            _ if *max == usize::MAX => {
-                bail!("{name} {value} must be a whole number, {min} or more")
+            _ => {
+                let max = Some(*max).filter(|max| *max < usize::MAX);
+                Err(Error::of(
+                    Given::listed(name, Some(value)),
+                    ErrorKind::NotWhole { min: *min, max },
+                ))
             }
-            _ => bail!("{name} {value} must be a whole number in {min}..={max}"),
         }
     }
 
@@ -178,11 +190,11 @@ impl Settings {
     ///
     /// # Errors
     /// Returns an error if the setting is missing or none of the words.
-    pub fn choice(&self, name: &str, words: &[&'static str]) -> Result<&'static str> {
+    pub fn choice(&self, name: &str, words: &'static [&'static str]) -> Result<&'static str> {
         let value = self.value(name)?;
         match words.iter().find(|own| value.word() == Some(own)) {
             Some(word) => Ok(word),
-            None => bail!("{name} {value}: there are {}", words.join(", ")),
+            None => Err(Error::of(Given::listed(name, Some(value)), ErrorKind::NotOneOf { words })),
         }
     }
 

@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use anyhow::{Context, Result, bail};
-
+use super::error::{Error, ErrorKind, Result};
 use super::filter;
+use super::words::Given;
 use crate::{Kind, Parameter};
 
 /// The value of a parameter.
@@ -104,8 +104,12 @@ impl Parameter {
     /// Reads a value from text, as the command line and files hold it.
     ///
     /// # Errors
-    /// The text is no value of this parameter's kind. The error says what is allowed, and leaves the name to the caller.
+    /// The text is no value of this parameter's kind. The error names both, and says what is allowed.
     pub fn read(&self, text: &str) -> Result<Value> {
+        self.parsed(text).map_err(|kind| Error::of(Given::new(self.name, text), kind))
+    }
+
+    fn parsed(&self, text: &str) -> Result<Value, ErrorKind> {
         let list = || -> Option<Vec<f64>> {
             let numbers = text.strip_suffix(',').unwrap_or(text).split(',');
             numbers.map(|number| number.trim().parse().ok()).collect()
@@ -113,22 +117,22 @@ impl Parameter {
         let value = match self.kind {
             Kind::Count => match text.trim().parse() {
                 Ok(count) => Value::Count(count),
-                Err(_) => bail!("must be a whole number, 0 or more"),
+                Err(_) => return Err(ErrorKind::NotWhole { min: 0, max: None }),
             },
-            Kind::Filter => filter::read(text)?,
+            Kind::Filter => filter::read(text).map_err(|error| error.kind)?,
             Kind::Number | Kind::Text => match list() {
                 Some(numbers) if !text.contains(',') => Value::Number(numbers[0]),
                 Some(numbers) => Value::Numbers(numbers),
-                None if self.kind == Kind::Number => bail!("is not a number"),
+                None if self.kind == Kind::Number => return Err(ErrorKind::NotANumber),
                 None => Value::Word(text.to_owned().into()),
             },
             Kind::Choice(words) => match words.iter().find(|word| **word == text) {
                 Some(word) => Value::Word((*word).into()),
-                None => bail!("there are {}", words.join(", ")),
+                None => return Err(ErrorKind::NotOneOf { words }),
             },
             Kind::Flag => Value::Word(text.to_owned().into()),
         };
-        self.check(value)
+        self.checked(value)
     }
 
     /// Reads a value from a file of spikes, which holds a filter's taps and one value for each channel.
@@ -140,9 +144,10 @@ impl Parameter {
             Kind::Filter => Self { kind: Kind::Text, ..*self }.read(text)?,
             _ => self.read(text)?,
         };
+        let wrong = |kind| Err(Error::of(Given::new(self.name, text), kind));
         match (self.kind, value) {
-            (Kind::Filter, Value::Word(_)) => bail!("is no list of numbers"),
-            (Kind::Number, Value::Numbers(_)) => bail!("is not a number"),
+            (Kind::Filter, Value::Word(_)) => wrong(ErrorKind::NotAList),
+            (Kind::Number, Value::Numbers(_)) => wrong(ErrorKind::NotANumber),
             (Kind::Filter, value) => self.check(value),
             (_, value) => Ok(value),
         }
@@ -151,14 +156,19 @@ impl Parameter {
     /// Takes a value as its parameter has it: whole numbers become numbers where the parameter is one, and the reverse.
     ///
     /// # Errors
-    /// The value is none of this parameter's kind. The error says what is allowed, and leaves the name to the caller.
+    /// The value is none of this parameter's kind. The error names both, and says what is allowed.
     pub fn check(&self, value: Value) -> Result<Value> {
+        let text = value.to_string();
+        self.checked(value).map_err(|kind| Error::of(Given::new(self.name, text), kind))
+    }
+
+    fn checked(&self, value: Value) -> Result<Value, ErrorKind> {
         /// Above it, not every whole number has a number of its own.
         const WHOLE: f64 = 9_007_199_254_740_992.0;
         if let Some(number) =
             value.numbers().and_then(|all| all.iter().find(|own| !own.is_finite()))
         {
-            bail!("must be finite, not {number}");
+            return Err(ErrorKind::NotFinite { number: *number });
         }
         Ok(match (self.kind, value) {
             (Kind::Number | Kind::Text, Value::Count(count)) => Value::Number(count as f64),
@@ -170,25 +180,25 @@ impl Parameter {
             (Kind::Filter, Value::Number(tap)) => Value::Numbers(vec![tap]),
             (Kind::Filter, Value::Count(tap)) => Value::Numbers(vec![tap as f64]),
             (Kind::Choice(words), Value::Word(word)) if !words.contains(&word.as_ref()) => {
-                bail!("there are {}", words.join(", "))
+                return Err(ErrorKind::NotOneOf { words });
             }
             (Kind::Number | Kind::Count | Kind::Text | Kind::Filter, Value::Numbers(numbers))
                 if numbers.is_empty() =>
             {
-                bail!("must not be empty")
+                return Err(ErrorKind::Empty);
             }
             (Kind::Number | Kind::Text, value @ (Value::Number(_) | Value::Numbers(_)))
             | (Kind::Count, value @ Value::Count(_))
             | (Kind::Text | Kind::Filter | Kind::Choice(_), value @ Value::Word(_))
             | (Kind::Filter, value @ Value::Numbers(_)) => value,
             (Kind::Flag, value) if value == SET => value,
-            (kind, _) => bail!("must be {}", kind.words()),
+            (kind, _) => return Err(ErrorKind::NotOfKind { kind }),
         })
     }
 
     /// Reads a text of the catalogue, whose words need no copy.
     pub(super) fn read_own(&self, text: &'static str) -> Result<Value> {
-        match self.read(text).with_context(|| format!("the catalogue's {} {text}", self.name))? {
+        match self.read(text)? {
             Value::Word(_) => Ok(Value::from(text)),
             value => Ok(value),
         }
@@ -197,7 +207,7 @@ impl Parameter {
 
 impl Kind {
     /// The names of its kinds of values.
-    fn words(self) -> &'static str {
+    pub(super) fn words(self) -> &'static str {
         match self {
             Self::Number => "a number",
             Self::Count => "a whole number, 0 or more",

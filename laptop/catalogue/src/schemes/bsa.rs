@@ -158,7 +158,11 @@ impl Build for Scheme {
         let form = asked.needed("form")?;
         let criterion = match (form.word(), asked.user("criterion").and_then(Value::word)) {
             (Some("toolbox"), Some("sub")) => {
-                bail!("`form` toolbox compares by `criterion` mul only")
+                let other = Given::new("criterion", "mul");
+                return Err(Error::of(
+                    Given::new("form", "toolbox"),
+                    ErrorKind::ComparesOnlyBy { other },
+                ));
             }
             (Some("toolbox"), _) => "mul".into(),
             (_, Some(_)) => asked.needed("criterion")?,
@@ -248,9 +252,10 @@ impl Build for Scheme {
             }
             ("aligned", "mul") => Criterion::Multiplicative(settings.number("threshold")? as f32),
             ("aligned", "sub") => Criterion::Subtractive(settings.signal("threshold")?),
-            _ => bail!(
-                "form={form} with criterion={criterion}: there are aligned with sub or mul, and toolbox with mul"
-            ),
+            _ => {
+                let kind = ErrorKind::NoSuchForm { criterion };
+                return Err(Error::of(Given::listed("form", Some(form)), kind));
+            }
         };
         let scheme = dynamic::Bsa::try_new(taps, criterion)?.try_with_shift(shift)?;
         let start = scheme.state();

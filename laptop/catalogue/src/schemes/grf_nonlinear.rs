@@ -124,10 +124,11 @@ pub(super) fn resolve(asked: &Resolve, info: &Info) -> Result<Settings> {
             // How many quantiles.
             ("neurons", ..) if has_quantiles => {}
             (name, Some("centres"), ..) if has_quantiles && asked.user(name).is_some() => {
-                bail!("`centres` quantiles says it all; `{name}` contradicts it")
+                let by = Given::new("centres", "quantiles");
+                return Err(Error::of(Given::named(name), ErrorKind::SaysItAll { by }));
             }
             (name, Some(by), ..) if asked.user(name).is_some() => {
-                bail!("`{by}` is a list, which says it all; `{name}` contradicts it")
+                return Err(Error::of(Given::named(name), ErrorKind::ListSaysItAll { by }));
             }
             (_, Some(_), ..) => {}
             ("centres", _, Some(list), _) | ("widths", _, _, Some(list)) => {
@@ -145,15 +146,17 @@ fn quantiles(asked: &Resolve) -> Result<Vec<f64>> {
     let mut settings = Settings::default();
     asked.settle("neurons", &mut settings)?;
     let neurons = settings.neurons()?;
-    let calibrated = asked.known.calibrated.context("`centres` quantiles: no signal is known")?;
-    calibrated.quantiles(neurons).context("there is no sample")
+    let given = Given::new("centres", "quantiles");
+    let unknown = || Error::of(given, ErrorKind::NotCalibrated);
+    let calibrated = asked.known.calibrated.ok_or_else(unknown)?;
+    calibrated.quantiles(neurons).ok_or_else(|| ErrorKind::NoSample.into())
 }
 
 /// The signal's range or its quantiles, unless there is a list of centres.
 #[cfg(feature = "run")]
-pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<String> {
+pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<Needs> {
     match asked.word("centres") {
-        Some("quantiles") => Some("`centres` as a list".to_owned()),
+        Some("quantiles") => Some(Needs::AsList("centres")),
         _ => missing(info, asked),
     }
 }
@@ -211,7 +214,7 @@ pub(super) fn companded(settings: &Settings, rust: Rust, besides: &str) -> Resul
 #[cfg(feature = "run")]
 pub(super) fn with_widths(settings: &Settings, rust: Rust, constructor: &str) -> Result<String> {
     if settings.preset("centres")? == Some("companded") {
-        bail!("companded centres with widths of their own have no constant; list the centres");
+        return Err(ErrorKind::NoConstantOfWidths.into());
     }
     let widths = settings.numbers("widths")?.iter().map(|width| *width as f32);
     let widths: Vec<f32> = repeated(widths.collect(), neurons(settings)?);
@@ -224,7 +227,7 @@ impl Build for Scheme {
         resolve(asked, &Self::INFO)
     }
 
-    fn needs_signal(asked: &Asked) -> Option<String> {
+    fn needs_signal(asked: &Asked) -> Option<Needs> {
         needs_signal(asked, &Self::INFO)
     }
 

@@ -105,7 +105,7 @@ impl Build for Scheme {
         grf_nonlinear::resolve(asked, &Self::INFO)
     }
 
-    fn needs_signal(asked: &Asked) -> Option<String> {
+    fn needs_signal(asked: &Asked) -> Option<Needs> {
         grf_nonlinear::needs_signal(asked, &Self::INFO)
     }
 

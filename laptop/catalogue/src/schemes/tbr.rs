@@ -35,7 +35,7 @@ impl Entry for Scheme {
                 "factor",
                 Kind::Number,
                 Unit::None,
-                "in the place of `threshold`: the differences' mean and this many of their standard deviations",
+                "in the place of a threshold: the differences' mean and this many of their standard deviations",
             )
             .with_paper(Paper::Text("0.5"))
             .with_example("0.5")
@@ -44,7 +44,7 @@ impl Entry for Scheme {
                 "magnitudes",
                 Kind::Flag,
                 Unit::None,
-                "with `factor`: mean and deviation of the differences' magnitudes",
+                "with a factor: mean and deviation of the differences' magnitudes",
             )
             .unrecorded(),
             Parameter::new(
@@ -113,24 +113,23 @@ impl Build for Scheme {
     fn resolve(asked: &Resolve) -> Result<Settings> {
         let threshold = match (asked.user("threshold"), asked.value("factor")?) {
             (Some(_), _) if asked.user("factor").is_some() => {
-                bail!("tbr takes `factor` or `threshold`, not both")
+                let kind = ErrorKind::NotBoth { scheme: &Self::INFO, other: "threshold" };
+                return Err(Error::of(Given::named("factor"), kind));
             }
             (Some(_), _) if asked.user("magnitudes").is_some() => {
-                bail!("`magnitudes` goes with `factor`")
+                let kind = ErrorKind::GoesWith { other: "factor" };
+                return Err(Error::of(Given::named("magnitudes"), kind));
             }
             (Some(_), _) => asked.number("threshold")?,
-            (None, None) => return Err(asked.needs("factor` or `threshold")),
+            (None, None) => return Err(asked.needs(&["factor", "threshold"])),
             (None, Some(factor)) => {
                 let of_magnitudes = asked.user("magnitudes").is_some();
-                let calibrated = asked.known.calibrated.context("tbr: no calibration")?;
+                let wrong = |kind| Error::of(Given::new("factor", &factor), kind);
+                let calibrated = asked.known.calibrated;
+                let calibrated = calibrated.ok_or_else(|| wrong(ErrorKind::NotCalibrated))?;
                 let threshold = calibrated.threshold(asked.number("factor")?, of_magnitudes);
-                threshold.with_context(|| {
-                    let hint = if of_magnitudes {
-                        ""
-                    } else {
-                        " (`magnitudes` takes that of the differences' magnitudes)"
-                    };
-                    format!("tbr: `factor` {factor} gives no threshold{hint}")
+                threshold.map_err(|error| {
+                    wrong(ErrorKind::NoThreshold { error, takes_magnitudes: of_magnitudes })
                 })?
             }
         };
@@ -140,7 +139,10 @@ impl Build for Scheme {
         let step = match (times, step.number()) {
             (Some(times), _) => times * threshold,
             (None, Some(step)) => step,
-            (None, None) => bail!("`step` {step} is neither a number nor one of thresholds, `2x`"),
+            (None, None) => {
+                let kind = ErrorKind::NeitherNumberNorThresholds;
+                return Err(Error::of(Given::new("step", step), kind));
+            }
         };
         let mut settings = Settings::default();
         settings.set("threshold", threshold);
@@ -149,8 +151,8 @@ impl Build for Scheme {
         Ok(settings)
     }
 
-    fn needs_signal(asked: &Asked) -> Option<String> {
-        asked.get("threshold").is_none().then(|| "`threshold`".to_owned())
+    fn needs_signal(asked: &Asked) -> Option<Needs> {
+        asked.get("threshold").is_none().then(|| Needs::All(vec!["threshold"]))
     }
 
     costs!(TemporalContrast<S>, "tbr");

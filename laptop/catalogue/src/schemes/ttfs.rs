@@ -138,13 +138,14 @@ impl Build for Scheme {
     /// A list of edges says how many slots there are; a ratio goes with logarithmic edges.
     fn resolve(asked: &Resolve) -> Result<Settings> {
         let edges = asked.needed("edges")?;
-        let unused: &[&str] = match edges.word() {
+        let unused: &[&'static str] = match edges.word() {
             Some("log") => &[],
             None => &["slots", "ratio"],
             Some(_) => &["ratio"],
         };
         if let Some(option) = unused.iter().find(|name| asked.user(name).is_some()) {
-            bail!("`edges` {edges} takes no `{option}`");
+            let kind = ErrorKind::TakesNoOther { other: option };
+            return Err(Error::of(Given::new("edges", edges), kind));
         }
         let mut settings = Settings::default();
         for name in ["edges", "slots", "ratio", "min", "max"] {
@@ -172,7 +173,10 @@ impl Build for Scheme {
                 dynamic::FirstSpike::try_logarithmic_of(slots, &range, ratio)?
             }
             None => dynamic::FirstSpike::try_new_of(&settings.signals("edges")?, &range)?,
-            Some(word) => bail!("edges {word}: there are linear, log, and lists of numbers"),
+            Some(word) => {
+                let given = Given::listed("edges", Some(word));
+                return Err(Error::of(given, ErrorKind::NoSuchEdges));
+            }
         };
         visitor.visit(scheme, dynamic::FirstSpike::<S>::START)
     }

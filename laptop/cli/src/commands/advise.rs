@@ -1,28 +1,32 @@
 //! `spikewire advise`: what a log is like, and which scheme suits each of its channels.
 
 use crate::inputs::InputOptions;
-use crate::options::{answer, tell, whole};
+use crate::options::{answer, whole};
 use crate::stop::Stop;
+use crate::words::tell;
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use lab::advise::{Advice, AdviseRequest, advise};
+use lab::advise::{Advice, AdviseRequest, BankAdvice, advise};
 use lab::look::known_unit;
+use lab::output::Output;
 use lab::plot::{Picture, draw};
 use lab::trial::{Recording, Trial};
 use lab::tune::costs;
 use lab::watch::{Progress, Watch};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Look at a log and say which scheme suits each channel, with which parameters, and why.
+/// Look at a log and say which bank suits it: one scheme for all channels, with which parameters, and why.
 ///
-/// Each scheme is tuned for a moment, with blocks held out. Of those that come as near to the signal as asked, on the
-/// blocks tuned on and on those held out, the one with the fewest bytes a second on the crate's link is advised.
+/// Each scheme is tuned for a moment on each channel, with blocks held out. Of those that come as near to each signal as
+/// asked, on the blocks tuned on and on those held out, the one with the fewest bytes a second on the crate's link is
+/// advised. With --loop-bandwidth only codes are that a simulated drone flew well on, with frames lost.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire advise flight.csv
+  spikewire advise flight.csv --loop-bandwidth 4 -o flight.toml
   spikewire advise flight.csv --channel gyro_x --max-rmse 0.05 --max-latency 0 --picture roll.svg
   spikewire advise flight.ulg --topic sensor_combined --field 'gyro_rad[0]' --json")]
 pub(crate) struct Advise {
@@ -41,6 +45,10 @@ pub(crate) struct Advise {
     /// that are late for it, or that fall behind the signal, are not advised
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
+    /// Percent of the frames that the link loses, 0 to 10: with --loop-bandwidth, codes that a simulated drone did not fly
+    /// on well at this loss are not advised
+    #[arg(long, value_name = "PERCENT", default_value_t = AdviseRequest::FRAME_LOSS)]
+    frame_loss: f64,
     /// Core of the measured table: M0 or M4F
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
@@ -56,6 +64,9 @@ pub(crate) struct Advise {
     /// Draw one channel's signal, spikes and reconstruction by the scheme advised, `.svg` or `.png`
     #[arg(long)]
     picture: Option<PathBuf>,
+    /// Write the bank advised as a flight's file, TOML, for `emit`, `encode`, `listen`, Python and a firmware's build script
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// All of it as JSON, for programs
     #[arg(long)]
     json: bool,
@@ -71,7 +82,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         bail!("--picture draws one channel; --channel says which");
     }
     if let Some(first) = recordings.first() {
-        tell(first.notes());
+        tell(&first.notes());
     }
     let request = AdviseRequest {
         recordings,
@@ -79,6 +90,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         max_rmse: options.max_rmse,
         max_latency: options.max_latency,
         loop_bandwidth: options.loop_bandwidth,
+        frame_loss: options.frame_loss,
         core: options.core.clone(),
         evaluations: options.evaluations,
         seconds: options.seconds,
@@ -92,12 +104,22 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         bar.set_position(progress.done as u64);
         bar.set_message(progress.words.clone());
     };
-    let all = advise(&request, &Watch { is_stopped: &|| stop.is_due(), tell: &tell })?;
+    let watch = Watch { is_stopped: &|| stop.is_due(), tell: &tell };
+    let all = advise(&request, &watch)?;
+    let is_wanted = request.recordings.len() > 1 || options.output.is_some();
+    let has_rate = request.recordings.iter().all(|own| own.rate.is_some());
+    let bank = if is_wanted && (has_rate || options.output.is_some()) {
+        Some(BankAdvice::new(&request, &all, &watch)?)
+    } else {
+        None
+    };
     bar.finish_and_clear();
     if options.json {
-        answer(serde_json::to_string_pretty(&all)? + "\n")?;
+        let told = serde_json::json!({ "channels": all, "bank": bank });
+        answer(serde_json::to_string_pretty(&told)? + "\n")?;
     } else {
-        answer(all.iter().map(Advice::page).collect::<String>())?;
+        let pages = all.iter().map(Advice::page).chain(bank.as_ref().map(BankAdvice::page));
+        answer(pages.collect::<String>())?;
     }
     if let (Some(path), [advice], [recording]) =
         (&options.picture, &all[..], &request.recordings[..])
@@ -109,6 +131,14 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
             "nothing can be advised: {}",
             all.iter().map(Advice::why_not).collect::<Vec<_>>().join("; ")
         );
+    }
+    if let (Some(path), Some(bank)) = (&options.output, &bank) {
+        let Some(flight) = bank.flight() else {
+            bail!("no scheme suits all channels: no flight is written")
+        };
+        let mut output = Output::open(Some(path), &options.input.input)?;
+        output.write_all(flight.to_toml(&bank.comments()).as_bytes())?;
+        output.finish()?;
     }
     Ok(())
 }
@@ -125,5 +155,6 @@ fn draw_advised(
     let trials = [Trial::new(scheme, &parameters, options.sample, recording)?];
     let unit = known_unit(&recording.name);
     let shown = 0..recording.values.len();
-    draw(path, &options.input.input, &Picture { recording, trials: &trials, unit, shown })
+    let picture = Picture { recording, trials: &trials, unit, shown };
+    Ok(draw(path, &options.input.input, &picture)?)
 }

@@ -48,14 +48,14 @@ pub(crate) fn run(options: &Capture) -> Result<()> {
     use lab::rtt::{self, Board};
     let stop = Stop::new(options.seconds)?;
     let Capture { chip, probe, channel, address, .. } = options.clone();
-    rtt::with_channel(&Board { chip, probe, channel, address }, |channel| {
+    Ok(rtt::with_channel(&Board { chip, probe, channel, address }, |channel| {
         let mut output = Output::to(options.output.as_deref())?;
         let captured = rtt::capture(channel, &mut output, || stop.is_due());
         // What came before a channel failed is kept.
         output.finish()?;
         eprintln!("{} bytes", captured.bytes);
         captured.end
-    })
+    })?)
 }
 
 /// Returns an error that says how to build the program with this command.

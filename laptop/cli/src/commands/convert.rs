@@ -1,8 +1,9 @@
 //! `spikewire convert`: events from any format to any other, in constant memory.
 
 use crate::inputs::StreamOptions;
-use crate::options::tell;
+use crate::words::option;
 use anyhow::Result;
+use catalogue::run::Worded;
 use clap::Args;
 use lab::events::{Format, Stream};
 use lab::output::Output;
@@ -58,8 +59,8 @@ pub(crate) fn run(options: &Convert) -> Result<()> {
         }
     }
     stream.finish(&mut output)?;
-    tell(&stream);
+    eprint!("{}", stream.spelled(option));
     eprintln!("{}", stream.written(output.bytes()));
     stream.check_format(*from, port.name())?;
-    output.finish()
+    Ok(output.finish()?)
 }

@@ -1,10 +1,10 @@
 //! `spikewire decode`: spikes back to values, in constant memory.
 
-use crate::options::tell_each;
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Event, SampleType};
 use clap::Args;
 use flight_logs::Kind;
+use lab::Place;
 use lab::bank::Bank;
 use lab::input::text;
 use lab::output::{Output, is_table};
@@ -72,7 +72,7 @@ fn decode(
     mut reader: impl Spikes,
     header: &Header,
     file: &str,
-    open: impl FnOnce() -> Result<Output>,
+    open: impl FnOnce() -> lab::Result<Output>,
 ) -> Result<()> {
     /// The number of events or times that are decoded at once.
     const BATCH: usize = 4096;
@@ -107,11 +107,11 @@ fn decode(
                 decoding.advance(first, &mut events).and_then(|()| decoding.skip(count))
             }
             Item::End { samples } => {
-                tell_each(&reader.notes());
+                reader.notes().iter().for_each(|note| eprintln!("{note}"));
                 decoding
                     .advance(samples, &mut events)
                     .map_err(|error| error.at(&reader.place()))?;
-                return decoding.output.finish();
+                return Ok(decoding.output.finish()?);
             }
         };
         decoded.map_err(|error| error.at(&reader.place()))?;
@@ -139,11 +139,11 @@ enum Failure {
 }
 
 impl Failure {
-    fn at(self, place: &str) -> anyhow::Error {
+    fn at(self, place: &Place) -> anyhow::Error {
         match self {
             Self::Code(event) => {
                 anyhow!(
-                    "{place} or before: sample {} has events that no encoder emits together",
+                    "{place}or before: sample {} has events that no encoder emits together",
                     event.sample
                 )
             }

@@ -1,12 +1,15 @@
-//! `spikewire emit`: sources for firmware, from files of parameters.
+//! `spikewire emit`: sources for firmware, from a flight's file or files of parameters.
 
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
 use lab::coding::Coding;
-use lab::emit::{Codec, c_crate};
+use lab::emit::{Codec, c_crate, c_flight};
+use lab::flight::{Flight, rust};
+use lab::output::Output;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Write sources for firmware, from files of parameters.
+/// Write sources for firmware, from a flight's file or files of parameters.
 #[derive(Args, Debug)]
 pub(crate) struct Emit {
     #[command(subcommand)]
@@ -15,7 +18,23 @@ pub(crate) struct Emit {
 
 #[derive(Subcommand, Debug)]
 enum What {
+    Rust(Rust),
     C(C),
+}
+
+/// Write both ends of a flight in Rust, as a firmware's build script does: the module `flight`, for `include!`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  spikewire advise flight.ulg --loop-bandwidth 4 -o flight.toml
+  spikewire emit rust --flight flight.toml -o src/flight.rs")]
+struct Rust {
+    /// The flight's file, TOML
+    #[arg(long, value_name = "FILE")]
+    flight: PathBuf,
+    /// The module; standard output unless given
+    #[arg(short, long)]
+    output: Option<PathBuf>,
 }
 
 /// Write a crate that makes the library for C of exactly these codecs, their parameters in flash.
@@ -31,8 +50,11 @@ Example:
 The codec has the name of its file: sw_roll_encode, of sw_roll_codec.")]
 struct C {
     /// Files of parameters, TOML, as `tune --emit toml` writes them
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "flight", value_name = "FILE")]
     params: Vec<PathBuf>,
+    /// The flight's file, TOML, in their place: its codecs, and `flight.h` with its bank and its writer
+    #[arg(long, value_name = "FILE", conflicts_with = "params")]
+    flight: Option<PathBuf>,
     /// Directory of the crate, which must not be there
     #[arg(short, long, value_name = "DIRECTORY")]
     output: PathBuf,
@@ -46,11 +68,22 @@ struct C {
 /// # Errors
 /// A file is bad, or the crate cannot be written.
 pub(crate) fn run(options: &Emit) -> Result<()> {
-    let What::C(C { params, output, spikewire }) = &options.what;
+    let C { params, flight, output, spikewire } = match &options.what {
+        What::Rust(Rust { flight, output }) => {
+            let text = rust(&Flight::read(flight)?)?;
+            let mut output = Output::open(output.as_deref(), flight)?;
+            output.write_all(text.as_bytes())?;
+            return Ok(output.finish()?);
+        }
+        What::C(c) => c,
+    };
+    if let Some(flight) = flight {
+        return Ok(c_flight(&Flight::read(flight)?, output, spikewire.as_deref())?);
+    }
     let codecs = params.iter().map(|path| {
         Ok(Codec { name: codec_name(path)?, coding: Coding::read(&path.to_string_lossy())? })
     });
-    c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())
+    Ok(c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())?)
 }
 
 /// The file's name without its ending, as C takes it: `gyro-x.toml` gives `gyro_x`.

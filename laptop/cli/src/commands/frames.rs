@@ -176,7 +176,7 @@ fn encode<C: PixelCode>(options: &Frames, code: Option<C>) -> Result<()> {
     if let Some(sink) = sink {
         eprintln!("{} bytes written", sink.finish()?);
     }
-    preview.map_or(Ok(()), Preview::finish)
+    Ok(preview.map_or(Ok(()), Preview::finish)?)
 }
 
 fn encoder<C: PixelCode>(

@@ -1,6 +1,8 @@
 //! `spikewire info`: what a log or a table holds.
 
+use crate::words::option;
 use anyhow::Result;
+use catalogue::run::Worded;
 use clap::Args;
 use flight_logs::Kind;
 use lab::input::messages::{Overview, overview};
@@ -40,7 +42,7 @@ pub(crate) fn run(options: &Info) -> Result<()> {
         let channel = ChannelOptions { gap, accept_cut, ..ChannelOptions::default() };
         let input = InputOptions { input: log.clone(), channel };
         write_table(&input.name(), &summary(&input)?, &mut output)?;
-        return output.finish();
+        return Ok(output.finish()?);
     };
     let (topics, notes) = overview(log, kind, accept_cut, gap)?;
     for note in notes {
@@ -49,13 +51,13 @@ pub(crate) fn run(options: &Info) -> Result<()> {
     for topic in &topics {
         write(topic, &mut output)?;
     }
-    output.finish()
+    Ok(output.finish()?)
 }
 
 fn write_table(name: &str, table: &Summary, output: &mut impl Write) -> Result<()> {
     let Summary { columns, rows, clock, rollover, notes } = table;
     for note in notes {
-        writeln!(output, "{note}")?;
+        writeln!(output, "{}", note.spelled(option))?;
     }
     write!(output, "{name}: {rows} rows")?;
     if let Some(rate) = clock.rate() {

@@ -2,15 +2,17 @@
 
 use crate::inputs::StreamOptions;
 use crate::live::Live;
-use crate::options::{agreed, augment, given, option_group, schemes, tell};
+use crate::options::{agreed, augment, given, option_group, schemes};
 use crate::stop::Stop;
+use crate::words::{of_lab, option};
 use anyhow::{Result, bail};
 use catalogue::Parameter;
-use catalogue::run::{Asked, Known, SampleType, Settings};
+use catalogue::run::{Asked, Known, SampleType, Settings, Worded};
 use clap::{Args, value_parser};
 use lab::coding::Coding;
 use lab::events::{EventReader, Format, LinkReader, Stream, Values, values_writer};
 use lab::fit::rounding;
+use lab::flight::{self, Flight};
 use lab::output::Output;
 use lab::port::{Bytes, Port};
 use lab::scheme::Scheme;
@@ -31,6 +33,7 @@ Examples:
   spikewire listen --baud 921600 /dev/ttyUSB0 -o events.csv
   spikewire listen --baud 921600 /dev/ttyUSB0 --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5
   spikewire listen captured.bytes --scheme grf --neurons 20 --min=-9 --max=9
+  spikewire listen captured.bytes --flight flight.toml
   spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
     /// Serial port, or file of captured bytes; `-` is standard input
@@ -62,6 +65,9 @@ pub(crate) struct Listen {
     /// File of the sender's parameters, TOML, as `tune --emit toml` writes it; options override it
     #[arg(long, value_name = "FILE", value_parser = crate::options::read)]
     params: Option<Coding>,
+    /// The flight's file, TOML, as `advise -o` writes it, from which the sender was made
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
+    flight: Option<PathBuf>,
     /// Length of the sender's sub-timesteps in µs, of schemes that have them
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
@@ -89,6 +95,19 @@ option_group!(
 /// # Errors
 /// The options, the port or the output are not good.
 pub(crate) fn run(options: &Listen) -> Result<()> {
+    if let Some(path) = &options.flight {
+        if !options.parameters.0.is_empty() {
+            bail!("--flight says all parameters");
+        }
+        options.check_formats("--flight")?;
+        let flight = Flight::read(path)?;
+        let mut heard = Ok(());
+        flight::with_receiver(&flight, |values| {
+            heard = listen(options, Some((values, flight.sample)));
+            Ok(())
+        })?;
+        return heard;
+    }
     let sample = options.params.as_ref().map(|params| params.sample);
     let sample = options.sample.or(sample).unwrap_or_default();
     let Some(scheme) = options.named()? else {
@@ -99,9 +118,12 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     };
     let settings = options.settings(scheme, sample)?;
     let slot_ticks = options.slot_ticks(scheme, &settings)?;
+    let mut heard = Ok(());
     with_receiver(scheme, sample, &settings, slot_ticks, |values| {
-        listen(options, Some((values, sample)))
-    })
+        heard = listen(options, Some((values, sample)));
+        Ok(())
+    })?;
+    heard
 }
 
 fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) -> Result<()> {
@@ -137,14 +159,14 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
     // What came before a port failed is kept.
     stream.finish(&mut output)?;
     live.clear();
-    tell(&stream);
+    eprint!("{}", stream.spelled(option));
     match stream.check_format(options.from, port.name()) {
         // It may yet speak, or at another speed.
-        Err(error) if options.baud.is_some() => tell(format_args!("{error}\n")),
+        Err(error) if options.baud.is_some() => eprintln!("{}", of_lab(&error)),
         checked => checked?,
     }
     output.finish()?;
-    heard
+    Ok(heard?)
 }
 
 impl Listen {
@@ -177,16 +199,22 @@ impl Listen {
         }
     }
 
-    /// The settings of one channel for all, or of each.
-    fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
+    /// Refuses formats that hold no values.
+    fn check_formats(&self, option: &str) -> Result<()> {
         if !matches!(self.from, Format::Link(_)) {
             bail!(
-                "--scheme needs --from link, whose frames say what was lost and where keyframes are"
+                "{option} needs --from link, whose frames say what was lost and where keyframes are"
             );
         }
         if self.to != Format::Csv {
-            bail!("--scheme gives values, which only --to csv holds");
+            bail!("{option} gives values, which only --to csv holds");
         }
+        Ok(())
+    }
+
+    /// The settings of one channel for all, or of each.
+    fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
+        self.check_formats("--scheme")?;
         let mut asked = match &self.params {
             Some(params) => self.parameters.0.or(&params.asked),
             None => self.parameters.0.clone(),
@@ -198,6 +226,7 @@ impl Listen {
             }
         }
         if let Some(missing) = scheme.needs_signal(&asked) {
+            let missing = missing.spelled(option);
             bail!("{} needs {missing}, as the sender has it", scheme.name());
         }
         let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
@@ -207,7 +236,7 @@ impl Listen {
             let own = asked.channel(scheme.info(), channel, channels)?;
             let settings = scheme.resolve(sample, &own, &known)?;
             if let Some(rounding) = rounding(&settings) {
-                tell(format_args!("{rounding}\n"));
+                eprintln!("{rounding}");
             }
             all.push(settings);
         }

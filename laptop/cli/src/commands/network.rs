@@ -2,9 +2,10 @@
 
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
-use crate::options::{SchemeOptions, schemes, tell_each};
+use crate::options::{SchemeOptions, schemes};
+use crate::words;
 use anyhow::{Context, Result, ensure};
-use catalogue::run::{Calibrated, Known, SampleType, Settings};
+use catalogue::run::{Calibrated, Known, SampleType, Settings, Words};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -12,8 +13,9 @@ use lab::bank::Bank;
 use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
-    Brought, CHIPS, Chip, ControllerRequest, Figures, File, Model, OnChip, Request, Stepped, Told,
-    Trained, Trains, WINDOW, bring, bring_to_controller,
+    Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model,
+    NetworkKind, Numbers, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring,
+    bring_to_controller,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
@@ -67,9 +69,21 @@ pub(crate) struct Network {
     parameters: SchemeOptions,
     #[command(flatten)]
     rule: RuleOptions,
-    /// Another recording, which shows what the network is worth where it was not tuned
+    /// Another recording, which shows what the network is worth where it was not tuned; the last third of INPUT unless
+    /// given
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
+    /// Tune on the whole recording, and hold nothing out
+    #[arg(long, conflicts_with = "held_out")]
+    no_held_out: bool,
+    /// The outputs that fired where the network was trained, a line for each step of INPUT: the chip is compared with
+    /// them, and so is how the file is read
+    #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
+    trained_spikes: Option<PathBuf>,
+    /// When neurons of tinyODIN compare with their thresholds: after each spike, as the chip has it, or once a step, as in
+    /// training, which takes more events; what holds better unless given
+    #[arg(long, value_parser = compares())]
+    compare: Option<Compare>,
     /// File of Rust; standard output unless given
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -93,6 +107,11 @@ fn places() -> impl TypedValueParser<Value = &'static str> {
         .map(move |asked| names().find(|name| *name == asked).unwrap_or_default())
 }
 
+fn compares() -> impl TypedValueParser<Value = Compare> {
+    PossibleValuesParser::new(["spike", "step"])
+        .map(|asked| if asked == "spike" { Compare::Spike } else { Compare::Step })
+}
+
 /// A network with the numbers of its place.
 enum Placed {
     Chip(&'static dyn Chip, Trained),
@@ -107,11 +126,11 @@ impl Placed {
             return Ok(Self::Controller(file.on_controller(&rule.asked(*dt))?));
         }
         ensure!(
-            !rule.is_told(),
-            "the chips have rules and numbers of their own: --on controller takes others"
+            rule.numbers == Numbers::Float,
+            "the chips have numbers of their own: --on controller takes others"
         );
         let chip = CHIPS.iter().find(|chip| chip.name() == *place).context("no such chip")?;
-        Ok(Self::Chip(*chip, file.in_steps(dt.or(seconds))?))
+        Ok(Self::Chip(*chip, file.on_chip(&rule.asked(*dt), seconds)?))
     }
 
     /// How many inputs it has, and the name of its first layer.
@@ -154,25 +173,50 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         held_out.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
+    let own =
+        options.trained_spikes.as_ref().map(|path| spiking(path)).transpose()?.map(|own| own.steps);
+    if let Some(own) = &own {
+        let (given, steps) = (own.len(), driven.steps.len());
+        ensure!(given == steps, "--trained-spikes has {given} steps, and the recording {steps}");
+    }
+    // The whole recording, or its first part and the rest.
+    let steps = driven.steps.len();
+    // The controller's arithmetic is exact, or nearly so.
+    let on_controller = matches!(placed, Placed::Controller(_));
+    let holds_out = held_out.is_none() && !options.no_held_out && !on_controller;
+    let part = if holds_out { steps - steps / 3 } else { steps };
+    let tuned = driven.steps[..part].to_vec();
+    let own_tuned = own.as_ref().map(|own| own[..part].to_vec());
+    let own = own_tuned.as_ref().zip(own.as_ref());
+    let held_out = match &held_out {
+        Some(other) => Some(HeldOut { steps: &other.steps, from: 0 }),
+        None => (part < steps).then_some(HeldOut { steps: &driven.steps, from: part }),
+    };
+
     let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template(
-        "{bar:40} {percent:>3} %  {human_pos} of {human_len} neurons",
+        "{bar:40} {percent:>3} %  {human_pos} of {human_len}",
     )?);
     let progress = |done: usize, total: usize| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
-    let (tuned, held_out) = (&driven.steps, held_out.as_ref().map(|held_out| &held_out.steps));
+    let (tuned, compare) = (&tuned, options.compare);
     let (progress, numbers) = (&progress, options.rule.numbers);
     let brought = match &placed {
         Placed::Chip(chip, trained) => {
-            bring(&Request { chip: *chip, trained, tuned, held_out, progress })
+            let chip = *chip;
+            bring(&Request { chip, trained, tuned, held_out, own, compare, progress })
         }
         Placed::Controller(model) => {
+            ensure!(
+                own.is_none(),
+                "--trained-spikes is for the chips: the controller's rule is exact"
+            );
             bring_to_controller(&ControllerRequest { model, numbers, tuned, held_out, progress })
         }
     };
     bar.finish_and_clear();
-    let brought = brought.map_err(|error| error.context(name.clone()))?;
+    let brought = brought.map_err(|error| error.at(&name))?;
 
     let told = Told { source: name, inputs: driven.words, step_us: driven.step_us };
     if output.is_some() || !options.live {
@@ -185,7 +229,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         output.write_all(&brought.network.bytes()?)?;
         output.finish()?;
     }
-    tell_each(&driven.notes);
+    words::tell(&driven.notes);
     report(&brought);
     if options.live { live(&*brought.network, placed.inputs().0) } else { Ok(()) }
 }
@@ -193,11 +237,10 @@ pub(crate) fn run(options: &Network) -> Result<()> {
 /// Steps in by standard input, answers out.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
-    let step = |line: io::Result<String>| {
+    let step = |line: io::Result<String>| -> lab::Result<_> {
         let step = spikes(&line?)?;
         let is_known = step.iter().all(|input| usize::from(*input) < inputs);
-        ensure!(is_known, "the network has {inputs} inputs, and not those of {step:?}");
-        Ok(step)
+        if is_known { Ok(step) } else { Err(NetworkKind::NoInputs { inputs, step }.into()) }
     };
     let mut steps = stdin().lock().lines().map(step);
     network.follow(&mut steps, &mut |Stepped { fired, clocks }| {
@@ -212,9 +255,9 @@ fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
 }
 
 /// A line of spikes.
-fn spikes(line: &str) -> Result<Vec<u16>> {
+fn spikes(line: &str) -> lab::Result<Vec<u16>> {
     let of_word = |word: &str| {
-        word.parse().with_context(|| format!("`{word}` is not the number of an input"))
+        word.parse().map_err(|_| NetworkKind::NotAnInput { word: word.to_owned() }.into())
     };
     line.split_whitespace().map(of_word).collect()
 }
@@ -231,7 +274,7 @@ struct Driven {
     step_us: Option<f64>,
     /// The settings of the columns.
     settings: Vec<Settings>,
-    notes: Vec<String>,
+    notes: Vec<Words>,
 }
 
 impl Driven {
@@ -262,7 +305,7 @@ fn driven(
     let recordings = Recording::read_all(input)?;
     let first = recordings.first().context("there is no channel")?;
     let (samples, rate) = (first.values.len(), first.rate);
-    let mut notes: Vec<String> = first.notes().lines().map(str::to_owned).collect();
+    let mut notes = first.notes();
     let columns: Vec<Vec<f64>> = recordings.into_iter().map(|own| own.values).collect();
 
     let mut settings = known.unwrap_or_default().to_vec();
@@ -272,7 +315,7 @@ fn driven(
         let known = Known { calibrated: Some(&calibrated), first: column, can_calibrate: true };
         let asked = parameters.channel(scheme.info(), channel, columns.len())?;
         let own = scheme.resolve(*sample, &asked, &known)?;
-        notes.extend(rounding(&own));
+        notes.extend(rounding(&own).map(Words::from));
         settings.push(own);
     }
     ensure!(
@@ -334,21 +377,49 @@ fn spiking(path: &Path) -> Result<Driven> {
 
 /// The share of agreeing steps below which a warning says so.
 const LOW: f64 = 0.5;
+/// The share below which the file may be read by another rule than it was trained by.
+const READ: f64 = 0.95;
 
 /// Prints the cost of quantising on standard error.
 fn report(brought: &Brought) {
-    let Brought { network, tuned, held_out } = brought;
+    let Brought { network, tuned, held_out, costs, reading } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));
+    if let Some(reading) = reading {
+        eprintln!(
+            "in double precision, as the file and the options say, outputs fire as they did in training in {:.1} % of the \
+             steps in which any fires{}",
+            100.0 * reading,
+            if *reading < READ { ": --as, --reset or --dt may be others" } else { "" }
+        );
+    }
     eprintln!("layer: neurons, weights clipped; spikes, on the chip, distance");
     tell(tuned, &**network);
     match held_out {
         Some(held_out) => {
-            eprintln!("the recording that was held out:");
+            eprintln!("held out:");
             tell(held_out, &**network);
         }
         None => eprintln!(
             "the figures are those of the recording that the network is tuned on: --held-out shows another"
         ),
+    }
+    let shown = held_out.as_ref().unwrap_or(tuned).agreement();
+    if shown.is_some_and(|agreement| agreement < LOW) {
+        let alone = |(cost, left): &(Cost, f64)| format!("{cost} {:.1} %", 100.0 * left);
+        let mut costs = costs.clone();
+        costs.sort_by(|(_, one), (_, other)| one.total_cmp(other));
+        let costs: Vec<String> = costs.iter().map(alone).collect();
+        eprintln!(
+            "warning: step by step the chip is another network than the trained one; {}",
+            if costs.is_empty() {
+                "compare the spikes of each layer".to_owned()
+            } else {
+                format!(
+                    "alone would leave of its steps: {}; train with the first",
+                    costs.join(", ")
+                )
+            }
+        );
     }
 }
 
@@ -378,13 +449,6 @@ fn tell(figures: &Figures, network: &dyn OnChip) {
             if figures.potentials.is_some() { "is highest most often" } else { "fires most" },
             100.0 * windows_agreeing as f64 / windows as f64
         );
-        if agreement < LOW {
-            eprintln!(
-                "warning: step by step the chip is another network than the trained one; compare the spikes of each \
-                 layer, and train with what costs most: {}",
-                network.dearest()
-            );
-        }
     } else if figures.potentials.is_none() {
         eprintln!(
             "warning: no output fires, neither in double precision nor on the chip: there is nothing to compare"

@@ -4,10 +4,11 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lab::network::{Asked, Current, Decay, Fires, Framework, Numbers, Reset};
 
-/// The rule of a network on the controller, which a NIR file does not say.
+/// The rule of a network, which a NIR file does not say.
 #[derive(Args, Debug)]
 pub(crate) struct RuleOptions {
-    /// The framework whose rule the network follows: of a NIR file on the controller this, or each of the choices below
+    /// The framework whose rule the network follows: of a NIR file this, or --reset, and on the controller each of the
+    /// choices below
     #[arg(long = "as", value_name = "FRAMEWORK", value_parser = of(&FRAMEWORKS))]
     framework: Option<Framework>,
     /// What a spike does to its neuron: to all, or of each layer that fires, with commas between
@@ -33,20 +34,10 @@ impl RuleOptions {
         let &Self { framework, fires, decay, current, .. } = self;
         Asked { framework, resets: self.resets.clone(), fires, decay, current, dt }
     }
-
-    /// Whether anything is asked for.
-    pub(crate) fn is_told(&self) -> bool {
-        let Asked { framework, resets, fires, decay, current, .. } = self.asked(None);
-        let told = [
-            framework.is_some(),
-            !resets.is_empty(),
-            fires.is_some(),
-            decay.is_some(),
-            current.is_some(),
-        ];
-        told.contains(&true) || self.numbers != Numbers::Float
-    }
 }
+
+/// The reset that is also called `zero`.
+const ZERO: &str = "to-value";
 
 type Choices<T> = [(&'static str, T, &'static str)];
 
@@ -54,8 +45,12 @@ type Choices<T> = [(&'static str, T, &'static str)];
 fn of<T: Copy + Send + Sync + 'static>(
     choices: &'static Choices<T>,
 ) -> impl TypedValueParser<Value = T> {
-    let values = choices.iter().map(|(name, _, help)| PossibleValue::new(*name).help(*help));
+    let values = choices.iter().map(|(name, _, help)| {
+        let value = PossibleValue::new(*name).help(*help);
+        if *name == ZERO { value.alias("zero") } else { value }
+    });
     PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(|asked| {
+        let asked = if asked == "zero" { ZERO } else { &asked };
         let found = choices.iter().find(|(name, ..)| *name == asked);
         found.map(|(_, choice, _)| *choice).ok_or("no such choice")
     })
@@ -71,7 +66,7 @@ const FRAMEWORKS: [(&str, Framework, &str); 6] = [
 ];
 
 const RESETS: [(&str, Reset, &str); 6] = [
-    ("to-value", Reset::ToValue, "sets the potential to v_reset, or 0, at once"),
+    (ZERO, Reset::ToValue, "sets the potential to v_reset, or 0, at once"),
     ("to-value-late", Reset::ToValueLate, "sets it a step late"),
     ("to-value-held", Reset::ToValueHeld, "holds it there through the next step"),
     ("subtract", Reset::Subtract, "subtracts the threshold at once"),

@@ -2,7 +2,8 @@
 
 use super::score::chosen;
 use crate::inputs::InputOptions;
-use crate::options::{Coding, tell};
+use crate::options::Coding;
+use crate::words::{of_lab, tell};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use lab::look::known_unit;
@@ -59,24 +60,27 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     for scheme in schemes.into_iter().filter(is_drawn) {
         match Trial::new(scheme, &parameters, sample, &recording) {
             Ok(trial) => trials.push(trial),
-            Err(error) if options.all => refused.push(format!("{}: {error:#}", scheme.name())),
-            Err(error) => return Err(error),
+            Err(error) if options.all => {
+                refused.push(format!("{}: {}", scheme.name(), of_lab(&error)));
+            }
+            Err(error) => return Err(error.into()),
         }
     }
     if trials.is_empty() {
         bail!("no scheme takes this recording: {}", refused.join("; "));
     }
-    tell(recording.notes());
+    tell(&recording.notes());
     for words in &refused {
-        tell(format_args!("not drawn: {words}\n"));
+        eprintln!("not drawn: {words}");
     }
     for trial in &trials {
         for note in &trial.notes {
-            tell(format_args!("{}: {note}\n", trial.scheme.name()));
+            eprintln!("{}: {note}", trial.scheme.name());
         }
     }
     let unit = options.unit.as_deref().or_else(|| known_unit(&recording.name));
-    draw(output, &input.input, &Picture { recording: &recording, trials: &trials, unit, shown })
+    let picture = Picture { recording: &recording, trials: &trials, unit, shown };
+    Ok(draw(output, &input.input, &picture)?)
 }
 
 fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {

@@ -1,7 +1,8 @@
 //! `spikewire score`: how few spikes, and how near to the signal.
 
 use crate::inputs::InputOptions;
-use crate::options::{Coding, answer, tell};
+use crate::options::{Coding, answer};
+use crate::words::{of_lab, tell};
 use anyhow::{Result, bail};
 use catalogue::run::{Asked, SampleType};
 use clap::Args;
@@ -59,9 +60,9 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     for scheme in schemes {
         scored.push(match Trial::new(scheme, &parameters, sample, &recording) {
             Ok(trial) => Scored::Figures(Box::new(Figures::of(&recording, &trial))),
-            Err(error) if is_single => return Err(error),
+            Err(error) if is_single => return Err(error.into()),
             Err(error) => {
-                Scored::Refused { scheme: scheme.name().to_owned(), refused: format!("{error:#}") }
+                Scored::Refused { scheme: scheme.name().to_owned(), refused: of_lab(&error) }
             }
         });
     }
@@ -70,14 +71,14 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     {
         bail!("no scheme takes this recording: {refused}");
     }
-    tell(recording.notes());
+    tell(&recording.notes());
     let figures = scored.iter().filter_map(|own| match own {
         Scored::Figures(figures) => Some(figures),
         Scored::Refused { .. } => None,
     });
     for Figures { scheme, slope, notes, .. } in figures.map(Box::as_ref) {
         for note in notes {
-            tell(format_args!("{scheme}: {note}\n"));
+            eprintln!("{scheme}: {note}");
         }
         if let Some(slope) = slope {
             eprintln!("{}", slope.words());
@@ -143,5 +144,5 @@ fn print_table(scored: &[Scored]) -> Result<()> {
             "| {scheme:19} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief} |"
         )?;
     }
-    output.finish()
+    Ok(output.finish()?)
 }

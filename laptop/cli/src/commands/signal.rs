@@ -45,5 +45,5 @@ pub(crate) fn run(options: &Signal) -> Result<()> {
     for (step, value) in (1..).zip(Waveform::new(options.seconds).with_noise(options.seed, 0)) {
         writeln!(output, "{},{value}", step * 1_000_000 / RATE)?;
     }
-    output.finish()
+    Ok(output.finish()?)
 }

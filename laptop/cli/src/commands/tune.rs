@@ -1,13 +1,15 @@
 //! `spikewire tune`: the parameters of a scheme, from flight logs.
 
 use crate::inputs::ChannelOptions;
-use crate::options::{FREE, answer, augment, given, option_group, spelled, tell, whole};
+use crate::options::{FREE, answer, augment, given, option_group, whole};
 use crate::stop::Stop;
+use crate::words::{option, tell};
 use anyhow::{Context, Result, bail};
 use catalogue::Parameter;
-use catalogue::run::{Asked, SampleType};
+use catalogue::run::{Asked, SampleType, Worded};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use lab::flight::of_rows;
 use lab::look::known_unit;
 use lab::output::Output;
 use lab::plot::draw_fronts;
@@ -34,6 +36,7 @@ Examples:
   spikewire tune flight.csv --channel gyro_x --scheme sf --min-efficiency 95
   spikewire tune a.ulg b.ulg --channel 'sensor_combined.gyro_rad[0]' --scheme all --max-rmse 0.1 --core M0 --sample q16.16
   spikewire tune flight.csv --channel gyro_x --scheme hsa --filter free --sample q8.8 --emit rust -o src/roll.rs
+  spikewire tune flight.csv --scheme sod --spikes 8 --max-rmse 0.1 --emit flight -o flight.toml
   spikewire tune flight.csv --channel gyro_x,gyro_y --scheme all --front front.svg")]
 pub(crate) struct Tune {
     /// CSV tables or PX4 flight logs, tuned on together
@@ -95,7 +98,7 @@ pub(crate) struct Tune {
     /// Tell the RMSE below this frequency too, such as `40Hz`
     #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     below: Option<f64>,
-    /// Write the settings: a constant in Rust, or a file for --params
+    /// Write the settings: a constant in Rust, a file for --params, or a flight's file of all channels
     #[arg(long)]
     emit: Option<Emit>,
     /// Where they are written; standard output unless given
@@ -124,7 +127,7 @@ fn which(name: &str) -> Result<Which> {
 }
 
 /// `40Hz`, `40 Hz` or `40`.
-fn hertz(text: &str) -> Result<f64, String> {
+fn hertz(text: &str) -> lab::Result<f64> {
     let number = text.trim_end_matches("Hz").trim_end();
     lab::input::above_zero(number)
 }
@@ -136,6 +139,8 @@ enum Emit {
     Rust,
     /// A file of parameters
     Toml,
+    /// A flight's file of all channels
+    Flight,
 }
 
 /// Parameters that stay as they are given.
@@ -175,7 +180,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
             eprintln!("{words}");
         }
         for words in missed {
-            eprintln!("{}: {}", channel.name, spelled(&words));
+            eprintln!("{}: {}", channel.name, words.spelled(option));
         }
         if rows.is_empty() && curves.is_empty() {
             bail!("{}: of the settings tried none keeps to all limits", channel.name);
@@ -193,6 +198,9 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
         return Ok(());
     }
     options.tell(&told)?;
+    if options.emit == Some(Emit::Flight) {
+        emitted = options.flight(&request, &told)?;
+    }
     if options.emit.is_some() {
         let mut output = Output::open(options.output.as_deref(), &options.inputs[0])?;
         output.write_all(emitted.as_bytes())?;
@@ -250,7 +258,7 @@ impl Tune {
         for input in &self.inputs {
             let recordings = Recording::read_all(&self.channel.of(input))?;
             if let Some(first) = recordings.first() {
-                tell(first.notes());
+                tell(&first.notes());
             }
             logs.push(recordings);
         }
@@ -263,10 +271,24 @@ impl Tune {
     fn emitted(&self, scheme: Scheme, cut: &Cut, row: &Row) -> Result<String> {
         let comments = row.comments(&cut.name);
         match self.emit {
-            None => Ok(String::new()),
-            Some(Emit::Rust) => emit::rust(&comments, &cut.name, scheme, &row.settings),
+            // A flight's file is of all channels together.
+            None | Some(Emit::Flight) => Ok(String::new()),
+            Some(Emit::Rust) => Ok(emit::rust(&comments, &cut.name, scheme, &row.settings)?),
             Some(Emit::Toml) => Ok(emit::toml(&comments, scheme, &row.settings)),
         }
+    }
+
+    /// The text of a flight's file.
+    fn flight(&self, request: &TuneRequest, told: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<String> {
+        let rows: Vec<(&str, Scheme, &Row)> = told
+            .iter()
+            .filter_map(|(cut, rows)| rows.first().map(|(scheme, row)| (&*cut.name, *scheme, row)))
+            .collect();
+        let rate = request.logs.first().and_then(|log| log.first()).and_then(|own| own.rate);
+        let flight =
+            of_rows(&rows, self.sample, rate.context("a flight needs the rate of its log")?)?;
+        let comments = rows.iter().flat_map(|(name, _, row)| row.comments(name));
+        Ok(flight.to_toml(&comments.collect::<Vec<_>>()))
     }
 
     fn panel(cut: &Cut, curves: Vec<lab::tune::Curve>) -> Panel {

@@ -1,8 +1,8 @@
 //! The formats of events one after the other: eDVS, Event Stream, EVT2.
 
 use super::omitted::Omitted;
-use super::{EventReader, EventWriter, Item, Tally};
-use anyhow::{Result, bail};
+use super::{EventReader, EventWriter, EventsKind, Item, Tally};
+use crate::Result;
 use spikewire::format::{EventDecoder, EventFormat, FormatError};
 use spikewire::{Event, Tick};
 use std::io::Write;
@@ -75,7 +75,9 @@ impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
                     self.omitted.drop_event();
                     return Ok(());
                 }
-                Err(error) => bail!("event {}: {error}; `drop` goes on", self.events),
+                Err(error) => {
+                    return Err(EventsKind::NoWord { event: self.events, error }.into());
+                }
             };
             let bytes = &buffer[..written];
             output.write_all(bytes)?;

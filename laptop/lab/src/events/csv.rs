@@ -1,12 +1,13 @@
 //! Tables of events: `tick,address,polarity`, and in comments what is no event.
 
-use super::{EventReader, EventWriter, Item, Known, Tally};
-use anyhow::{Context, Result, bail};
+use super::{EventReader, EventWriter, EventsKind, Item, Known, Tally};
+use crate::error::At;
+use crate::{Place, Result};
 use catalogue::run::SampleType;
 use spikewire::{Event, Keyframe, Polarity, SampleKind, Tick};
 use std::io::Write;
 
-const HEADER: &str = "tick,address,polarity";
+pub(super) const HEADER: &str = "tick,address,polarity";
 const VALUES: &str = "tick,address,value,known";
 
 /// Reads a table of events, or a file of spikes with times.
@@ -51,8 +52,8 @@ impl Reader {
         match note.split_once('=') {
             Some(("spikewire", _)) => self.is_file_of_spikes = true,
             Some(("events", count)) if self.is_file_of_spikes => {
-                let count = count.parse().with_context(|| format!("`{count}` is not a count"))?;
-                self.told_events = Some(count);
+                let no_count = |_| EventsKind::NotACount { text: count.to_owned() };
+                self.told_events = Some(count.parse().map_err(no_count)?);
             }
             _ => {}
         }
@@ -78,7 +79,7 @@ impl Reader {
                 None
             })
         };
-        let item = item.with_context(|| format!("{}: line {}", self.file, self.number))?;
+        let item = item.at(|| Place::line(&self.file, self.number))?;
         self.events += u64::from(matches!(item, Some(Item::Event(_))));
         items.extend(item);
         Ok(())
@@ -91,11 +92,8 @@ impl EventReader for Reader {
         for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
             self.line.extend(piece);
             if self.line.len() > LONGEST {
-                bail!(
-                    "{}: line {} is longer than {LONGEST} bytes; is it a table?",
-                    self.file,
-                    self.number + 1
-                );
+                let place = Place::line(&self.file, self.number + 1);
+                return Err(EventsKind::LongLine { most: LONGEST }.at(place));
             }
             if piece.ends_with(b"\n") {
                 self.end_line(items)?;
@@ -109,14 +107,12 @@ impl EventReader for Reader {
             self.end_line(items)?;
         }
         if self.columns.is_none() {
-            bail!("{}: empty; a table of events starts with `{HEADER}`", self.file);
+            return Err(EventsKind::Empty.at(&self.file));
         }
         match self.told_events {
-            None if self.is_file_of_spikes => {
-                bail!("{}: ends without `# samples=` and `# events=`; is it cut short?", self.file)
-            }
-            Some(told) if told != self.events => {
-                bail!("{}: holds {} events where its end says {told}", self.file, self.events)
+            None if self.is_file_of_spikes => Err(EventsKind::NoEnd.at(&self.file)),
+            Some(said) if said != self.events => {
+                Err(EventsKind::OtherCount { events: self.events, said }.at(&self.file))
             }
             _ => Ok(()),
         }
@@ -132,24 +128,21 @@ fn header(text: &str) -> Result<Columns> {
     let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(name));
     match (find(&["tick", "time_us"]), find(&["address"]), find(&["polarity"])) {
         (Some(tick), Some(address), Some(polarity)) => Ok(Columns { tick, address, polarity }),
-        _ => bail!("`{text}`, where `{HEADER}` should stand (or `time_us` for `tick`)"),
+        _ => Err(EventsKind::NoHeader { text: text.to_owned() }.into()),
     }
 }
 
 fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item> {
     let field = |column: usize| text.split(',').nth(column).map_or("", str::trim);
     let (tick, address) = (field(columns.tick), field(columns.address));
-    let micros: u64 =
-        tick.parse().with_context(|| format!("tick `{tick}` is not a number of µs from 0 on"))?;
+    let micros: u64 = tick.parse().map_err(|_| EventsKind::Tick { text: tick.to_owned() })?;
     let tick = Tick::from_micros(micros);
     *long_ticks += u64::from(u64::from(tick.micros()) != micros);
-    let address = address
-        .parse()
-        .with_context(|| format!("address `{address}` is not a number from 0 to {}", u16::MAX))?;
+    let address = address.parse().map_err(|_| EventsKind::Address { text: address.to_owned() })?;
     let polarity = match field(columns.polarity) {
         "1" => Polarity::Up,
         "-1" => Polarity::Down,
-        other => bail!("polarity `{other}` is neither 1 nor -1"),
+        other => return Err(EventsKind::Polarity { text: other.to_owned() }.into()),
     };
     Ok(Item::Event(Event { tick, address, polarity }))
 }
@@ -157,18 +150,17 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
 /// The item that a comment stands for; `None` for comments that are not ours.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
+    let text = || value.to_owned();
     Ok(match key {
-        "lost_frames" => Some(Item::LostFrames(
-            value.parse().with_context(|| format!("`{value}` is not a number of frames"))?,
-        )),
-        "heartbeat" => Some(heartbeat(value).with_context(|| {
-            format!("heartbeat `{value}` is not TICK,ADDRESS")
-        })?),
+        "lost_frames" => {
+            Some(Item::LostFrames(value.parse().map_err(|_| EventsKind::Frames { text: text() })?))
+        }
+        "heartbeat" => {
+            Some(heartbeat(value).ok_or_else(|| EventsKind::Heartbeat { text: text() })?)
+        }
         "lost_events" => Some(Item::LostEvents),
         "restart" => Some(Item::Restart),
-        "keyframe" => Some(keyframe(value).with_context(|| {
-            format!("keyframe `{value}` is not TICK,ADDRESS,BITS,TYPE with 4 or 8 hexadecimal digits and a sample type")
-        })?),
+        "keyframe" => Some(keyframe(value).ok_or_else(|| EventsKind::Keyframe { text: text() })?),
         _ => None,
     })
 }

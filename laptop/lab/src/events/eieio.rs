@@ -1,8 +1,8 @@
 //! EIEIO datagrams, one after the other as in a recording of their payloads.
 
 use super::omitted::Omitted;
-use super::{EventReader, EventWriter, Item, Tally};
-use anyhow::{Result, bail};
+use super::{EventReader, EventWriter, EventsKind, Item, Tally};
+use crate::Result;
 use spikewire::format::eieio;
 use spikewire::{Event, Polarity, Tick};
 use std::io::Write;
@@ -143,11 +143,8 @@ impl Writer {
                 self.omitted.drop_event();
                 return Ok(());
             }
-            bail!(
-                "event {} at address {}: a key of 32 bits has no direction; signed=1 gives an address two keys, `drop` goes on",
-                self.events,
-                event.address
-            );
+            let (address, event) = (event.address, self.events);
+            return Err(EventsKind::NoDirection { event, address }.into());
         };
         let stamp = event.tick.micros() / self.board.step;
         if stamp != self.stamp || self.keys.len() == MAX_KEYS {

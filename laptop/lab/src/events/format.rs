@@ -2,8 +2,8 @@
 
 use super::bytes::{self, Hooks};
 use super::eieio::{self, Board};
-use super::{EventReader, EventWriter, LinkReader, csv, link};
-use anyhow::{Context, Error, Result, anyhow, bail};
+use super::{EventReader, EventWriter, EventsKind, LinkReader, csv, link};
+use crate::{Error, Result};
 use catalogue::run::SampleType;
 use spikewire::Tick;
 use spikewire::format::{Edvs, EdvsTime, EventStream, Evt2};
@@ -44,7 +44,7 @@ impl Format {
             Self::EventStream => {
                 let check: fn(&spikewire::format::EventStreamDecoder) -> Result<()> = |decoder| {
                     if decoder.is_foreign() {
-                        bail!("not an Event Stream of version 2 and of generic events");
+                        return Err(EventsKind::NotAnEventStream.into());
                     }
                     Ok(())
                 };
@@ -123,11 +123,11 @@ impl FromStr for Format {
                 let period = settings.number("period", 1_000)?;
                 let jitter: u8 = settings.number("jitter", 0)?;
                 if period == 0 || jitter > 15 {
-                    bail!("{text}: the period must be above 0 µs, the jitter at most 15 bits");
+                    return Err(EventsKind::PeriodOrJitter { text: text.to_owned() }.into());
                 }
                 Self::Link(Coding::for_channels(channels, period).with_jitter_bits(jitter))
             }
-            "edvs" => bail!("edvs: how it sends times must follow, edvs:e0 to edvs:e4"),
+            "edvs" => return Err(EventsKind::TimesOfEdvs.into()),
             "edvs:e0" => edvs(EdvsTime::None, &mut settings)?,
             "edvs:e1" => edvs(EdvsTime::Delta, &mut settings)?,
             "edvs:e2" => edvs(EdvsTime::Bits16, &mut settings)?,
@@ -138,12 +138,12 @@ impl FromStr for Format {
             "eieio" => {
                 let base = settings.number("base", 0)?;
                 let step = NonZeroU32::new(settings.number("step", 1_000)?)
-                    .with_context(|| format!("{text}: the step must be above 0 µs"))?;
+                    .ok_or_else(|| EventsKind::Step { text: text.to_owned() })?;
                 let is_signed = settings.bit("signed", false)?;
                 Self::Eieio(Board { base, step, is_signed })
             }
             "csv" => Self::Csv,
-            _ => bail!("no format `{name}`; there are {NAMES}"),
+            _ => return Err(EventsKind::NoFormat { name: name.to_owned() }.into()),
         };
         settings.end(name)?;
         Ok(format)
@@ -163,9 +163,9 @@ impl<'a> Settings<'a> {
     fn new(text: &'a str) -> Result<Self> {
         let pairs = text.split(',').filter(|pair| !pair.is_empty());
         let pairs = pairs.map(|pair| {
-            pair.split_once('=').with_context(|| format!("`{pair}` must be KEY=NUMBER"))
+            pair.split_once('=').ok_or_else(|| EventsKind::NoPair { pair: pair.to_owned() })
         });
-        Ok(Self(pairs.collect::<Result<_>>()?))
+        Ok(Self(pairs.collect::<Result<_, _>>()?))
     }
 
     /// The number of this key, decimal or `0x` and hexadecimal.
@@ -179,20 +179,24 @@ impl<'a> Settings<'a> {
             None => text.parse(),
         };
         let number = number.ok().and_then(|number| number.try_into().ok());
-        number.ok_or_else(|| anyhow!("{key}={text} is no number of its range"))
+        let (key, text) = (key.to_owned(), text.to_owned());
+        number.ok_or_else(|| EventsKind::OutOfRange { key, text }.into())
     }
 
     /// The 0 or 1 of this key.
     fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
         match self.number::<u32>(key, otherwise.into())? {
             bit @ 0..=1 => Ok(bit == 1),
-            other => bail!("{key}={other} must be 0 or 1"),
+            number => Err(EventsKind::NotABit { key: key.to_owned(), number }.into()),
         }
     }
 
     fn end(self, name: &str) -> Result<()> {
         match self.0.first() {
-            Some((key, _)) => bail!("{name} takes no {key}="),
+            Some((key, _)) => {
+                let (format, key) = (name.to_owned(), (*key).to_owned());
+                Err(EventsKind::TakesNoKey { format, key }.into())
+            }
             None => Ok(()),
         }
     }

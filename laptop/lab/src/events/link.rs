@@ -1,7 +1,7 @@
 //! The crate's link.
 
 use super::{EventReader, EventWriter, Item, LinkTally, Tally};
-use anyhow::Result;
+use crate::Result;
 use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Session};
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;

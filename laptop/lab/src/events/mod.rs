@@ -6,6 +6,7 @@ mod bytes;
 mod csv;
 mod eieio;
 mod format;
+mod kinds;
 mod link;
 mod omitted;
 mod stream;
@@ -13,12 +14,13 @@ mod tally;
 mod whole;
 
 pub use format::{Format, values_writer};
+pub use kinds::EventsKind;
 pub use link::{LinkReader, Values};
 pub use stream::Stream;
 pub use tally::{Held, LinkTally, Tally};
 pub use whole::{Events, read_events, write_events};
 
-use anyhow::Result;
+use crate::Result;
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 

@@ -1,7 +1,8 @@
 //! Bytes of one format in, bytes of another out.
 
-use super::{EventReader, EventWriter, Format, Item, Tally};
-use anyhow::{Result, bail};
+use super::{EventReader, EventWriter, EventsKind, Format, Item, Tally};
+use crate::Result;
+use catalogue::run::{Spell, Worded, quoted};
 use spikewire::Tick;
 use std::fmt;
 use std::io::Write;
@@ -160,7 +161,8 @@ impl<'a> Stream<'a> {
         if skipped > 0 && self.count() == 0 && frames == 0 {
             let what = if link.is_some() { "frame" } else { "event" };
             let bytes = self.bytes;
-            bail!("no {format} {what} in the {bytes} bytes of {file}; is it of another format?");
+            let format = format.to_string();
+            return Err(EventsKind::OtherFormat { format, what, bytes }.at(file));
         }
         Ok(())
     }
@@ -185,6 +187,12 @@ impl<'a> Stream<'a> {
 /// The notes for the user at the end of the stream.
 impl fmt::Display for Stream<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.word(f, quoted)
+    }
+}
+
+impl Worded for Stream<'_> {
+    fn word(&self, f: &mut fmt::Formatter<'_>, spell: Spell) -> fmt::Result {
         let (count, what) =
             if self.values > 0 { (self.values, "values") } else { (self.events, "events") };
         let addresses = self.addresses.iter().filter(|&&count| count > 0).count();
@@ -193,7 +201,7 @@ impl fmt::Display for Stream<'_> {
             write!(f, ", {:.2} bytes each", self.bytes as f64 / count as f64)?;
         }
         writeln!(f)?;
-        write!(f, "{}", self.tally())?;
+        self.tally().word(f, spell)?;
         if let Zero::At(zero) = self.zero {
             writeln!(f, "{} µs taken off every tick", zero.micros())?;
         }

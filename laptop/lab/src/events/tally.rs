@@ -1,5 +1,6 @@
 //! Counts of all in a stream that is no event.
 
+use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
 use std::fmt;
 
@@ -60,6 +61,12 @@ pub struct Held {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.word(f, quoted)
+    }
+}
+
+impl Worded for Tally {
+    fn word(&self, f: &mut fmt::Formatter<'_>, spell: Spell) -> fmt::Result {
         if let Some(link) = self.link {
             writeln!(
                 f,
@@ -77,13 +84,14 @@ impl fmt::Display for Tally {
                 (link.impossible, "frames with events that cannot be"),
                 (link.outside, "events and keyframes at addresses without a decoder"),
                 (link.misfits, "keyframes of another sample type"),
-                (
-                    link.unused_keyframes,
-                    "keyframes, which this scheme does not have: is `scheme` the sender's?",
-                ),
             ];
             for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
                 writeln!(f, "{count} {what}")?;
+            }
+            let (unused, scheme) = (link.unused_keyframes, spell("scheme"));
+            if unused > 0 {
+                let what = "keyframes, which this scheme does not have";
+                writeln!(f, "{unused} {what}: is {scheme} the sender's?")?;
             }
             if let Some(why) = link.withheld {
                 writeln!(f, "no value is exact: {why}")?;
@@ -93,7 +101,9 @@ impl fmt::Display for Tally {
                 writeln!(
                     f,
                     "{contradicted} of {compared} keyframes contradict the values before them: \
-                     are `scheme`, `threshold` and `sample` the sender's?"
+                     are {scheme}, {} and {} the sender's?",
+                    spell("threshold"),
+                    spell("sample")
                 )?;
             }
         }

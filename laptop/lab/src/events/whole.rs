@@ -1,7 +1,7 @@
 //! Whole recordings of events in memory.
 
-use super::{Format, Item};
-use anyhow::{Result, bail};
+use super::{EventsKind, Format, Item};
+use crate::Result;
 use spikewire::Event;
 
 /// Events of a stream.
@@ -26,7 +26,8 @@ pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     let tally = reader.tally();
     let is_heard = tally.link.is_some_and(|link| link.frames > 0) || !items.is_empty();
     if tally.skipped > 0 && !is_heard {
-        bail!("no {format} event in {} bytes; are they of another format?", bytes.len());
+        let (format, bytes) = (format.to_string(), bytes.len() as u64);
+        return Err(EventsKind::OtherFormat { format, what: "event", bytes }.into());
     }
     let event = |item: &Item| match item {
         Item::Event(event) => Some(*event),

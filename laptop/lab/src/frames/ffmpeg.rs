@@ -1,8 +1,9 @@
 //! Other containers, by way of `ffmpeg`.
 
+use super::FramesKind;
 use super::video::{Rate, Video};
 use super::y4m::Y4m;
-use anyhow::{Context, Result, bail};
+use crate::Result;
 use std::env;
 use std::io::{self, BufReader, Read};
 use std::path::Path;
@@ -37,18 +38,15 @@ impl Converted {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn();
-        let mut child = match started {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
-                "{name}: neither YUV4MPEG2 nor a picture, and {} is not there to read it; install it, or name it in \
-                 FFMPEG, or convert the video elsewhere: `ffmpeg -i VIDEO -pix_fmt gray video.y4m`",
-                program.display()
-            ),
-            started => {
-                started.with_context(|| format!("{} cannot be started", program.display()))?
+        let mut child = started.map_err(|error| {
+            let program = program.display().to_string();
+            match error.kind() {
+                io::ErrorKind::NotFound => FramesKind::NoFfmpeg { program }.at(&name),
+                _ => FramesKind::NotStarted { program, error }.into(),
             }
-        };
-        let output = child.stdout.take().context("no output of ffmpeg")?;
-        let errors = child.stderr.take().context("no output of ffmpeg")?;
+        })?;
+        let output = child.stdout.take().ok_or(FramesKind::NoOutput)?;
+        let errors = child.stderr.take().ok_or(FramesKind::NoOutput)?;
         let mut said = Some(std::thread::spawn(move || {
             let mut text = Vec::new();
             let mut errors = errors;
@@ -64,7 +62,7 @@ impl Converted {
                 let _ = child.wait();
                 match words(&mut said) {
                     text if text.is_empty() => Err(error),
-                    text => bail!("{name}: ffmpeg says: {text}"),
+                    said => Err(FramesKind::Ffmpeg { said }.at(name)),
                 }
             }
         }
@@ -96,10 +94,10 @@ impl Video for Converted {
             return Ok(true);
         }
         if said.is_some() {
-            let text = words(said);
+            let said = words(said);
             let status = child.wait()?;
-            if !status.success() || !text.is_empty() {
-                bail!("{name}: ffmpeg says, {status}: {text}");
+            if !status.success() || !said.is_empty() {
+                return Err(FramesKind::FfmpegEnded { status, said }.at(&*name));
             }
         }
         Ok(false)

@@ -1,7 +1,8 @@
 //! A sequence of pictures, a file each.
 
+use super::FramesKind;
 use super::video::{Rate, Video};
-use anyhow::{Context, Result, bail};
+use crate::Result;
 use image::{DynamicImage, GrayImage};
 use std::path::{Path, PathBuf};
 
@@ -21,18 +22,14 @@ pub(super) fn is_picture(path: &Path) -> bool {
 }
 
 fn read(path: &Path) -> Result<GrayImage> {
-    let name = path.display();
-    let picture =
-        image::open(path).with_context(|| format!("{name}: cannot be read as a picture"))?;
+    let picture = image::open(path).map_err(|error| FramesKind::NoPicture { error }.at(path))?;
     match picture {
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
         | DynamicImage::ImageRgb16(_)
         | DynamicImage::ImageRgba16(_)
         | DynamicImage::ImageRgb32F(_)
-        | DynamicImage::ImageRgba32F(_) => {
-            bail!("{name}: pixels of more than the 8 bits that are taken")
-        }
+        | DynamicImage::ImageRgba32F(_) => Err(FramesKind::DeepPixels.at(path)),
         picture => Ok(picture.into_luma8()),
     }
 }
@@ -43,16 +40,12 @@ impl Pictures {
     /// # Errors
     /// The first cannot be read.
     pub(super) fn open(files: Vec<PathBuf>) -> Result<Self> {
-        let first = files.first().context("no pictures")?.clone();
+        let first = files.first().ok_or(FramesKind::NoPictures)?.clone();
         let picture = read(&first)?;
         let size = [picture.width(), picture.height()].map(u16::try_from);
         let [Ok(width @ 1..), Ok(height @ 1..)] = size else {
-            bail!(
-                "{}: {} x {} pixels, where 1 to 65535 columns and rows are taken",
-                first.display(),
-                picture.width(),
-                picture.height()
-            );
+            let (width, height) = picture.dimensions();
+            return Err(FramesKind::Size { width, height }.at(first.as_path()));
         };
         Ok(Self { files, first, size: (width, height), index: 0 })
     }
@@ -76,14 +69,11 @@ impl Video for Pictures {
         let picture = read(path)?;
         let (width, height) = self.size;
         if picture.dimensions() != (width.into(), height.into()) {
-            bail!(
-                "{}: frame {} has {} x {} pixels, where {} has {width} x {height}",
-                path.display(),
-                self.index,
-                picture.width(),
-                picture.height(),
-                self.first.display()
-            );
+            let first = self.first.display().to_string();
+            let (width, height) = picture.dimensions();
+            let (frame, of_first) = (self.index, self.size);
+            let kind = FramesKind::OtherSize { frame, width, height, first, of_first };
+            return Err(kind.at(path.as_path()));
         }
         *frame = picture.into_raw();
         self.index += 1;

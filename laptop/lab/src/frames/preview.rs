@@ -1,8 +1,9 @@
 //! A picture of a video and its events, in the paper's layout: the frame, then a panel for each threshold.
 
+use super::FramesKind;
 use super::video::Rate;
+use crate::Result;
 use crate::output::Output;
-use anyhow::{Result, bail};
 use gif::{Encoder, Frame, Repeat};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
@@ -70,14 +71,14 @@ impl Preview {
             "png" => Kind::Png(Output::open(Some(path), input)?),
             "gif" => {
                 let (Ok(columns), Ok(rows)) = (u16::try_from(columns), u16::try_from(rows)) else {
-                    bail!("{}: {columns} x {rows} pixels are too many for a GIF", path.display());
+                    return Err(FramesKind::LargeGif { columns, rows }.at(path));
                 };
                 let output = Output::open(Some(path), input)?;
                 let mut encoder = Encoder::new(output, columns, rows, &palette())?;
                 encoder.set_repeat(Repeat::Infinite)?;
                 Kind::Gif(Box::new(encoder), rate)
             }
-            _ => bail!("{}: a preview is a .png, or animated a .gif", path.display()),
+            _ => return Err(FramesKind::PreviewEnding.at(path)),
         };
         let last = last.unwrap_or(if matches!(file, Kind::Png(_)) { USUAL } else { u64::MAX });
         Ok(Self { panels, size, scale, canvas, last, file })

@@ -1,7 +1,8 @@
 //! The files into which pixel events go.
 
+use super::FramesKind;
+use crate::Result;
 use crate::output::Output;
-use anyhow::{Result, bail};
 use spikewire::format::{Dvs, DvsEncoder, EventFormat, Evt2Pixels, Evt2PixelsEncoder, FormatError};
 use spikewire::frame::PixelEvent;
 use spikewire::{Polarity, Tick};
@@ -31,17 +32,11 @@ impl Sink {
         let format = match ending.as_str() {
             "es" => Kind::Dvs(Dvs::new(width, height).encoder()),
             "raw" if width > 2048 || height > 2048 => {
-                bail!(
-                    "{}: EVT2 holds up to 2048 columns and rows, not {width} x {height}",
-                    path.display()
-                )
+                return Err(FramesKind::LargeEvt2 { width, height }.at(path));
             }
             "raw" => Kind::Evt2(Evt2Pixels::encoder()),
             "csv" => Kind::Csv,
-            _ => bail!(
-                "{}: events go into .es (Event Stream), .raw (EVT2) or .csv; other programs make EVT3 and AEDAT4 of these",
-                path.display()
-            ),
+            _ => return Err(FramesKind::EventsEnding.at(path)),
         };
         let mut output = Output::open(Some(path), input)?;
         match format {
@@ -93,7 +88,7 @@ fn encode(
         match encoder.encode(event, &mut buffer) {
             Ok(length) => return Ok(output.write_all(&buffer[..length])?),
             Err(FormatError::Full { written }) => output.write_all(&buffer[..written])?,
-            Err(error) => bail!("{error}"),
+            Err(error) => return Err(FramesKind::NoWord { error }.into()),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Videos, whatever file holds them.
 
-use super::{ffmpeg, pictures, y4m};
-use anyhow::{Context, Result, bail};
+use super::{FramesKind, ffmpeg, pictures, y4m};
+use crate::{Error, Result};
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -45,17 +45,18 @@ impl Rate {
 }
 
 impl FromStr for Rate {
-    type Err = anyhow::Error;
+    type Err = Error;
 
     /// `25`, `29.97` or `30000/1001`.
     fn from_str(text: &str) -> Result<Self> {
         let rate = if let Some((frames, seconds)) = text.split_once('/') {
-            Self::new(frames.parse()?, seconds.parse()?)
+            frames.parse().ok().zip(seconds.parse().ok())
         } else {
-            let rate: f64 = text.parse()?;
-            Self::new((rate * 1e6).clamp(0.0, 1e15) as u64, 1_000_000)
+            let micro = |rate: f64| (rate * 1e6).clamp(0.0, 1e15) as u64;
+            text.parse().ok().map(|rate| (micro(rate), 1_000_000))
         };
-        rate.with_context(|| format!("{text} frames a second: must be above 0"))
+        rate.and_then(|(frames, seconds)| Self::new(frames, seconds))
+            .ok_or_else(|| FramesKind::Rate { text: text.to_owned() }.into())
     }
 }
 
@@ -69,29 +70,32 @@ pub fn open(inputs: &[PathBuf]) -> Result<Box<dyn Video>> {
         let stdin = BufReader::new(io::stdin());
         return Ok(Box::new(y4m::Y4m::open(stdin, "standard input".into(), None)?));
     }
-    let name = input.display();
-    let cannot = || format!("{name}: cannot be opened");
+    let cannot = |error| Error::open(input.display().to_string(), error);
     if input.is_dir() {
         let mut files = Vec::new();
-        for entry in input.read_dir().with_context(cannot)? {
-            let path = entry.with_context(cannot)?.path();
+        for entry in input.read_dir().map_err(cannot)? {
+            let path = entry.map_err(cannot)?.path();
             if pictures::is_picture(&path) {
                 files.push(path);
             }
         }
         files.sort();
         if files.is_empty() {
-            bail!("{name}: no pictures in this directory (.png, .jpg, .pgm, .ppm)");
+            return Err(FramesKind::NoPictures.at(input.as_path()));
         }
         return Ok(Box::new(pictures::Pictures::open(files)?));
     }
-    let mut file = File::open(input).with_context(cannot)?;
+    let mut file = File::open(input).map_err(cannot)?;
     let mut magic = Vec::new();
-    (&mut file).take(y4m::MAGIC.len() as u64).read_to_end(&mut magic).with_context(cannot)?;
+    (&mut file).take(y4m::MAGIC.len() as u64).read_to_end(&mut magic).map_err(cannot)?;
     if magic == y4m::MAGIC {
-        let file = File::open(input).with_context(cannot)?;
+        let file = File::open(input).map_err(cannot)?;
         let length = file.metadata().ok().filter(std::fs::Metadata::is_file).map(|data| data.len());
-        return Ok(Box::new(y4m::Y4m::open(BufReader::new(file), name.to_string(), length)?));
+        return Ok(Box::new(y4m::Y4m::open(
+            BufReader::new(file),
+            input.display().to_string(),
+            length,
+        )?));
     }
     if pictures::is_picture(input) {
         return Ok(Box::new(pictures::Pictures::open(vec![input.clone()])?));

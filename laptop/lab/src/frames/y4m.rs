@@ -3,8 +3,9 @@
 //! Grey videos have full range. Those with colour have the limited one, 16 to 235, unless their header says
 //! `XCOLORRANGE=FULL`.
 
+use super::FramesKind;
 use super::video::{Rate, Video};
-use anyhow::{Result, anyhow, bail};
+use crate::{Place, Result, Spot};
 use std::cell::Cell;
 use std::io::{self, Chain, Cursor, Read};
 use std::rc::Rc;
@@ -48,7 +49,8 @@ fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
         let digits = String::from_utf8_lossy(digits);
         if !matches!(digits.parse::<u16>(), Ok(1..)) {
             let field = if *field == b'W' { "columns" } else { "rows" };
-            bail!("{name}: `{digits}` {field} of pixels, where 1 to 65535 are taken");
+            let digits = digits.into_owned();
+            return Err(FramesKind::Length { digits, field }.at(name));
         }
     }
     Ok(Cursor::new(header).chain(reader))
@@ -76,15 +78,14 @@ impl<R: Read> Y4m<R> {
         let bytes = Rc::new(Cell::new(0));
         let counting = Counting { reader, bytes: Rc::clone(&bytes) };
         let decoder = Decoder::new(header(counting, &name)?).map_err(|error| match error {
-            Error::UnknownColorspace => anyhow!(
-                "{name}: byte {}: unknown pixel format in the header; 4:2:0, 4:2:2, 4:4:4 and mono of 8 bits are read",
-                bytes.get()
-            ),
-            Error::EOF => anyhow!("{name}: cut short at byte {}, within the header", bytes.get()),
-            error => anyhow!("{name}: byte {}: no header of YUV4MPEG2: {error}", bytes.get()),
+            Error::UnknownColorspace => {
+                FramesKind::PixelFormat.at(Place::spot(&name, Spot::Byte(bytes.get())))
+            }
+            Error::EOF => FramesKind::CutHeader { byte: bytes.get() }.at(&name),
+            error => FramesKind::NoHeader { error }.at(Place::spot(&name, Spot::Byte(bytes.get()))),
         })?;
         if decoder.get_bytes_per_sample() != 1 {
-            bail!("{name}: pixels of {} bits, where 8 are taken", decoder.get_bit_depth());
+            return Err(FramesKind::DeepVideo { bits: decoder.get_bit_depth() }.at(name));
         }
         let size = (decoder.get_width() as u16, decoder.get_height() as u16);
         let end = bytes.get();
@@ -148,9 +149,13 @@ impl<R: Read> Video for Y4m<R> {
             }
             Err(Error::EOF) if bytes.get() == *end => return Ok(false),
             Err(Error::EOF) => {
-                bail!("{name}: frame {index}: cut short at byte {}", bytes.get())
+                let place = Place::spot(&*name, Spot::Frame(*index));
+                return Err(FramesKind::Cut { byte: bytes.get() }.at(place));
             }
-            Err(error) => bail!("{name}: frame {index}, byte {end}: {error}"),
+            Err(error) => {
+                let place = Place::spot(&*name, Spot::Frame(*index));
+                return Err(FramesKind::NoFrame { byte: *end, error }.at(place));
+            }
         }
         *end = bytes.get();
         *index += 1;

@@ -8,8 +8,10 @@ use super::header::{Header, Start, is_data};
 use super::text::{name, shown, text};
 use super::time::{Named, Reading, TimeUnit, implausible};
 use super::time::{microseconds, number, of_given, of_name};
-use super::{ALL, CHUNK, Chunk, InputOptions, Source, near};
-use anyhow::{Context, Result, anyhow, bail};
+use super::{ALL, CHUNK, Chunk, InputOptions, Source, TableKind, near};
+use crate::error::At;
+use crate::{Error, Place, Result, Spot};
+use catalogue::run::{Given, Words};
 use csv::{ByteRecord, Reader, ReaderBuilder};
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -38,7 +40,7 @@ pub(super) struct Table {
     skip_non_finite: bool,
     count: u64,
     origin: Vec<(&'static str, String)>,
-    notes: Vec<String>,
+    notes: Vec<Words>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +65,7 @@ impl Table {
         options: &InputOptions,
     ) -> Result<Self> {
         let mut input = BufReader::with_capacity(1 << 16, text(input, file)?);
-        let start = Start::read(&mut input).with_context(|| file.to_owned())?;
+        let start = Start::read(&mut input).at(|| file)?;
         let asked = options.delimiter.map(|own| own.0);
         let comment = start.comment(asked);
         let delimiter = asked
@@ -73,17 +75,17 @@ impl Table {
         let mut rows = Rows::new(start, input, delimiter, &comments);
         let mut ahead = ahead(&mut rows, file)?;
         let Some(first) = ahead.front() else {
-            bail!("{file}: empty; a CSV table starts with a header");
+            return Err(TableKind::Empty.at(file));
         };
         let mut notes = Vec::new();
         let names = match comment {
             Some(Header { names, .. }) if is_data(&ahead, delimiter) => {
-                notes.push("the header is the comment above the first row".to_owned());
+                notes.push("the header is the comment above the first row".into());
                 names
             }
             _ if is_data(&ahead, delimiter) => {
                 let line = line(first);
-                bail!("{file}: line {line} holds numbers; a CSV table starts with a header");
+                return Err(TableKind::NoHeader { line }.at(file));
             }
             _ => ahead.pop_front().iter().flatten().map(name).collect(),
         };
@@ -112,14 +114,12 @@ impl Table {
         };
         if let Some((column, named)) = time.filter(|(time, _)| !table.columns.contains(time)) {
             if let Some(rate) = options.rate {
-                let name = &column.name;
-                bail!("{file}: `rate` {rate} contradicts the times that column {name} records");
+                let kind = TableKind::RateAndTimes { column: column.name };
+                return Err(kind.of(Given::new("rate", rate)).at(file));
             }
             table.read_times(column, named, &names, options);
         } else if let Some(unit) = options.time_unit {
-            bail!(
-                "{file}: `time_unit` {unit}: no column is known to hold times; `time` says which"
-            );
+            return Err(TableKind::NoTimes.of(Given::new("time_unit", unit)).at(file));
         }
         table.origin = vec![("column", table.names().join(","))];
         Ok(table)
@@ -175,9 +175,11 @@ impl Table {
         let times: Option<Vec<i128>> = self.ahead.iter().map(|record| time.read(record)).collect();
         let name = &time.column.name;
         let doubt = times.and_then(|times| implausible(&times));
-        let doubt =
-            doubt.map_or(String::new(), |what| format!(": {what}; is `time_unit` another?"));
-        self.notes.push(format!("times {how} from column `{name}`{doubt}"));
+        let mut note = Words::from(format!("times {how} from column `{name}`"));
+        if let Some(what) = doubt {
+            note = note.text(format_args!(": {what}; is ")).setting("time_unit").text(" another?");
+        }
+        self.notes.push(note);
         self.time = Some(time);
     }
 
@@ -198,7 +200,7 @@ impl Table {
         let comments = if is_there { 0 } else { self.comments.take() };
         if comments > 0 {
             let what = "below the header begin with # and are left out";
-            self.notes.push(format!("{comments} lines {what}"));
+            self.notes.push(format!("{comments} lines {what}").into());
         }
         Ok(is_there)
     }
@@ -211,30 +213,31 @@ impl Table {
         if is_missing(field) {
             return Ok(f64::NAN);
         }
-        Err(anyhow!("{}: value `{}` is not a number", self.place(column), shown(field)))
+        Err(TableKind::NotANumber { value: shown(field) }.at(self.place(column)))
     }
 
     fn value(&self, column: &Column) -> Result<f64> {
         let value = self.number(column)?;
         if !value.is_finite() && !self.skip_non_finite {
             let field = self.record.get(column.index).unwrap_or_default().trim_ascii();
-            let what = match shown(field) {
-                shown if is_missing(field) => format!("value `{shown}` is missing"),
-                shown => format!("{shown} is not finite"),
+            let kind = match shown(field) {
+                value if is_missing(field) => TableKind::Missing { value },
+                value => TableKind::NotFinite { value },
             };
-            bail!("{}: {what}; `skip_non_finite` goes on over such values", self.place(column));
+            return Err(kind.at(self.place(column)));
         }
         Ok(value)
     }
 
     /// The error of a row whose time cannot be read.
-    fn no_time(&self, time: &Time) -> String {
+    fn no_time(&self, time: &Time) -> Error {
         let field = self.record.get(time.column.index).unwrap_or_default();
-        format!("{}: value `{}` is not a time", self.place(&time.column), shown(field.trim_ascii()))
+        let value = shown(field.trim_ascii());
+        TableKind::NotATime { value }.at(self.place(&time.column))
     }
 
-    fn place(&self, column: &Column) -> String {
-        format!("{}: line {}, column {}", self.file, self.line(), column.name)
+    fn place(&self, column: &Column) -> Place {
+        Place::spot(&self.file, Spot::Column(self.line(), column.name.clone()))
     }
 
     /// The line at which the row in hand begins.
@@ -267,14 +270,14 @@ impl Source for Table {
             }
             if let Some(time) = &self.time {
                 let Some(picoseconds) = time.read(&self.record) else {
-                    bail!("{}", self.no_time(time));
+                    return Err(self.no_time(time));
                 };
                 chunk.times.push(microseconds(picoseconds));
             }
             self.count += 1;
         }
         if self.count == 0 {
-            bail!("{}: no samples below the header", self.file);
+            return Err(TableKind::NoSamples.at(&self.file));
         }
         Ok(())
     }
@@ -287,7 +290,7 @@ impl Source for Table {
         &self.origin
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Words] {
         &self.notes
     }
 }
@@ -325,10 +328,7 @@ impl Rows {
     /// Takes the next row, if there is one.
     fn next(&mut self, record: &mut ByteRecord, file: &str) -> Result<bool> {
         let read = self.reader.read_byte_record(record);
-        if let Err(error) = read {
-            bail!("{}", unreadable(file, &error, self.line(record)));
-        }
-        Ok(read?)
+        read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
     /// The line at which the row that was read last begins: the reader itself counts comments before it in.
@@ -378,12 +378,12 @@ fn line(record: &ByteRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
 }
 
-fn unreadable(file: &str, error: &csv::Error, line: u64) -> anyhow::Error {
-    match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            anyhow!("{file}: line {line} has {len} columns where the header has {expected_len}")
+fn unreadable(error: csv::Error, line: u64) -> TableKind {
+    match *error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len: expected, len: columns, .. } => {
+            TableKind::Uneven { line, columns, expected }
         }
-        _ => anyhow!("{file}: {error}"),
+        _ => TableKind::Unreadable { error },
     }
 }
 
@@ -407,9 +407,13 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
         Ok(number) if (1..=names.len()).contains(&number) => {
             Ok(Column { index: number - 1, name: names[number - 1].clone() })
         }
-        Ok(_) => bail!("{file}: no column {asked}; columns are numbered from 1 to {}", names.len()),
+        Ok(_) => {
+            let number = asked.to_owned();
+            Err(TableKind::NoColumnNumber { number, columns: names.len() }.at(file))
+        }
         Err(_) => {
-            bail!("{file}: no column `{asked}`; {}", near(asked, names.iter().map(String::as_str)))
+            let near = near(asked, names.iter().map(String::as_str));
+            Err(TableKind::NoColumn { name: asked.to_owned(), near }.at(file))
         }
     }
 }
@@ -439,6 +443,6 @@ fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {
         (Some(column), None) => Ok(column),
-        _ => bail!("{file}: `column` must say which; there are {}", first_of(names)),
+        _ => Err(TableKind::WhichColumn { columns: first_of(names) }.at(file)),
     }
 }

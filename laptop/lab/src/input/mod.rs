@@ -3,6 +3,7 @@
 mod clock;
 mod csv;
 mod header;
+mod kinds;
 pub mod messages;
 mod names;
 mod rollover;
@@ -12,11 +13,13 @@ mod times;
 
 pub use clock::{Clock, Kind, Step};
 pub use csv::{ColumnSummary, Summary, summary};
+pub use kinds::{LogKind, TableKind};
 pub use names::near;
 pub use rollover::Rollover;
 pub use text::{shown, text};
 
-use anyhow::{Context, Result, bail};
+use crate::{Error, Result};
+use catalogue::run::{Given, Words};
 use flight_logs::files::File;
 use std::io;
 use std::ops::Deref;
@@ -105,14 +108,14 @@ impl Default for ChannelOptions {
 pub struct Delimiter(pub u8);
 
 impl FromStr for Delimiter {
-    type Err = String;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self> {
         match (text, text.as_bytes()) {
             ("tab" | "\\t", _) => Ok(Self(b'\t')),
             ("space", _) => Ok(Self(b' ')),
             (_, &[byte]) if byte.is_ascii() && !byte.is_ascii_alphanumeric() => Ok(Self(byte)),
-            _ => Err("must be one character, `tab` or `space`".to_owned()),
+            _ => Err(TableKind::Delimiter.into()),
         }
     }
 }
@@ -203,7 +206,7 @@ pub trait Source {
     fn origin(&self) -> &[(&'static str, String)];
 
     /// Notes for the user on how the recording is read, a line each.
-    fn notes(&self) -> &[String];
+    fn notes(&self) -> &[Words];
 }
 
 impl InputOptions {
@@ -250,7 +253,7 @@ impl InputOptions {
             return csv::Table::open(io::stdin(), "standard input", self);
         }
         let name = self.input.display().to_string();
-        let file = File::open(&self.input).with_context(|| format!("{name}: cannot be opened"))?;
+        let file = File::open(&self.input).map_err(|error| Error::open(&name, error))?;
         self.refuse(&of_logs, "a CSV table")?;
         csv::Table::open(file, &name, self)
     }
@@ -314,16 +317,22 @@ impl InputOptions {
     pub fn single(&self, command: &str) -> Result<()> {
         match self.columns().count().max(self.fields().count()) {
             _ if self.columns().any(|name| name == ALL) => {
-                bail!("{command} takes one column, not all")
+                Err(TableKind::OneColumn { command: command.to_owned() }.into())
             }
             0 | 1 => Ok(()),
-            many => bail!("{command} takes one column or field, not {many}; encode takes several"),
+            channels => {
+                let command = command.to_owned();
+                Err(TableKind::OneChannel { command, channels }.into())
+            }
         }
     }
 
-    fn refuse(&self, options: &[(&str, bool)], kind: &str) -> Result<()> {
+    fn refuse(&self, options: &[(&'static str, bool)], what: &'static str) -> Result<()> {
         match options.iter().find(|(_, is_given)| *is_given) {
-            Some((name, _)) => bail!("{}: {kind} takes no `{name}`", self.input.display()),
+            Some((name, _)) => {
+                let error = TableKind::TakesNo { what }.of(Given::named(*name));
+                Err(error.at(self.input.as_path()))
+            }
             None => Ok(()),
         }
     }
@@ -333,9 +342,9 @@ impl InputOptions {
 ///
 /// # Errors
 /// The text is no such number.
-pub fn above_zero(text: &str) -> Result<f64, String> {
+pub fn above_zero(text: &str) -> Result<f64> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err("must be a number above 0 and finite".to_owned()),
+        _ => Err(TableKind::NotAboveZero.into()),
     }
 }

@@ -1,7 +1,8 @@
 //! Clocks of 32 bits that run over: 71.6 minutes in µs, 49.7 days in ms.
 
 use super::{Chunk, Source};
-use anyhow::Result;
+use crate::Result;
+use catalogue::run::Words;
 
 /// The values that a clock of 32 bits has, in µs where it counts µs and where it counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
@@ -69,7 +70,7 @@ impl Rollover {
 pub(super) struct Unwrapped {
     source: Box<dyn Source>,
     rollover: Rollover,
-    notes: Vec<String>,
+    notes: Vec<Words>,
 }
 
 impl Unwrapped {
@@ -85,7 +86,10 @@ impl Source for Unwrapped {
         for time in &mut chunk.times {
             *time = self.rollover.take(*time);
         }
-        self.notes = self.source.notes().iter().cloned().chain(self.rollover.note()).collect();
+        self.notes = {
+            let own = self.rollover.note().map(Words::from);
+            self.source.notes().iter().cloned().chain(own).collect()
+        };
         Ok(())
     }
 
@@ -97,7 +101,7 @@ impl Source for Unwrapped {
         self.source.origin()
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Words] {
         &self.notes
     }
 }

@@ -1,6 +1,8 @@
 //! Tables as they come: compressed, or in another encoding than UTF-8.
 
-use anyhow::{Context, Result, bail};
+use super::TableKind;
+use crate::Result;
+use crate::error::At;
 use flate2::read::MultiGzDecoder;
 use flight_logs::GZIP;
 use flight_logs::zstd::{Frames, ZSTD};
@@ -29,7 +31,7 @@ const OTHERS: [(&[u8], &str); 11] = [
 /// # Errors
 /// Returns an error if the file is no text.
 pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
-    let (head, input) = peek(input).with_context(|| name.to_owned())?;
+    let (head, input) = peek(input).at(|| name)?;
     let unpacked: Box<dyn Read> = if head.starts_with(&GZIP) {
         Box::new(MultiGzDecoder::new(input))
     } else if head.starts_with(&ZSTD) {
@@ -37,7 +39,8 @@ pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     } else {
         return decode(&head, input, name);
     };
-    let (head, input) = peek(unpacked).with_context(|| format!("{name}: cannot be unpacked"))?;
+    let (head, input) =
+        peek(unpacked).map_err(|error| TableKind::NotUnpacked { error }.at(name))?;
     decode(&head, input, name)
 }
 
@@ -82,11 +85,11 @@ fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn
     for (start, what) in OTHERS {
         // Long names are cut to what was looked at.
         if head.starts_with(&start[..start.len().min(HEAD)]) {
-            bail!("{name}: {what}");
+            return Err(TableKind::NoTable { what }.at(name));
         }
     }
     if head.iter().any(|byte| matches!(byte, 0..=8 | 14..=31)) {
-        bail!("{name}: binary, no table");
+        return Err(TableKind::NoTable { what: "binary, no table" }.at(name));
     }
     Ok(Box::new(input))
 }
@@ -100,7 +103,7 @@ fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
 
 #[cfg(not(target_family = "wasm"))]
 mod encoding {
-    use anyhow::Result;
+    use crate::Result;
     use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1252};
     use encoding_rs_io::DecodeReaderBytesBuilder;
     use std::borrow::Cow;
@@ -124,7 +127,8 @@ mod encoding {
 /// A browser decodes such files itself before it lends them; the tables of all encodings would be a tenth of the page.
 #[cfg(target_family = "wasm")]
 mod encoding {
-    use anyhow::{Result, bail};
+    use crate::Result;
+    use crate::input::TableKind;
     use std::io::Read;
 
     pub(super) fn latin(bytes: &[u8]) -> String {
@@ -132,6 +136,6 @@ mod encoding {
     }
 
     pub(super) fn utf16(_: impl Read + 'static, _: bool, name: &str) -> Result<Box<dyn Read>> {
-        bail!("{name}: text in UTF-16; save it as UTF-8")
+        Err(TableKind::NoTable { what: "text in UTF-16; save it as UTF-8" }.at(name))
     }
 }

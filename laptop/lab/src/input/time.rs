@@ -1,5 +1,7 @@
 //! Columns of times: which they are, and in which unit, by their names and by their values.
 
+use super::TableKind;
+use crate::Error;
 use speedate::{DateTime, Duration};
 use std::fmt;
 use std::str::FromStr;
@@ -52,10 +54,10 @@ impl TimeUnit {
 }
 
 impl FromStr for TimeUnit {
-    type Err = String;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::of_word(text).ok_or_else(|| "must be `s`, `ms`, `us` or `ns`".to_owned())
+    fn from_str(text: &str) -> Result<Self, Error> {
+        Self::of_word(text).ok_or_else(|| TableKind::TimeUnit.into())
     }
 }
 

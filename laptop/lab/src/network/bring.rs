@@ -1,7 +1,8 @@
 //! A trained network onto a chip: what is asked for, and what came of it.
 
-use super::{Chip, Distance, OnChip, Trained, Trains};
-use anyhow::Result;
+use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
+use crate::Result;
+use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The steps over which outputs are counted.
@@ -15,10 +16,23 @@ pub struct Request<'a> {
     pub trained: &'a Trained,
     /// The spikes on which the chip's numbers are tuned, by step.
     pub tuned: &'a Trains,
-    /// Spikes of another recording, which only show what the numbers are worth.
-    pub held_out: Option<&'a Trains>,
-    /// Called with the neurons that are done and those in all.
+    /// Spikes which only show what the numbers are worth.
+    pub held_out: Option<HeldOut<'a>>,
+    /// The outputs that fired where the network was trained: on the recording, and on what is held out.
+    pub own: Option<(&'a Trains, &'a Trains)>,
+    /// When neurons compare with their thresholds; what holds better unless given.
+    pub compare: Option<Compare>,
+    /// Called with the parts of the search that are done and those in all.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
+}
+
+/// A recording on which nothing is tuned.
+#[derive(Clone, Copy)]
+pub struct HeldOut<'a> {
+    /// All of its steps, which are run.
+    pub steps: &'a Trains,
+    /// The first step that counts: those before it, on which the network was tuned, only lead to its state.
+    pub from: usize,
 }
 
 /// A network for the chip, and what quantising costs.
@@ -29,6 +43,11 @@ pub struct Brought {
     pub tuned: Figures,
     /// The figures on the recording that was held out.
     pub held_out: Option<Figures>,
+    /// The share of the steps with an output that is left if only this part of the chip's arithmetic is the chip's, on the
+    /// recording that was held out, or else on that of the tuning.
+    pub costs: Vec<(Cost, f64)>,
+    /// The share of the steps with an output in which double precision fires as the network did where it was trained.
+    pub reading: Option<f64>,
 }
 
 /// The network in double precision beside the chip's model.
@@ -92,14 +111,43 @@ pub struct LayerFigures {
 /// # Errors
 /// Returns an error if the network does not fit, or the chip's model refuses something.
 pub fn bring(request: &Request) -> Result<Brought> {
-    let Request { chip, trained, tuned, held_out, progress } = *request;
-    let original = Original::of(trained, tuned);
-    let network = chip.quantise(trained, tuned, &original.fired, progress)?;
-    let tuned = figures(&original, &*network, tuned)?;
+    let Request { chip, trained, tuned, held_out, own, compare, progress } = *request;
+    let mut original = Original::of(trained, tuned);
+    let mut other = held_out.map(|held_out| Original::of(trained, held_out.steps));
+    let from = held_out.map_or(0, |held_out| held_out.from);
+    let mut reading = None;
+    if let Some((own, own_other)) = own {
+        let shown = other.as_ref().map_or((&original, own), |other| (other, own_other));
+        let read = shown.0.fired.last();
+        reading = read.and_then(|read| agreement(read.get(from..)?, shown.1.get(from..)?));
+        original.fire(own)?;
+        if let Some(other) = &mut other {
+            other.fire(own_other)?;
+        }
+    }
+    let network = chip.quantise(trained, tuned, &original.fired, compare, progress)?;
+    let shown = (held_out.map_or(tuned, |all| all.steps), other.as_ref().unwrap_or(&original));
+    let costs = network.costs().into_iter().filter_map(|cost| {
+        let alone = cost.alone(trained, (tuned, &original.fired), shown.0);
+        Some((cost, agreement(shown.1.fired.last()?.get(from..)?, alone.get(from..)?)?))
+    });
+    let costs = if trained.readout.is_none() { costs.collect() } else { vec![] };
+    let tuned = figures(&original, &*network, tuned, 0)?;
     let held_out = held_out
-        .map(|held_out| figures(&Original::of(trained, held_out), &*network, held_out))
+        .zip(other)
+        .map(|(all, original)| figures(&original, &*network, all.steps, all.from))
         .transpose()?;
-    Ok(Brought { network, tuned, held_out })
+    Ok(Brought { network, tuned, held_out, costs, reading })
+}
+
+/// The share of the steps in which either has a spike in which both have the same.
+fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
+    let active = one.iter().zip(other).filter(|(one, other)| !one.is_empty() || !other.is_empty());
+    let (active, same) = active.fold((0, 0), |(active, same), (one, other)| {
+        let [one, other] = [one, other].map(|all| all.iter().collect::<BTreeSet<_>>());
+        (active + 1, same + usize::from(one == other))
+    });
+    (active > 0).then(|| f64::from(same as u32) / f64::from(active))
 }
 
 /// A network in double precision: its layers, and what it did.
@@ -114,7 +162,33 @@ pub(super) struct Original {
 }
 
 impl Original {
-    fn of(trained: &Trained, inputs: &Trains) -> Self {
+    /// What it did from a step on.
+    fn behind(&self, from: usize) -> Self {
+        Self {
+            layers: self.layers.clone(),
+            readout: self.readout.clone(),
+            fired: self.fired.iter().map(|all| all[from..].to_vec()).collect(),
+            potentials: self.potentials.iter().skip(from).cloned().collect(),
+        }
+    }
+
+    /// Takes what the outputs did where the network was trained.
+    fn fire(&mut self, own: &Trains) -> Result<()> {
+        if let (None, Some(last)) = (&self.readout, self.fired.last_mut()) {
+            let (steps, given) = (last.len(), own.len());
+            ensure!(steps == given, "spikes of {given} steps, where the recording has {steps}");
+            let outputs = self.layers.last().map_or(0, |(_, neurons)| *neurons);
+            let highest = own.iter().flatten().max().copied().unwrap_or(0);
+            ensure!(
+                usize::from(highest) < outputs,
+                "spikes of output {highest}, of {outputs} outputs"
+            );
+            last.clone_from(own);
+        }
+        Ok(())
+    }
+
+    pub(super) fn of(trained: &Trained, inputs: &Trains) -> Self {
         let fired = trained.run(inputs);
         Self {
             layers: trained
@@ -132,13 +206,18 @@ impl Original {
     }
 }
 
-/// Runs the quantised network beside the original.
+/// Runs the quantised network beside the original, and compares them from a step on.
 pub(super) fn figures(
     original: &Original,
     network: &dyn OnChip,
     inputs: &Trains,
+    from: usize,
 ) -> Result<Figures> {
-    let ran = network.run(inputs)?;
+    let mut ran = network.run(inputs)?;
+    let original = &original.behind(from);
+    ran.fired.iter_mut().for_each(|all| drop(all.drain(..from)));
+    ran.potentials.drain(..from.min(ran.potentials.len()));
+    ran.clocks.drain(..from);
     let clipped = network.clipped();
     let layers = original.layers.iter().zip(&clipped).zip(original.fired.iter().zip(&ran.fired));
     let layers = layers.map(|(((name, neurons), &clipped), (original, fired))| LayerFigures {
@@ -149,7 +228,7 @@ pub(super) fn figures(
         on_chip: fired.iter().map(Vec::len).sum(),
         distance: distance(*neurons, original, fired),
     });
-    let steps = inputs.len();
+    let steps = inputs.len() - from;
     let mut figures = Figures {
         layers: layers.collect(),
         steps,
@@ -246,6 +325,12 @@ impl Figures {
                 self.windows_agreeing += usize::from(original == fired);
             }
         }
+    }
+
+    /// How well the network holds, by steps and by windows: 0 to 1.
+    pub(super) fn holds(&self) -> f64 {
+        let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
+        f64::midpoint(self.agreement().unwrap_or(0.0), windows)
     }
 
     /// The share of the steps with an output in which the outputs are the same; `None` if none ever fires.

@@ -1,7 +1,8 @@
 //! The trait of a chip onto which a network can be brought.
 
+use super::costs::Cost;
 use super::{ReckOn, TinyOdin, Trained, Trains};
-use anyhow::{Result, anyhow, bail};
+use crate::network::fault::{Result, bail, fault};
 use spikewire_chips::ChipError;
 use std::fmt::{Debug, Display};
 
@@ -10,8 +11,8 @@ pub trait Chip: Sync {
     /// The name by which the chip is asked for.
     fn name(&self) -> &'static str;
 
-    /// Finds what the chip should hold so that it does what the network does. `fired` is who fires in double precision,
-    /// by layer and step. Calls `progress` with the neurons that are done and those in all.
+    /// Finds what the chip should hold so that it does what the network does. `fired` is who fires in training, by layer
+    /// and step. Calls `progress` with the parts of the search that are done and those in all.
     ///
     /// # Errors
     /// The network does not fit the chip.
@@ -20,8 +21,18 @@ pub trait Chip: Sync {
         trained: &Trained,
         inputs: &Trains,
         fired: &[Trains],
+        compare: Option<Compare>,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Box<dyn OnChip>>;
+}
+
+/// When neurons of a chip compare with their thresholds, of chips that leave the choice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compare {
+    /// After each spike, as the chip has it.
+    Spike,
+    /// Once a step, as in training: other events see to it.
+    Step,
 }
 
 /// Every chip that networks can be brought onto.
@@ -64,8 +75,8 @@ pub trait OnChip {
     /// Notes on the network's size on the chip, and on what had to change: a line each.
     fn notes(&self) -> Vec<String>;
 
-    /// The part of the chip's arithmetic that changes a network most, so that it should be trained with it.
-    fn dearest(&self) -> &'static str;
+    /// The parts of the chip's arithmetic that change a network, of which each can be measured alone.
+    fn costs(&self) -> Vec<Cost>;
 
     /// The reason that spikes get lost on their way into the chip.
     fn loss(&self) -> &'static str;
@@ -136,6 +147,6 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
 }
 
 /// The error of a driver on the model.
-pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> anyhow::Error {
-    anyhow!("the chip's model: {error}")
+pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> crate::Error {
+    fault(format!("the chip's model: {error}"))
 }

@@ -3,25 +3,32 @@
 mod bring;
 mod chip;
 mod controller;
+mod costs;
 mod distance;
+mod fault;
 mod nir;
 mod plain;
 mod reckon;
 mod tiny_odin;
 mod trained;
 
-pub use bring::{Brought, Figures, LayerFigures, PotentialFigures, Request, WINDOW, bring};
-pub use chip::{CHIPS, Chip, OnChip, Ran, Stepped, Told};
+pub use bring::{
+    Brought, Figures, HeldOut, LayerFigures, PotentialFigures, Request, WINDOW, bring,
+};
+pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Stepped, Told};
 pub use controller::{
     Asked, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers, Reset, Rule,
     bring_to_controller,
 };
+pub use costs::Cost;
 pub use distance::Distance;
+pub use fault::NetworkKind;
 pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;
 pub use trained::{Trained, Trains};
 
-use anyhow::{Context, Result, bail};
+use crate::error::At;
+use crate::{Error, Result};
 use std::fs;
 use std::path::Path;
 
@@ -42,15 +49,15 @@ impl File {
     /// # Errors
     /// Returns an error if the file cannot be read, or is neither.
     pub fn read(path: &Path) -> Result<Self> {
-        let name = || path.display().to_string();
-        let bytes = fs::read(path).with_context(|| format!("{}: cannot be opened", name()))?;
+        let unread = |error| Error::open(path.display().to_string(), error);
+        let bytes = fs::read(path).map_err(unread)?;
         if bytes.starts_with(HDF5) {
-            return Ok(Self::Nir(Box::new(nir::read(bytes).with_context(name)?)));
+            return Ok(Self::Nir(Box::new(nir::read(bytes).at(|| path)?)));
         }
         if bytes.trim_ascii_start().starts_with(b"{") {
-            return Ok(Self::Plain(plain::read(&bytes).with_context(name)?));
+            return Ok(Self::Plain(plain::read(&bytes).at(|| path)?));
         }
-        bail!("{}: neither a NIR graph, which is an HDF5 file, nor a network in JSON", name())
+        Err(NetworkKind::NoNetwork.at(path))
     }
 
     /// The network in the form of `spikewire-network`, by the rule that is asked for.
@@ -64,14 +71,15 @@ impl File {
         }
     }
 
-    /// The network in steps of `step` seconds.
+    /// The network as the chips take it, by the rule that is asked for, in steps of a recording's `seconds` unless another
+    /// time is.
     ///
     /// # Errors
-    /// A time constant is shorter than a step, or the step is needed and not known.
-    pub fn in_steps(self, step: Option<f64>) -> Result<Trained> {
+    /// The file and what is asked do not say the rule, or the chips have no such neurons.
+    pub fn on_chip(self, asked: &Asked, seconds: Option<f64>) -> Result<Trained> {
         match self {
-            Self::Plain(trained) => Ok(trained),
-            Self::Nir(chain) => chain.in_steps(step),
+            Self::Plain(trained) => trained.reset_by(asked),
+            Self::Nir(chain) => Model::of_nir(*chain, &asked.on_chip(seconds))?.on_chip(),
         }
     }
 }

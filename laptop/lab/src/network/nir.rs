@@ -2,9 +2,7 @@
 //!
 //! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
 
-use super::Trained;
-use super::trained::{Layer, Neuron, Readout};
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use crate::network::fault::{Context, Result, bail, ensure, fault};
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
@@ -346,7 +344,7 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
 
 /// An array's shape and numbers, whatever their type.
 fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
-    let dataset = node.dataset(name).map_err(|_| anyhow!("no `{name}`"))?;
+    let dataset = node.dataset(name).map_err(|_| fault(format!("no `{name}`")))?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();
     let numbers = match *dataset.dtype() {
         Datatype::FloatingPoint { size: 4, .. } => read_as(&dataset, |n: f32| n.into()),
@@ -365,100 +363,8 @@ fn read_as<T: H5Type + Copy>(
     Ok(dataset.read_array::<T>()?.iter().map(|&number| to_f64(number)).collect())
 }
 
-impl Chain {
-    /// The network in steps of so many seconds, by Euler's rule: spikes are a current that lasts for their step.
-    /// `v += step / tau * (v_leak - v + r * I)` for LIF, `v += r * I` for IF, whose spikes are a step's charge.
-    ///
-    /// # Errors
-    /// A time constant is shorter than a step, or the step is needed and not known.
-    pub(super) fn in_steps(self, step: Option<f64>) -> Result<Trained> {
-        ensure!(self.sum.is_none(), "the last weights lead to no neurons");
-        let layers = self.stages.into_iter().map(|stage| {
-            let name = stage.neurons.name();
-            stage.in_steps(step).context(name)
-        });
-        let layers = layers.collect::<Result<_>>()?;
-        let readout = self.readout.map(|stage| {
-            let name = stage.neurons.name();
-            stage.readout_in_steps(step).context(name)
-        });
-        Trained::with_readout(layers, readout.transpose()?)
-    }
-}
-
 impl Neurons {
     pub(super) fn name(&self) -> String {
         format!("node `{}`", self.name)
-    }
-
-    /// The part of a neuron's potential that a step leaves, the factor of its inputs, and its resting potential.
-    fn in_steps(&self, at: usize, step: Option<f64>) -> Result<(f64, f64, f64)> {
-        let resistance = self.resistance.at(at);
-        let Some(Leak { tau, rest }) = &self.leak else { return Ok((1.0, resistance, 0.0)) };
-        let step = step.context(
-            "its time constants are in seconds, and neither `dt` nor the recording's times say how long a step is",
-        )?;
-        let mut gain = resistance;
-        if let Some(Synapse { tau, weight }) = &self.synapse {
-            let tau = tau.at(at);
-            ensure!(
-                tau <= step * 1.001,
-                "a spike's current lasts: its time constant of {tau} s is longer than a step of {step} s, and the chip's \
-                 neurons have no current; train with `tau_syn` of a step, or LIF"
-            );
-            // Shorter than a step it is a step's all the same.
-            gain *= weight.at(at);
-        }
-        let tau = tau.at(at);
-        ensure!(
-            tau >= step * (1.0 - 1e-9),
-            "a time constant of {tau} s is shorter than a step of {step} s; `dt` gives the step that its framework \
-             counts with (snnTorch: 1e-4)"
-        );
-        let part = step / tau;
-        Ok(((1.0 - part).max(0.0), part * gain, rest.at(at)))
-    }
-}
-
-impl Stage {
-    fn in_steps(self, step: Option<f64>) -> Result<Layer> {
-        let Self { weights: Weights { rows, bias }, recurrent, neurons } = self;
-        let mut biases = bias.unwrap_or_else(|| vec![0.0; rows.len()]);
-        let (recurrent, more) = recurrent.map_or((vec![], None), |own| (own.rows, own.bias));
-        biases.iter_mut().zip(more.iter().flatten()).for_each(|(bias, more)| *bias += more);
-        let name = neurons.name();
-        let mut layer = Layer { name, bias: biases, recurrent, weights: rows, neurons: Vec::new() };
-        for at in 0..layer.weights.len() {
-            let (keep, gain, rest) = neurons.in_steps(at, step)?;
-            let returns = neurons.reset.as_ref().map_or(0.0, |reset| reset.at(at));
-            ensure!(
-                returns == rest,
-                "neuron {at} returns to {returns} when it fires and leaks to {rest}: the chip has one value for both"
-            );
-            let own = layer.recurrent.get_mut(at).into_iter().flatten();
-            layer.weights[at].iter_mut().chain(own).for_each(|weight| *weight *= gain);
-            layer.bias[at] *= gain;
-            let threshold = neurons.threshold.as_ref().map_or(f64::INFINITY, |all| all.at(at));
-            layer.neurons.push(Neuron { keep, threshold: threshold - rest });
-        }
-        Ok(layer)
-    }
-
-    fn readout_in_steps(self, step: Option<f64>) -> Result<Readout> {
-        let Self { weights: Weights { rows: mut weights, bias }, neurons, .. } = self;
-        let mut keep = Vec::new();
-        for (at, row) in weights.iter_mut().enumerate() {
-            let (own, gain, rest) = neurons.in_steps(at, step)?;
-            let bias = bias.as_ref().map_or(0.0, |bias| bias[at]);
-            ensure!(
-                rest == 0.0 && bias == 0.0,
-                "output {at} has a bias of {bias} and rests at {rest}: both must be 0, and be added where it is read"
-            );
-            for weight in row {
-                *weight *= gain;
-            }
-            keep.push(own);
-        }
-        Ok(Readout { name: neurons.name(), weights, keep })
     }
 }

@@ -1,8 +1,9 @@
 //! The plain form of a network, in JSON.
 
 use super::Trained;
+use super::controller::{Fires, Reset};
 use super::trained::{Layer, Neuron, Readout};
-use anyhow::{Context, Result, bail};
+use crate::network::fault::{Context, Result, bail};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -35,6 +36,8 @@ struct Written {
     bias: Vec<f64>,
     /// Unless given, neurons do not leak.
     keep: Option<Numbers>,
+    /// The amount by which a step moves the potential towards 0, of networks trained as tinyODIN leaks.
+    leak: Option<Numbers>,
     threshold: Numbers,
 }
 
@@ -82,9 +85,13 @@ fn layer(name: &str, written: Written) -> Result<Layer> {
     let bias = if written.bias.is_empty() { vec![0.0; count] } else { written.bias };
     let bias = Numbers::Each(bias).each(count, "bias")?;
     let keep = written.keep.unwrap_or(Numbers::One(1.0)).each(count, "keep")?;
+    let leaks = written.leak.unwrap_or(Numbers::One(0.0)).each(count, "leak")?;
     let thresholds = written.threshold.each(count, "threshold")?;
-    let neurons = keep.into_iter().zip(thresholds);
-    let neurons = neurons.map(|(keep, threshold)| Neuron { keep, threshold }).collect();
+    let neurons = keep.into_iter().zip(thresholds).zip(leaks);
+    let neurons =
+        neurons.map(|((keep, threshold), leak)| Neuron { keep, leak, threshold }).collect();
     let Written { weights, recurrent, .. } = written;
-    Ok(Layer { name: name.to_owned(), weights, recurrent, bias, neurons })
+    let name = name.to_owned();
+    let (reset, fires) = (Reset::ToValue, Fires::Above);
+    Ok(Layer { name, weights, recurrent, bias, neurons, reset, fires })
 }

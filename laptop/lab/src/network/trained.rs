@@ -1,6 +1,7 @@
 //! A trained network, and what it does in double precision.
 
-use anyhow::{Result, bail, ensure};
+use super::controller::{Asked, Fires, Reset};
+use crate::network::fault::{Result, bail, ensure};
 
 /// Layers that a network may have.
 const LAYERS: usize = 3;
@@ -79,15 +80,38 @@ pub struct Layer {
     pub bias: Vec<f64>,
     /// The other parameters of each neuron.
     pub neurons: Vec<Neuron>,
+    /// What a spike does to its neuron.
+    pub reset: Reset,
+    /// When a neuron fires.
+    pub fires: Fires,
 }
 
-/// A leaky integrate-and-fire neuron: at rest at 0, to which it returns when it fires.
+/// Where the chip's neuron fires, whole numbers of which the original's threshold is `threshold`.
+pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
+    match fires {
+        // But for what rounding adds.
+        Fires::Above => (threshold + 1e-9).floor() + 1.0,
+        Fires::At => (threshold - 1e-9).ceil().max(1.0),
+    }
+}
+
+/// A leaky integrate-and-fire neuron, at rest at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neuron {
     /// The share of the potential that is left after a step, 0 to 1; 1 for a perfect integrator.
     pub keep: f64,
-    /// The potential above which it fires.
+    /// The amount by which a step then moves the potential towards 0, as tinyODIN does, of networks trained so.
+    pub leak: f64,
+    /// The potential above which it fires, or at which.
     pub threshold: f64,
+}
+
+impl Neuron {
+    /// What a step leaves of a potential.
+    pub(super) fn left(self, potential: f64) -> f64 {
+        let kept = potential * self.keep;
+        if self.leak == 0.0 { kept } else { kept.signum() * (kept.abs() - self.leak).max(0.0) }
+    }
 }
 
 impl Layer {
@@ -97,7 +121,7 @@ impl Layer {
     }
 
     fn check(&self) -> Result<()> {
-        let Self { name, weights, recurrent, bias, neurons } = self;
+        let Self { name, weights, recurrent, bias, neurons, .. } = self;
         ensure!(!weights.is_empty() && self.inputs() > 0, "{name}: no weights");
         for (neuron, row) in weights.iter().enumerate() {
             ensure!(
@@ -120,10 +144,14 @@ impl Layer {
         if let Some(weight) = recurrent.iter().flatten().find(|weight| !weight.is_finite()) {
             bail!("{name}: a recurrent weight of {weight}");
         }
-        for (neuron, Neuron { keep, threshold }) in neurons.iter().enumerate() {
+        for (neuron, Neuron { keep, threshold, leak }) in neurons.iter().enumerate() {
             ensure!(
                 *threshold > 0.0 && threshold.is_finite(),
                 "{name}: neuron {neuron} fires at {threshold} above rest, which must be above 0 and finite"
+            );
+            ensure!(
+                leak.is_finite() && *leak >= 0.0,
+                "{name}: neuron {neuron} leaks {leak} a step, which must be 0 or above"
             );
             ensure!(
                 (0.0..=1.0).contains(keep),
@@ -140,15 +168,12 @@ impl Layer {
         let step = |fired: &Vec<u16>| {
             let mut out = Vec::new();
             for (at, potential) in potentials.iter_mut().enumerate() {
-                let Neuron { keep, threshold } = self.neurons[at];
                 let weights = &self.weights[at];
                 let driven: f64 = fired.iter().map(|&input| weights[usize::from(input)]).sum();
                 let back: f64 =
                     before.iter().map(|&own| self.recurrent[at][usize::from(own)]).sum();
-                *potential = *potential * keep + driven + back + self.bias[at];
-                see(at, *potential);
-                if *potential > threshold {
-                    *potential = 0.0;
+                let driven = driven + back + self.bias[at];
+                if self.step(at, driven, potential, |potential| see(at, potential)) {
                     out.push(at as u16);
                 }
             }
@@ -158,6 +183,44 @@ impl Layer {
             out
         };
         inputs.iter().map(step).collect()
+    }
+
+    /// Takes a step of a neuron, and tells if it fires.
+    fn step(&self, at: usize, driven: f64, potential: &mut f64, see: impl FnOnce(f64)) -> bool {
+        let Neuron { threshold, .. } = self.neurons[at];
+        let fires = |potential| match self.fires {
+            Fires::Above => potential > threshold,
+            Fires::At => potential >= threshold,
+        };
+        let (before, was_over) = (*potential, fires(*potential));
+        let next = self.neurons[at].left(before) + driven;
+        let less = next - threshold;
+        // Before the reset, and after: those that come late are part of the step that follows.
+        let (reached, reset) = match self.reset {
+            Reset::ToValue => (next, 0.0),
+            Reset::Subtract => (next, less),
+            Reset::ToValueLate => {
+                let next = if was_over { driven } else { next };
+                (next, next)
+            }
+            Reset::ToValueHeld => {
+                let next = if was_over { 0.0 } else { next };
+                (next, next)
+            }
+            Reset::SubtractLate => {
+                let next = if was_over { less } else { next };
+                (next, next)
+            }
+            Reset::SubtractNoDelay => {
+                let reached = if was_over { less } else { next };
+                see(reached);
+                *potential = if fires(reached) { less } else { next };
+                return fires(reached);
+            }
+        };
+        see(reached);
+        *potential = if fires(reached) { reset } else { reached };
+        fires(reached)
     }
 }
 
@@ -202,6 +265,46 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
+    /// The same network with the resets that are asked for, of all layers or of each.
+    ///
+    /// # Errors
+    /// There are more resets than layers, or fewer.
+    pub(super) fn reset_by(mut self, asked: &Asked) -> Result<Self> {
+        let (rule, resets, layers) = (asked.or_plain(), &asked.resets, self.layers.len());
+        ensure!(
+            resets.len() < 2 || resets.len() == layers,
+            "{} resets are asked for, and {layers} layers fire",
+            resets.len()
+        );
+        for (at, layer) in self.layers.iter_mut().enumerate() {
+            let own = if resets.len() < 2 { None } else { resets.get(at) };
+            (layer.reset, layer.fires) = (own.copied().unwrap_or(rule.reset), rule.fires);
+        }
+        Ok(self)
+    }
+
+    /// The same network with subtraction a step late in the place of subtraction at once, by weights that lead a neuron
+    /// back to itself: they give back what is subtracted behind the leak, and not before it.
+    pub(super) fn late(mut self) -> Self {
+        for layer in &mut self.layers {
+            if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {
+                continue;
+            }
+            let count = layer.neurons.len();
+            layer.reset = Reset::SubtractLate;
+            if layer.neurons.iter().all(|neuron| neuron.keep == 1.0) {
+                continue;
+            }
+            if layer.recurrent.is_empty() {
+                layer.recurrent = vec![vec![0.0; count]; count];
+            }
+            for (at, Neuron { keep, threshold, .. }) in layer.neurons.iter().enumerate() {
+                layer.recurrent[at][at] += (1.0 - keep) * threshold;
+            }
+        }
+        self
+    }
+
     /// How many inputs it has.
     pub fn inputs(&self) -> usize {
         self.layers.first().map_or(0, Layer::inputs)
@@ -234,7 +337,29 @@ mod tests {
             weights: weights.iter().map(|row| row.to_vec()).collect(),
             recurrent: vec![],
             bias: vec![0.0; weights.len()],
-            neurons: vec![Neuron { keep, threshold }; weights.len()],
+            neurons: vec![Neuron { keep, threshold, leak: 0.0 }; weights.len()],
+            reset: Reset::ToValue,
+            fires: Fires::Above,
+        }
+    }
+
+    /// As the table of `spikewire-network` has them, for a keep of 1/2 and a threshold of 4: all numbers are exact.
+    #[test]
+    fn each_reset_has_its_spikes() {
+        let drive = [3, 3, 0, 4, 1, 5, 2, 0, 0, 6, 6, -4, 2, 7, 1, 8];
+        for (reset, fires, expected) in [
+            (Reset::ToValue, Fires::Above, "0100010001100101"),
+            (Reset::ToValue, Fires::At, "0101010001100101"),
+            (Reset::ToValueLate, Fires::Above, "0100010001100101"),
+            (Reset::SubtractLate, Fires::Above, "0100010001100101"),
+            (Reset::Subtract, Fires::At, "0101010001100101"),
+        ] {
+            let layer = Layer { reset, fires, ..layer(&[&[1.0]], 0.5, 4.0) };
+            let mut potential = 0.0;
+            let spikes = drive.map(|x| layer.step(0, f64::from(x), &mut potential, |_| ()));
+            let spikes: String =
+                spikes.iter().map(|fires| if *fires { '1' } else { '0' }).collect();
+            assert_eq!(spikes, expected, "{reset:?} {fires:?}");
         }
     }
 

@@ -2,11 +2,13 @@
 
 #[cfg(not(target_family = "wasm"))]
 mod beside;
+mod kinds;
 
 #[cfg(not(target_family = "wasm"))]
 pub use beside::abandon;
+pub use kinds::OutputKind;
 
-use anyhow::{Result, bail};
+use crate::Result;
 #[cfg(not(target_family = "wasm"))]
 use std::io::BufWriter;
 use std::io::{self, Write};
@@ -42,11 +44,8 @@ pub fn is_table(path: &Path, others: &str) -> Result<()> {
     if is_device || ["csv", "txt"].iter().any(|own| ending.eq_ignore_ascii_case(own)) {
         return Ok(());
     }
-    bail!(
-        "{}: no file .{} is written here; there are .csv, .txt and names without an ending, as tables{others}",
-        path.display(),
-        ending.display()
-    )
+    let (ending, others) = (ending.display().to_string(), others.to_owned());
+    Err(OutputKind::Ending { ending, others }.at(path))
 }
 
 #[cfg(not(target_family = "wasm"))]
@@ -65,7 +64,7 @@ impl Output {
     #[cfg(not(target_family = "wasm"))]
     pub fn open(path: Option<&Path>, input: &Path) -> Result<Self> {
         if let Some(path) = path.filter(|path| beside::is_same(path, input)) {
-            bail!("{}: the input itself; it would be lost", path.display());
+            return Err(OutputKind::IsInput.at(path));
         }
         Self::to(path)
     }
@@ -108,7 +107,7 @@ impl Output {
     /// Always.
     #[cfg(target_family = "wasm")]
     pub fn to(path: Option<&Path>) -> Result<Self> {
-        bail!("{}: a browser writes no files", path.unwrap_or(Path::new("-")).display())
+        Err(OutputKind::NoFiles.at(path.unwrap_or(Path::new("-"))))
     }
 
     /// How many bytes were written.
@@ -139,11 +138,11 @@ impl Output {
                 let own = usize::try_from(place).ok().and_then(|place| all.get_mut(place..));
                 match own.and_then(|own| own.get_mut(..bytes.len())) {
                     Some(own) => own.copy_from_slice(bytes),
-                    None => bail!("nothing stands there yet"),
+                    None => return Err(OutputKind::NothingThere.into()),
                 }
             }
             #[cfg(not(target_family = "wasm"))]
-            Place::Direct(_) => bail!("its start is written last, so it goes to a file only"),
+            Place::Direct(_) => return Err(OutputKind::StartIsLast.into()),
         }
         Ok(())
     }

@@ -9,8 +9,10 @@ mod panel;
 mod thin;
 mod title;
 
+use crate::error::At;
+use crate::output::OutputKind;
 use crate::trial::{Recording, Trial};
-use anyhow::{Context, Result, anyhow, bail};
+use crate::{Error, Result};
 use bitmap::Bitmap;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
@@ -61,8 +63,7 @@ enum Drawing<'a> {
 
 fn write(path: &Path, input: &Path, size: (u32, u32), drawing: Drawing) -> Result<()> {
     let ending = path.extension().and_then(|extension| extension.to_str());
-    let bytes = drawn(ending.unwrap_or_default(), size, drawing)
-        .with_context(|| path.display().to_string())?;
+    let bytes = drawn(ending.unwrap_or_default(), size, drawing).at(|| path)?;
     let mut output = Output::open(Some(path), input)?;
     output.write_all(&bytes)?;
     output.finish()
@@ -79,7 +80,7 @@ pub fn bytes(ending: &str, picture: &Picture) -> Result<Vec<u8>> {
 fn drawn(ending: &str, size: (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
     for style in [FontStyle::Normal, FontStyle::Bold] {
         register_font(FONT, style, epaint_default_fonts::UBUNTU_LIGHT)
-            .map_err(|_| anyhow!("the font does not load"))?;
+            .map_err(|_| OutputKind::NoFont)?;
     }
     match ending {
         "svg" => {
@@ -89,15 +90,15 @@ fn drawn(ending: &str, size: (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
             Ok(text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).into_bytes())
         }
         "png" => png(size, drawing),
-        _ => bail!("a picture ends in .svg or .png"),
+        _ => Err(OutputKind::PictureEnding.into()),
     }
 }
 
 fn png((width, height): (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
-    let mut pixels = Pixmap::new(width, height).context("the picture has no size")?;
+    let mut pixels = Pixmap::new(width, height).ok_or(OutputKind::NoSize)?;
     pixels.fill(Color::WHITE);
     fill(&Bitmap::new(&mut pixels).into_drawing_area(), drawing)?;
-    Ok(pixels.encode_png()?)
+    pixels.encode_png().map_err(Error::other)
 }
 
 fn fill<B: DrawingBackend>(
@@ -109,5 +110,5 @@ fn fill<B: DrawingBackend>(
         Drawing::Fronts(panels) => layout::fill_fronts(area, panels),
     };
     let drawn = filled.and_then(|()| area.present());
-    drawn.map_err(|error| anyhow!("the picture cannot be drawn: {error}"))
+    drawn.map_err(|error| OutputKind::NotDrawn { why: error.to_string() }.into())
 }

@@ -6,10 +6,30 @@ mod probe;
 #[cfg(feature = "capture")]
 pub use probe::{Board, with_channel};
 
-use anyhow::{Context, Result};
+use crate::error::room;
+use crate::{Error, Result};
+use catalogue::kinds;
 use std::io::Write;
 use std::thread;
 use std::time::Duration;
+
+kinds! {
+    /// The reason that a board cannot be read.
+    pub enum CaptureKind by spell of subject {
+        Unread { error: Box<Error> } => ("the channel cannot be read any more: {error}"),
+        Gone => ("it is gone"),
+        NoProbe { hint: &'static str } => ("no debug probe found{hint}"),
+        SeveralProbes { names: Vec<String> } =>
+            ("{} debug probes found; {} says which: {}", names.len(), spell("probe"), names.join(", ")),
+        NoChip { why: String } => ("{subject}: {why}"),
+        NotASelector { why: String } => ("{subject}: {why}"),
+        NoProbeOpen { probe: String, why: String } => ("{probe}: {why}"),
+        NotReached { chip: String, why: String } => ("the probe does not reach the {chip}: {why}"),
+        NoRtt { why: String } => ("the board has no RTT, or it is not set up yet: {why}"),
+        NoChannel { channels: usize } => ("{subject}: the board has {channels}, numbered from 0"),
+    }
+}
+room!(CaptureKind, Capture);
 
 /// A board's buffer, which is read by polling.
 pub trait Channel {
@@ -56,7 +76,9 @@ fn copy(
         if last.is_none() && is_due() {
             last = Some(*bytes + REST);
         }
-        let count = channel.read(&mut buffer).context("the channel cannot be read any more")?;
+        let count = channel
+            .read(&mut buffer)
+            .map_err(|error| CaptureKind::Unread { error: Box::new(error) })?;
         if count > 0 {
             output.write_all(&buffer[..count])?;
             output.flush()?;
@@ -72,8 +94,8 @@ fn copy(
 
 #[cfg(test)]
 mod tests {
-    use super::{Captured, Channel, capture};
-    use anyhow::{Result, bail};
+    use super::{CaptureKind, Captured, Channel, capture};
+    use crate::{ErrorKind, Result};
     use std::collections::VecDeque;
 
     /// The bytes of each read; after the last, the board is gone.
@@ -81,7 +103,7 @@ mod tests {
 
     impl Channel for Fake {
         fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
-            let Some(found) = self.0.pop_front() else { bail!("no board") };
+            let Some(found) = self.0.pop_front() else { return Err(CaptureKind::Gone.into()) };
             buffer[..found.len()].copy_from_slice(found);
             Ok(found.len())
         }
@@ -115,8 +137,9 @@ mod tests {
     fn a_board_that_goes_away_is_an_error_after_what_it_said() {
         let (output, captured) = run(&[b"one ", b"", b"two"], 99);
         assert_eq!((output.as_slice(), captured.bytes), (b"one two".as_slice(), 7));
-        let error = format!("{:#}", captured.end.unwrap_err());
-        assert!(error.contains("cannot be read any more: no board"), "{error}");
+        let error = captured.end.unwrap_err();
+        assert!(matches!(*error.kind, ErrorKind::Capture(CaptureKind::Unread { .. })), "{error:?}");
+        assert_eq!(error.to_string(), "the channel cannot be read any more: it is gone");
     }
 
     #[test]

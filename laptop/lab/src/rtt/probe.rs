@@ -1,7 +1,8 @@
 //! A board's channel through probe-rs.
 
-use super::Channel;
-use anyhow::{Context, Result, anyhow, bail};
+use super::{CaptureKind, Channel};
+use crate::{Error, Result};
+use catalogue::run::Given;
 use probe_rs::config::Registry;
 use probe_rs::probe::{DebugProbeSelector, list::Lister};
 use probe_rs::rtt::{Rtt, ScanRegion, try_attach_to_rtt};
@@ -34,33 +35,43 @@ pub fn with_channel(
     let Board { chip, probe, channel: number, address } = board;
     let target = Registry::from_builtin_families()
         .get_target_by_name(chip)
-        .with_context(|| format!("`chip` {chip}"))?;
-    let selector = probe
-        .as_deref()
-        .map(|text| text.parse::<DebugProbeSelector>().with_context(|| format!("`probe` {text}")));
+        .map_err(|error| CaptureKind::NoChip { why: chain(&error) }.of(Given::new("chip", chip)))?;
+    let selector = probe.as_deref().map(|text| {
+        let wrong = |why| CaptureKind::NotASelector { why }.of(Given::new("probe", text));
+        text.parse::<DebugProbeSelector>().map_err(|error| wrong(chain(&error)))
+    });
     let probes = Lister::new().list(selector.transpose()?.as_ref());
     let probe = match probes.as_slice() {
-        [] => bail!("no debug probe found{}", hint()),
+        [] => return Err(CaptureKind::NoProbe { hint: hint() }.into()),
         [one] => one,
         several => {
             let names: Vec<String> =
                 several.iter().map(|probe| DebugProbeSelector::from(probe).to_string()).collect();
-            bail!("{} debug probes found; `probe` says which: {}", names.len(), names.join(", "))
+            return Err(CaptureKind::SeveralProbes { names }.into());
         }
     };
-    let probe = probe.open().with_context(|| format!("{probe}"))?;
+    let probe = probe.open().map_err(|error| {
+        let (probe, why) = (probe.to_string(), chain(&error));
+        CaptureKind::NoProbeOpen { probe, why }
+    })?;
     let mut session = probe
         .attach(target, Permissions::default())
-        .with_context(|| format!("the probe does not reach the {chip}"))?;
-    let mut core = session.core(0)?;
+        .map_err(|error| CaptureKind::NotReached { chip: chip.clone(), why: chain(&error) })?;
+    let mut core = session.core(0).map_err(Error::other)?;
     let region = address.map_or(ScanRegion::Ram, ScanRegion::Exact);
     let mut rtt = try_attach_to_rtt(&mut core, PATIENCE, &region)
-        .context("the board has no RTT, or it is not set up yet")?;
+        .map_err(|error| CaptureKind::NoRtt { why: chain(&error) })?;
     if rtt.up_channel(*number).is_none() {
-        let count = rtt.up_channels().len();
-        bail!("`channel` {number}: the board has {count}, numbered from 0");
+        let channels = rtt.up_channels().len();
+        return Err(CaptureKind::NoChannel { channels }.of(Given::new("channel", number)));
     }
     use_it(&mut Probed { core, rtt, number: *number })
+}
+
+/// An error with all that caused it, in the words of probe-rs.
+fn chain(error: &(dyn std::error::Error + 'static)) -> String {
+    let causes = std::iter::successors(Some(error), |error| error.source());
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
 /// A hint on what may keep a probe from being found.
@@ -81,7 +92,7 @@ struct Probed<'a> {
 
 impl Channel for Probed<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
-        let channel = self.rtt.up_channel(self.number).ok_or_else(|| anyhow!("it is gone"))?;
-        Ok(channel.read(&mut self.core, buffer)?)
+        let channel = self.rtt.up_channel(self.number).ok_or(CaptureKind::Gone)?;
+        channel.read(&mut self.core, buffer).map_err(Error::other)
     }
 }

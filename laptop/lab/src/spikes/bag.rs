@@ -1,8 +1,8 @@
 //! Writes ROS 1 bags, version 2.0, with an index and without compression.
 
 use super::recorder::{Container, Topic};
+use crate::Result;
 use crate::output::Output;
-use anyhow::Result;
 use std::io::Write;
 
 /// A bag in the making.

@@ -1,7 +1,8 @@
 //! The head of a file of spikes.
 
+use super::SpikesKind;
+use crate::Result;
 use crate::scheme::Scheme;
-use anyhow::{Context, Result, anyhow, bail};
 use catalogue::Parameter;
 use catalogue::run::{SampleType, Settings};
 use std::str::FromStr;
@@ -83,15 +84,15 @@ impl Header {
         let mut keys = Keys::new(lines)?;
         let version = keys.take("spikewire")?;
         if version != VERSION {
-            bail!("the header says format `{version}`; this program reads {VERSION}");
+            return Err(SpikesKind::OtherVersion { version, own: VERSION }.into());
         }
         let name = keys.take("scheme")?;
-        let scheme = Scheme::named(&name)
-            .with_context(|| format!("the header names no scheme that there is: `{name}`"))?;
+        let scheme =
+            Scheme::named(&name).ok_or_else(|| SpikesKind::NoScheme { name: name.clone() })?;
         let sample = keys.take("sample")?.parse()?;
         let count: usize = keys.optional("channels")?.unwrap_or(1);
         if !(1..=MOST_CHANNELS).contains(&count) {
-            bail!("the header says channels={count}; there are 1 to {MOST_CHANNELS}");
+            return Err(SpikesKind::Channels { count, most: MOST_CHANNELS }.into());
         }
         let (of_one, shared): (Vec<_>, Vec<_>) =
             keys.left.into_iter().partition(|(key, _)| key.contains('@'));
@@ -99,7 +100,8 @@ impl Header {
             let channel = key.split_once('@').and_then(|(_, channel)| channel.parse().ok());
             channel.is_none_or(|channel: usize| channel >= count)
         }) {
-            bail!("the header says {key}={value}, where there are {count} channels from 0 on");
+            let (key, value) = (key.clone(), value.clone());
+            return Err(SpikesKind::NoSuchChannel { key, value, channels: count }.into());
         }
         let mut channels = Vec::new();
         let mut left = shared.clone();
@@ -110,10 +112,10 @@ impl Header {
             });
             let own: Vec<(String, String)> = own.collect();
             let mut keys = Keys::new([shared.clone(), own.clone()].concat())?;
-            let taken = Settings::take(scheme.info(), sample, &mut keys.left);
-            channels.push(taken.context("the header")?);
+            channels.push(Settings::take(scheme.info(), sample, &mut keys.left)?);
             if let Some((key, value)) = keys.left.iter().find(|line| own.contains(line)) {
-                bail!("the header says {key}={value}, which {name} does not take");
+                let (key, value) = (key.clone(), value.clone());
+                return Err(SpikesKind::TakesNo { key, value, scheme: name }.into());
             }
             left = keys.left;
         }
@@ -127,17 +129,16 @@ impl Header {
             note.is_none()
         });
         if let Some((key, value)) = keys.left.first() {
-            bail!("the header says {key}={value}, which {name} does not take");
+            let (key, value) = (key.clone(), value.clone());
+            return Err(SpikesKind::TakesNo { key, value, scheme: name }.into());
         }
         Ok(Self { scheme, sample, channels, rate, notes })
     }
 }
 
 fn parse<T: FromStr>(key: &str, value: &str) -> Result<T> {
-    value
-        .trim()
-        .parse()
-        .map_err(|_| anyhow!("the header says {key}={value}, which is not a number of its kind"))
+    let wrong = |_| SpikesKind::NotOfItsKind { key: key.to_owned(), value: value.to_owned() };
+    Ok(value.trim().parse().map_err(wrong)?)
 }
 
 /// Keys that are taken one after the other, so that what is left has no meaning.
@@ -149,7 +150,8 @@ impl Keys {
     fn new(lines: Vec<(String, String)>) -> Result<Self> {
         for (place, (key, value)) in lines.iter().enumerate() {
             if let Some((_, before)) = lines[..place].iter().find(|(before, _)| before == key) {
-                bail!("the header contradicts itself: {key}={before}, then {key}={value}");
+                let (key, before, value) = (key.clone(), before.clone(), value.clone());
+                return Err(SpikesKind::Contradicts { key, before, value }.into());
             }
         }
         Ok(Self { left: lines })
@@ -158,7 +160,7 @@ impl Keys {
     fn take(&mut self, key: &str) -> Result<String> {
         match self.left.iter().position(|(name, _)| name == key) {
             Some(place) => Ok(self.left.remove(place).1),
-            None => bail!("the header lacks `# {key}=`; is it a file of spikes?"),
+            None => Err(SpikesKind::Lacks { key: key.to_owned() }.into()),
         }
     }
 

@@ -1,8 +1,8 @@
 //! Writes MCAP files of ROS 2's messages, with an index and without compression.
 
 use super::recorder::{Container, Topic};
+use crate::Result;
 use crate::output::Output;
-use anyhow::Result;
 use std::io::Write;
 
 /// A file in the making.

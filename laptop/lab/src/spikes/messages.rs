@@ -1,9 +1,10 @@
 //! Reads spikes out of logs: ours, and those that the paper's toolbox wrote.
 
 use super::recorder::{EVENT, HEADER};
-use super::{Header, Item, Spikes};
-use crate::input::messages::{advised, damage};
-use anyhow::{Context, Result, bail};
+use super::{Header, Item, Spikes, SpikesKind};
+use crate::error::At;
+use crate::input::messages::damage;
+use crate::{Error, Place, Result};
 use catalogue::run::Event;
 use catalogue::toolbox::{GAUSSIAN_FIELDS, meant};
 use flight_logs::{Kind, Reading};
@@ -32,17 +33,17 @@ impl Messages {
     /// Returns an error if the log has no spikes, or does not say enough of their scheme.
     pub fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<(Self, Header)> {
         let file = path.display().to_string();
-        let found = Found::read(Reading::open(path, kind, damage(accept_cut)).map_err(advised)?)?;
-        let lines = found.lines().with_context(|| file.clone())?;
-        let header = Header::parse(lines).with_context(|| file.clone())?;
-        let settings = header.channels.first().context("the header has no channel")?;
-        let shape = header.scheme.shape(settings).with_context(|| file.clone())?;
+        let found = Found::read(Reading::open(path, kind, damage(accept_cut))?)?;
+        let lines = found.lines().at(|| &file)?;
+        let header = Header::parse(lines).at(|| &file)?;
+        let settings = header.channels.first().ok_or(SpikesKind::NoChannel)?;
+        let shape = header.scheme.shape(settings).at(|| &file)?;
         let topic = |channel: usize| match channel {
             0 => found.topic.clone(),
             _ => format!("{}_{channel}", found.topic),
         };
         let messages = Self {
-            log: Reading::open(path, kind, damage(accept_cut)).map_err(advised)?,
+            log: Reading::open(path, kind, damage(accept_cut))?,
             channels: (0..header.channels.len()).map(|channel| (topic(channel), 0)).collect(),
             neurons: shape.neurons,
             slots: shape.slots,
@@ -59,10 +60,7 @@ impl Messages {
         let sample = self.channels[channel].1;
         self.channels[channel].1 += 1;
         if channel > 0 && self.channels[0].1 != sample + 1 {
-            bail!(
-                "{}: its sample {sample} comes before or after that of the first channel",
-                self.place()
-            );
+            return Err(SpikesKind::OutOfOrder { sample }.at(self.place()));
         }
         let is_rejected = self.has_header && self.log.number("input")?.is_none_or(f64::is_nan);
         if is_rejected && channel == 0 {
@@ -76,11 +74,11 @@ impl Messages {
         }
         for place in 0..neurons * slots {
             let Some(spikes) = spike(&self.log, place, neurons * slots)? else {
-                bail!("{}: it has not the {} neurons of its scheme", self.place(), neurons * slots);
+                return Err(SpikesKind::Neurons { neurons: neurons * slots }.at(self.place()));
             };
             let polarity = if spikes > 0 { Polarity::Up } else { Polarity::Down };
             if spikes < 0 && !self.is_signed {
-                bail!("{}: a spike of {spikes}, where there are none below 0", self.place());
+                return Err(SpikesKind::Negative { spikes }.at(self.place()));
             }
             let neuron = (channel * neurons + place % neurons) as u16;
             let event = Event { sample, neuron, slot: (place / neurons) as u16, polarity };
@@ -101,7 +99,7 @@ impl Spikes for Messages {
             if let Some(item) = self.items.pop_front() {
                 return Ok(item);
             }
-            if !self.log.advance().map_err(advised)? {
+            if !self.log.advance()? {
                 let samples = self.channels.first().map_or(0, |(_, samples)| *samples);
                 return Ok(Item::End { samples });
             }
@@ -112,8 +110,8 @@ impl Spikes for Messages {
         }
     }
 
-    fn place(&self) -> String {
-        self.log.place()
+    fn place(&self) -> Place {
+        Place::of(self.log.place())
     }
 
     fn notes(&mut self) -> Vec<String> {
@@ -155,9 +153,9 @@ struct Found {
 impl Found {
     fn read(mut log: Reading) -> Result<Self> {
         let mut found = Self::default();
-        while log.advance().map_err(advised)? {
+        while log.advance()? {
             if log.topic() == HEADER {
-                found.header = Some(log.text("data").with_context(|| log.place())?);
+                found.header = Some(text(&log, "data")?);
                 EVENT.clone_into(&mut found.topic);
                 return Ok(found);
             }
@@ -167,12 +165,10 @@ impl Found {
             if !is_spyke || (found.samples > 0 && found.topic != log.topic()) {
                 continue;
             }
-            let number = |name| {
-                log.number(name)?.with_context(|| format!("{}: it has no {name}", log.place()))
-            };
+            let number = |name| log.number(name)?.ok_or_else(|| lacks(&log, name));
             if found.samples == 0 {
                 log.topic().clone_into(&mut found.topic);
-                found.scheme = log.text("scheme").with_context(|| log.place())?;
+                found.scheme = text(&log, "scheme")?;
                 found.start = number("start")?;
                 found.range = (number("min_input")?, number("max_input")?);
                 found.first = log.time()?;
@@ -185,10 +181,7 @@ impl Found {
             found.last = log.time()?;
         }
         if found.samples == 0 {
-            bail!(
-                "{}: no messages of spikes, such as spyke_msgs/spyke on a topic `{EVENT}`",
-                log.file()
-            );
+            return Err(SpikesKind::NoMessages { topic: EVENT }.at(log.file()));
         }
         Ok(found)
     }
@@ -229,9 +222,10 @@ impl Found {
                     line("max", (max - lower).to_string()),
                 ]
             }
-            other => bail!(
-                "messages do not say all that decoding `{other}` needs, and there is no topic `{HEADER}` that does"
-            ),
+            other => {
+                let scheme = other.to_owned();
+                return Err(SpikesKind::NotEnough { scheme, topic: HEADER }.into());
+            }
         };
         let mut lines = vec![
             line("spikewire", "1".to_owned()),
@@ -246,6 +240,16 @@ impl Found {
         }
         Ok(lines)
     }
+}
+
+/// A field of text.
+fn text(log: &Reading, name: &'static str) -> Result<String> {
+    log.text(name).ok_or_else(|| lacks(log, name))
+}
+
+/// The error of a message without a field.
+fn lacks(log: &Reading, name: &'static str) -> Error {
+    SpikesKind::NoField { name }.at(log.place())
 }
 
 /// The number of neurons that addresses can tell apart.

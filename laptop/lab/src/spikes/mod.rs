@@ -7,6 +7,7 @@
 
 mod bag;
 mod header;
+mod kinds;
 mod mcap;
 mod messages;
 mod reader;
@@ -15,6 +16,7 @@ mod spyke;
 mod writer;
 
 pub use header::{Header, unrecorded};
+pub use kinds::SpikesKind;
 pub use messages::Messages;
 pub use reader::{Item, Reader};
 pub use recorder::{Format, Recorder};
@@ -22,7 +24,7 @@ pub use writer::{Summary, Writer};
 
 use crate::input::{Chunk, Step};
 use crate::output::Output;
-use anyhow::Result;
+use crate::{Place, Result};
 use catalogue::run::Event;
 
 /// A file of one kind or another that takes spikes and samples.
@@ -58,7 +60,7 @@ pub trait Spikes {
     fn next(&mut self) -> Result<Item>;
 
     /// The place of the last item, for an error.
-    fn place(&self) -> String;
+    fn place(&self) -> Place;
 
     /// Notes for the user on the file, complete after the last item.
     fn notes(&mut self) -> Vec<String> {

@@ -1,8 +1,9 @@
 //! Reads a file of spikes line by line.
 
-use super::{Header, Spikes};
+use super::{Header, Spikes, SpikesKind};
+use crate::error::At;
 use crate::input::shown;
-use anyhow::{Context, Result, anyhow, bail};
+use crate::{Error, Place, Result};
 use catalogue::run::Event;
 use spikewire::Polarity;
 use std::io::{BufRead, Read};
@@ -83,36 +84,31 @@ impl<R: BufRead> Reader<R> {
         let mut lines = Vec::new();
         loop {
             if !reader.next_line()? {
-                let what = if reader.number == 0 {
-                    "empty"
-                } else {
-                    "no events below the header, not even their names"
+                let kind = match reader.number {
+                    0 => SpikesKind::Empty,
+                    _ => SpikesKind::NoEvents,
                 };
-                bail!("{file}: {what}; a file of spikes starts with `# key=value` lines");
+                return Err(kind.at(file));
             }
             let text = reader.text();
             if let Some(note) = text.strip_prefix('#') {
-                let (key, value) = note.split_once('=').with_context(|| {
-                    format!("{}: `{text}` is not `# key=value`", reader.place())
-                })?;
+                let Some((key, value)) = note.split_once('=') else {
+                    return Err(SpikesKind::NoKey { text }.at(reader.place()));
+                };
                 lines.push((key.trim().to_owned(), value.trim().to_owned()));
                 continue;
             }
             reader.columns = match text.as_str() {
                 "index,address,polarity" => 3,
                 "index,address,polarity,time_us" => 4,
-                _ => bail!(
-                    "{}: `{text}`, where `index,address,polarity` should stand below `# key=value` lines; \
-                     is it a file of spikes?",
-                    reader.place()
-                ),
+                _ => return Err(SpikesKind::NoNames { text }.at(reader.place())),
             };
             break;
         }
-        let header = Header::parse(lines).with_context(|| file.to_owned())?;
+        let header = Header::parse(lines).at(|| file)?;
         let mut neurons = 0;
         for settings in &header.channels {
-            let shape = header.scheme.shape(settings).with_context(|| file.to_owned())?;
+            let shape = header.scheme.shape(settings).at(|| file)?;
             reader.slots = shape.slots as u64;
             neurons += shape.neurons as u64;
         }
@@ -128,7 +124,7 @@ impl<R: BufRead> Reader<R> {
         let number = number.parse();
         Ok((
             self.count(sample)?,
-            number.map_err(|_| anyhow!("{}: `{value}` is not SAMPLE,µs", self.place()))?,
+            number.map_err(|_| self.refused(SpikesKind::NotAPair { text: value.to_owned() }))?,
         ))
     }
 
@@ -137,34 +133,23 @@ impl<R: BufRead> Reader<R> {
         let (index, neuron, polarity) = (fields.next(), fields.next(), fields.next());
         let time = fields.clone().next();
         let (Some(index), Some(neuron), Some(polarity)) = (index, neuron, polarity) else {
-            bail!("{}: `{}` is not an event", self.place(), self.text());
+            return Err(self.refused(SpikesKind::NotAnEvent { text: self.text() }));
         };
         if fields.count() + 3 != self.columns {
-            bail!(
-                "{}: `{}` has not the {} columns of the header",
-                self.place(),
-                self.text(),
-                self.columns
-            );
+            let kind = SpikesKind::Columns { text: self.text(), columns: self.columns };
+            return Err(self.refused(kind));
         }
         let (Some(index), Some(neuron)) = (digits(index), digits(neuron)) else {
-            bail!(
-                "{}: `{}` is not an event: index and address are whole numbers",
-                self.place(),
-                self.text()
-            );
+            return Err(self.refused(SpikesKind::NotWhole { text: self.text() }));
         };
         let polarity = match polarity {
             b"1" => Polarity::Up,
             b"-1" if self.is_signed => Polarity::Down,
-            _ => bail!("{}: polarity `{}`", self.place(), shown(polarity)),
+            _ => return Err(self.refused(SpikesKind::Polarity { text: shown(polarity) })),
         };
         if neuron >= self.neurons {
-            bail!(
-                "{}: address {neuron} where the header says {} neurons",
-                self.place(),
-                self.neurons
-            );
+            let kind = SpikesKind::Address { address: neuron, neurons: self.neurons };
+            return Err(self.refused(kind));
         }
         let (sample, slot) = (index / self.slots, (index % self.slots) as u16);
         self.rises(sample)?;
@@ -176,7 +161,7 @@ impl<R: BufRead> Reader<R> {
                 let time: Option<i64> =
                     str::from_utf8(time).ok().and_then(|time| time.parse().ok());
                 let Some(time) = time else {
-                    bail!("{}: `{}` has no time in µs", self.place(), self.text());
+                    return Err(self.refused(SpikesKind::NoTime { text: self.text() }));
                 };
                 Some(time.saturating_sub_unsigned(within))
             }
@@ -188,22 +173,23 @@ impl<R: BufRead> Reader<R> {
 
     fn rises(&self, sample: u64) -> Result<()> {
         if sample < self.previous {
-            bail!("{}: sample {sample} comes after sample {}", self.place(), self.previous);
+            return Err(self.refused(SpikesKind::Falls { sample, previous: self.previous }));
         }
         Ok(())
     }
 
     fn count(&self, value: &str) -> Result<u64> {
-        value.parse().map_err(|_| anyhow!("{}: `{value}` is not a count", self.place()))
+        let wrong = |_| self.refused(SpikesKind::NotACount { text: value.to_owned() });
+        value.parse().map_err(wrong)
     }
 
     fn next_line(&mut self) -> Result<bool> {
         const LONGEST: u64 = 1 << 20;
         self.line.clear();
         let mut input = (&mut self.input).take(LONGEST);
-        input.read_until(b'\n', &mut self.line).with_context(|| self.file.clone())?;
+        input.read_until(b'\n', &mut self.line).at(|| &self.file)?;
         if self.line.iter().any(|byte| matches!(byte, 0..=8 | 14..=31)) {
-            bail!("{}: binary, not a file of spikes", self.file);
+            return Err(SpikesKind::Binary.at(&self.file));
         }
         let is_some = !self.line.is_empty();
         self.number += u64::from(is_some);
@@ -211,6 +197,11 @@ impl<R: BufRead> Reader<R> {
             self.line.pop();
         }
         Ok(is_some)
+    }
+
+    /// The error of the line in hand.
+    fn refused(&self, kind: SpikesKind) -> Error {
+        kind.at(Place::line(&self.file, self.number))
     }
 
     fn text(&self) -> String {
@@ -253,31 +244,28 @@ impl<R: BufRead> Spikes for Reader<R> {
                     self.previous = first.saturating_add(count);
                     return Ok(Item::Rejected { first, count });
                 }
-                _ => bail!("{}: `# {key}=` has no meaning among the events", self.place()),
+                _ => {
+                    let key = key.to_owned();
+                    return Err(self.refused(SpikesKind::NoMeaning { key }));
+                }
             }
         }
         let (Some(samples), Some(events)) = (self.samples, self.told_events) else {
-            bail!(
-                "{}: ends after line {} without `# samples=` and `# events=`; is it cut short?",
-                self.file,
-                self.number
-            );
+            return Err(SpikesKind::NoEnd { line: self.number }.at(&self.file));
         };
         if events != self.events {
-            bail!("{}: holds {} events where its end says {events}", self.file, self.events);
+            let kind = SpikesKind::OtherCount { events: self.events, said: events };
+            return Err(kind.at(&self.file));
         }
         if self.events > 0 && self.previous >= samples {
-            bail!(
-                "{}: has an event at sample {} where its end says {samples} samples",
-                self.file,
-                self.previous
-            );
+            let kind = SpikesKind::BehindEnd { sample: self.previous, samples };
+            return Err(kind.at(&self.file));
         }
         Ok(Item::End { samples })
     }
 
-    fn place(&self) -> String {
-        format!("{}: line {}", self.file, self.number)
+    fn place(&self) -> Place {
+        Place::line(&self.file, self.number)
     }
 }
 

@@ -6,10 +6,10 @@
 use super::bag::Bag;
 use super::mcap::Mcap;
 use super::spyke::{self, Kind, Spyke};
-use super::{Header, Record, Summary};
+use super::{Header, Record, SpikesKind, Summary};
+use crate::Result;
 use crate::input::{Chunk, Step};
 use crate::output::{Output, is_table};
-use anyhow::{Context, Result, bail};
 use catalogue::run::Event;
 use catalogue::toolbox::published;
 use spikewire::Polarity;
@@ -61,10 +61,6 @@ impl Format {
     }
 }
 
-/// Samples must have times, in a log.
-const UNTIMED: &str =
-    "messages have times, and these samples none; `rate` says how many there are a second";
-
 /// A log of spikes in the making.
 pub struct Recorder {
     container: Box<dyn Container>,
@@ -111,8 +107,9 @@ impl Recorder {
         is_timed: bool,
         ranges: &[(f64, f64)],
     ) -> Result<Self> {
-        let period = if is_timed { None } else { Some(1e6 / header.rate.context(UNTIMED)?) };
-        let shape = header.scheme.shape(header.channels.first().context("there is no channel")?)?;
+        let period =
+            if is_timed { None } else { Some(1e6 / header.rate.ok_or(SpikesKind::Untimed)?) };
+        let shape = header.scheme.shape(header.channels.first().ok_or(SpikesKind::NoChannel)?)?;
         let kind = if shape.neurons * shape.slots > 1 { Kind::SpykeArray } else { Kind::Spyke };
         let mut topics: Vec<Topic> = (0..header.channels.len())
             .map(|channel| Topic {
@@ -195,7 +192,7 @@ impl Record for Recorder {
             };
             let time = u64::try_from(microseconds).ok().filter(|time| *time < LATEST);
             let Some(time) = time else {
-                bail!("the time {microseconds} µs does not fit a message: 0 to 2106");
+                return Err(SpikesKind::Time { microseconds }.into());
             };
             let inputs = chunk.columns.iter().map(|column| column[row]).collect();
             self.pending.push_back(Pending {

@@ -1,9 +1,9 @@
 //! Writes a file of spikes while the samples come in.
 
 use super::{Header, Record};
+use crate::Result;
 use crate::input::{Chunk, Kind, Step};
 use crate::output::Output;
-use anyhow::Result;
 use catalogue::run::Event;
 use spikewire::Polarity;
 use std::collections::VecDeque;

@@ -1,7 +1,8 @@
 //! The cost of settings on a flight controller, from the measured counts.
 
+use super::RequestKind;
+use crate::Result;
 use crate::scheme::Scheme;
-use anyhow::{Result, bail};
 use catalogue::run::{SampleType, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -84,10 +85,11 @@ fn cores() -> Vec<&'static str> {
 /// Returns an error if no instructions were counted on such a core.
 pub fn core(name: &str) -> Result<String> {
     let known = cores();
-    match known.iter().find(|core| core.eq_ignore_ascii_case(name)) {
-        Some(core) => Ok((*core).to_owned()),
-        None => bail!("no measured core `{name}`; there are {}", known.join(", ")),
-    }
+    let Some(core) = known.iter().find(|core| core.eq_ignore_ascii_case(name)) else {
+        let (name, cores) = (name.to_owned(), known.join(", "));
+        return Err(RequestKind::NoCore { name, cores }.into());
+    };
+    Ok((*core).to_owned())
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Settings to paste into firmware, and to give to other commands.
 
+use crate::Result;
 use crate::coding::Coding;
 use crate::scheme::Scheme;
-use anyhow::Result;
 use catalogue::run::{Constant, Settings};
 
 /// A constant in Rust, below these comments, that compiles where the crate is a dependency.

@@ -35,7 +35,7 @@ pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
     let Some(first) = problem.train.first() else { return Vec::new() };
     let is_built = |options: &Asked| {
         let settings = problem.settings(options, problem.sample, first);
-        settings.and_then(|settings| problem.scheme.codec(&settings)).is_ok()
+        settings.is_ok_and(|settings| problem.scheme.codec(&settings).is_ok())
     };
     let numbers: Vec<f64> =
         point.iter().enumerate().map(|(axis, place)| space.number(axis, *place)).collect();

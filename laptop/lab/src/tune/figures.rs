@@ -1,7 +1,7 @@
 //! The figures of settings: all that a report says of how good they are.
 
 use super::{Problem, Stretch};
-use anyhow::Result;
+use crate::Result;
 use catalogue::run::{Asked, Event, SampleType};
 use realfft::RealFftPlanner;
 use serde::Serialize;

@@ -1,8 +1,9 @@
 //! The problem to solve: a goal, limits, and the score of settings by the codec that flies.
 
+use super::RequestKind;
 use super::{Costs, Extent, Stretch};
+use crate::Result;
 use crate::scheme::Scheme;
-use anyhow::{Result, anyhow, bail};
 use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
 
 /// The goal of a search.
@@ -179,7 +180,7 @@ impl<'a> Problem<'a> {
             first: &stretch.values,
             can_calibrate: true,
         };
-        self.scheme.resolve(sample, options, &known)
+        Ok(self.scheme.resolve(sample, options, &known)?)
     }
 
     /// Encodes and decodes a stretch, and hands on its events, decoded values and latency.
@@ -204,9 +205,10 @@ impl<'a> Problem<'a> {
         let (mut events, mut decoded) = (Vec::new(), Vec::with_capacity(stretch.values.len()));
         codec.encode(&stretch.values, &mut events);
         codec.finish(&mut events);
-        codec
-            .decode(stretch.values.len(), &events, &mut decoded)
-            .map_err(|event| anyhow!("sample {} does not decode", event.sample))?;
+        codec.decode(stretch.values.len(), &events, &mut decoded).map_err(|event| {
+            let (scheme, sample) = (self.scheme.name(), event.sample);
+            RequestKind::NotDecoded { scheme, sample }
+        })?;
         Ok((events, decoded, codec.latency()))
     }
 
@@ -231,7 +233,7 @@ impl<'a> Problem<'a> {
         sample: SampleType,
         stretches: &[Stretch],
     ) -> Result<(Tally, usize, Settings)> {
-        let Some(first) = stretches.first() else { bail!("there are no samples") };
+        let first = stretches.first().ok_or(RequestKind::NoSamples)?;
         let mut tally = Tally { seconds: Some(0.0), ..Tally::default() };
         let mut latency = 0;
         let mut settings = self.settings(options, sample, first)?;

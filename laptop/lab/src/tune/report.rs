@@ -1,11 +1,12 @@
 //! The report on the settings that were found.
 
+use super::RequestKind;
 use super::problem::{Goal, Tally};
 use super::search::Found;
 use super::{Costs, End, Figures, Problem, Scored, Stretch};
+use crate::Result;
 use crate::brief::{brief, json, short};
-use anyhow::{Context, Result};
-use catalogue::run::{Asked, SampleType, Settings};
+use catalogue::run::{Asked, SampleType, Settings, Words};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -104,7 +105,7 @@ impl Row {
             .then(|| figures(&best.options, SampleType::F32, &cut.train))
             .transpose()?
             .map(|plain| (tuned_on.rmse / plain.rmse - 1.0) * 100.0);
-        let first = cut.whole.first().context("there is no recording")?;
+        let first = cut.whole.first().ok_or(RequestKind::NoRecording)?;
         let settings = problem.settings(&best.options, sample, first)?;
         let mut row = Self {
             scheme: problem.scheme.name(),
@@ -318,25 +319,24 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
 }
 
 /// The reason that the best settings are not allowed, and how near they come.
-pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> String {
-    let words = best.excess.iter().map(|one| {
-        let is = if one.is.is_finite() { short(one.is) } else { "not known".to_owned() };
-        format!("`{}` {} is {is}", one.limit.name(), short(one.may_be))
-    });
-    let words: Vec<String> = words.collect();
+pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
     let settings = problem
         .train
         .first()
         .and_then(|stretch| problem.settings(&best.options, problem.sample, stretch).ok());
-    let ends = found.ends.iter().map(|end| format!("; {}", end.words()));
-    format!(
-        "{}: none of {} settings keeps to all limits; nearest, with an RMSE of {} at {:.2} % efficiency ({}): {}{}",
+    let mut words = Words::from(format!(
+        "{}: none of {} settings keeps to all limits; nearest, with an RMSE of {} at {:.2} % efficiency ({}): ",
         problem.scheme.name(),
         found.evaluated,
         short(best.tally.rmse()),
         best.tally.efficiency(),
         settings.map_or(String::new(), |settings| brief(settings.entries())),
-        words.join(", "),
-        ends.collect::<String>()
-    )
+    ));
+    for (place, one) in best.excess.iter().enumerate() {
+        let is = if one.is.is_finite() { short(one.is) } else { "not known".to_owned() };
+        words = words.text(if place > 0 { ", " } else { "" }).setting(one.limit.name());
+        words = words.text(format_args!(" {} is {is}", short(one.may_be)));
+    }
+    let ends = found.ends.iter().map(|end| format!("; {}", end.words()));
+    words.text(ends.collect::<String>())
 }

@@ -1,16 +1,17 @@
 //! A request for parameters, and what comes of it.
 
+use super::RequestKind;
 use super::problem::front;
 use super::report::{Cut, Row, missed};
 use super::search::{Budget, Found, Method, search, share};
 use super::stretch::{HoldOut, cut};
 use super::{Goal, Limits, Problem, Scored, Stretch, costs};
+use crate::Result;
 use crate::look::Look;
 use crate::scheme::Scheme;
 use crate::trial::Recording;
 use crate::watch::{Progress, Watch};
-use anyhow::{Context, Result, bail};
-use catalogue::run::{Asked, SampleType};
+use catalogue::run::{Asked, Given, SampleType, Words};
 use std::time::{Duration, Instant};
 
 /// Logs, schemes and a goal, for [`tune`].
@@ -77,18 +78,18 @@ impl TuneRequest {
     pub fn check(&self) -> Result<()> {
         let HoldOut { blocks, part } = self.hold_out;
         if !(0.0..1.0).contains(&part) {
-            bail!("`hold_out` {part} must be 0 or more and below 1");
+            return Err(RequestKind::NotAPart.of(Given::new("hold_out", part)));
         }
         if blocks < 2 && part > 0.0 {
-            bail!("`blocks` {blocks} must be 2 or more");
+            return Err(RequestKind::TooFewBlocks.of(Given::new("blocks", blocks)));
         }
         if self.evaluations == 0 {
-            bail!("`evaluations` 0 must be above 0");
+            return Err(RequestKind::NotAboveZero.of(Given::new("evaluations", 0)));
         }
         if let Some(Goal::LeastError(efficiency)) = self.goal
             && (efficiency.is_nan() || efficiency > 100.0)
         {
-            bail!("`min_efficiency` {efficiency} must be 100 or less");
+            return Err(RequestKind::AboveHundred.of(Given::new("min_efficiency", efficiency)));
         }
         let Limits { ram, instructions, latency: _, rate } = self.limits;
         let rmse = match self.goal {
@@ -104,21 +105,17 @@ impl TuneRequest {
             ("seconds", self.seconds),
         ] {
             if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
-                bail!("`{name}` {value} must be above 0 and finite");
+                return Err(RequestKind::NotPositive.of(Given::new(name, value)));
             }
         }
         costs::core(&self.core)?;
         match &self.schemes[..] {
-            [] => bail!("there is no scheme"),
-            [scheme] => self.fixed.check(scheme.info()),
+            [] => Err(RequestKind::NoSchemes.into()),
+            [scheme] => Ok(self.fixed.check(scheme.info())?),
             _ if !self.fixed.is_empty() || self.free_taps => {
-                bail!("several schemes search all parameters; with one scheme those given stay")
+                Err(RequestKind::SeveralSearchAll.into())
             }
-            _ if self.goal.is_none() => {
-                bail!(
-                    "several schemes need one goal for all: `min_efficiency`, `max_rmse` or `front`"
-                )
-            }
+            _ if self.goal.is_none() => Err(RequestKind::NoGoal.into()),
             _ => Ok(()),
         }
     }
@@ -130,7 +127,7 @@ impl TuneRequest {
             for (place, recording) in log.iter().enumerate() {
                 match Look::at(recording).objection() {
                     Some(words) if self.anyway && recording.values.len() > 1 => notes.push(words),
-                    Some(words) => bail!("{words} (`anyway` searches all the same)"),
+                    Some(why) => return Err(RequestKind::NothingToSearch { why }.into()),
                     None => {}
                 }
                 let (train, held_out) = cut(recording, self.hold_out)?;
@@ -141,13 +138,16 @@ impl TuneRequest {
                         known.held_out.extend(held_out);
                         known.whole.extend(whole);
                     }
-                    Some(known) => bail!("the logs have other channels: {}, {name}", known.name),
+                    Some(known) => {
+                        let (one, other) = (known.name.clone(), name);
+                        return Err(RequestKind::OtherChannels { one, other }.into());
+                    }
                     None => cuts.push(Cut { name, train, held_out, whole }),
                 }
             }
         }
         if cuts.is_empty() {
-            bail!("there is no recording");
+            return Err(RequestKind::NoRecording.into());
         }
         Ok((cuts, notes))
     }
@@ -162,7 +162,7 @@ pub struct Tuned {
     /// The fronts, for [`Goal::Front`].
     pub curves: Vec<Curve>,
     /// The reason that the other schemes do not reach the goal, and how near they come.
-    pub missed: Vec<String>,
+    pub missed: Vec<Words>,
     /// The reasons not to trust the recordings, if they were searched anyway.
     pub notes: Vec<String>,
 }
@@ -229,7 +229,7 @@ fn so_far(channel: &str, scheme: Scheme, best: &Scored) -> String {
 enum Outcome {
     Row(Box<Row>),
     Curve(Curve),
-    Missed(String),
+    Missed(Words),
 }
 
 /// Searches one scheme on one channel.
@@ -244,13 +244,13 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
     problem.goal = if let Some(goal) = request.goal {
         goal
     } else {
-        let paper = paper.as_ref().context("the paper has no such setting; give a goal")?;
+        let paper = paper.as_ref().ok_or(RequestKind::NoPaper)?;
         Goal::LeastError(paper.tally.efficiency())
     };
     let method = Method { seed: request.seed, free_taps: request.free_taps };
     let found = search(&problem, method, budget);
     let Some(best) = &found.best else {
-        return Ok(Outcome::Missed(format!("{} cannot be built", scheme.name())));
+        return Ok(Outcome::Missed(format!("{} cannot be built", scheme.name()).into()));
     };
     if problem.goal == Goal::Front && !found.front.is_empty() {
         return Ok(Outcome::Curve(curve(&problem, channel, &found, paper.as_ref())));

@@ -1,9 +1,10 @@
 //! Stretches of recordings, some to tune on and some held out.
 
+use super::RequestKind;
+use crate::Result;
 use crate::resolution::held;
 use crate::trial::Recording;
-use anyhow::{Result, bail};
-use catalogue::run::SampleType;
+use catalogue::run::{Given, SampleType};
 use std::ops::Range;
 
 /// Samples in a row, coded in one piece from the first of them on, and the ranges of them that are scored.
@@ -83,12 +84,8 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
         return Ok((Stretch::whole(recording), Vec::new()));
     }
     if samples < blocks * SHORTEST {
-        bail!(
-            "{}: {samples} samples are too few to tune on some and hold out others; {} would do, or `hold_out` 0 \
-             with nothing to check the settings on",
-            recording.name,
-            blocks * SHORTEST
-        );
+        let kind = RequestKind::TooShort { samples, enough: blocks * SHORTEST };
+        return Err(kind.at(&recording.name));
     }
     let before_it = |block: usize| (block as f64 * part + OFFSET).floor();
     let is_held_out = |block: usize| before_it(block + 1) > before_it(block);
@@ -120,7 +117,7 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
         }
     }
     if tuned_on.is_empty() || checked.is_empty() {
-        bail!("`hold_out` {part} of {blocks} blocks leaves none to tune on or none to check on");
+        return Err(RequestKind::LeavesNone { blocks }.of(Given::new("hold_out", part)));
     }
     Ok((tuned_on, checked))
 }

@@ -1,11 +1,12 @@
 //! An overview of a table: its columns, and how its rows came.
 
 use super::is_missing;
+use crate::Result;
 use crate::input::text::shown;
 use crate::input::time::{microseconds, number};
 use crate::input::times::Times;
 use crate::input::{ALL, Clock, InputOptions, Rollover, Source};
-use anyhow::{Result, bail};
+use catalogue::run::Words;
 
 /// A summary of a table.
 #[derive(Debug)]
@@ -19,7 +20,7 @@ pub struct Summary {
     /// The times that its clock ran over.
     pub rollover: Rollover,
     /// Notes for the user on how it is read.
-    pub notes: Vec<String>,
+    pub notes: Vec<Words>,
 }
 
 /// A summary of one column of a table.
@@ -58,7 +59,7 @@ pub fn summary(input: &InputOptions) -> Result<Summary> {
         }
         if let Some(time) = &table.time {
             let Some(picoseconds) = time.read(&table.record) else {
-                bail!("{}", table.no_time(time));
+                return Err(table.no_time(time));
             };
             times.observe(microseconds(picoseconds));
         }

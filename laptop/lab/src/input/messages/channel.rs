@@ -1,9 +1,10 @@
 //! Fields of one topic of a log, as samples.
 
-use super::{advised, damage};
+use super::damage;
 use crate::input::time::{Named, TimeUnit, of_given};
-use crate::input::{CHUNK, Chunk, InputOptions, Source, near};
-use anyhow::{Result, bail};
+use crate::input::{CHUNK, Chunk, InputOptions, LogKind, Source, near};
+use crate::{Error, Place, Result, Spot};
+use catalogue::run::Words;
 use flight_logs::definition::{Definition, NoNumber, Path, Stamp};
 use flight_logs::{Entry, Fault, Kind, Log, Topic, microseconds, open};
 
@@ -21,7 +22,7 @@ pub struct Channel {
     samples: u64,
     values: Vec<f64>,
     origin: Vec<(&'static str, String)>,
-    notes: Vec<String>,
+    notes: Vec<Words>,
 }
 
 /// The places of the fields in a message, and of the time if the message has it.
@@ -46,10 +47,10 @@ impl Channel {
         let first = |topic: &str| topic.strip_suffix(":0").unwrap_or(topic).to_owned();
         let topic = options.topic.as_deref().or(kind.usual_topic()).map(first);
         let Some(topic) = topic.filter(|_| !fields.is_empty()) else {
-            bail!("{file}: a log needs `topic` and `field`; `spikewire info` lists them");
+            return Err(LogKind::NeedsChannel.at(file));
         };
         Ok(Self {
-            log: open(&options.input, kind, damage(options.accept_cut)).map_err(advised)?,
+            log: open(&options.input, kind, damage(options.accept_cut))?,
             file,
             origin: vec![("topic", topic.clone()), ("field", fields.join(","))],
             topic,
@@ -77,21 +78,23 @@ impl Channel {
 
     fn plan_of(&self, topic: &Topic) -> Result<Plan> {
         let (file, name) = (&self.file, &topic.name);
-        let definition = match &topic.definition {
-            Ok(definition) => definition,
-            Err(error) => bail!("{file}: topic {name} of {}: {error}", topic.kind),
+        let undefined = |why: &String| {
+            let (topic, kind) = (name.clone(), topic.kind.clone());
+            LogKind::Undefined { topic, kind, why: why.clone() }.at(file)
         };
+        let definition = topic.definition.as_ref().map_err(undefined)?;
         let find = |field: &String| {
-            definition.number(field).or_else(|why| match why {
-                NoNumber::Text => bail!("{file}: topic {name}: field `{field}` is text, not a signal"),
-                NoNumber::Several => bail!(
-                    "{file}: topic {name}: field `{field}` is not one number but several; there are {}",
-                    within(definition, field)
-                ),
+            let (topic, own) = (name.clone(), field.clone());
+            definition.number(field).map_err(|why| match why {
+                NoNumber::Text => LogKind::TextField { topic, field: own }.at(file),
+                NoNumber::Several => {
+                    let numbers = within(definition, field);
+                    LogKind::SeveralNumbers { topic, field: own, numbers }.at(file)
+                }
                 NoNumber::Missing => {
                     let (numbers, _) = definition.names();
                     let near = near(field, numbers.iter().map(String::as_str));
-                    bail!("{file}: topic {name} has no field `{field}`; {near}")
+                    LogKind::NoField { topic, field: own, near }.at(file)
                 }
             })
         };
@@ -126,7 +129,7 @@ impl Channel {
             Ok(time) => time,
             Err(fault) => {
                 let what = format!("topic {}: {fault}", self.topic);
-                return self.log.faults().skip(entry.at, what).map_err(advised);
+                return Ok(self.log.faults().skip(entry.at, what)?);
             }
         };
         if topic.is_longer(self.log.message()) {
@@ -134,16 +137,10 @@ impl Channel {
         }
         let odd = self.values.iter().position(|value| !value.is_finite());
         if let Some(odd) = odd.filter(|_| !self.skip_non_finite) {
-            bail!(
-                "{}: byte {}: topic {}, field {}: {} at {time} µs (sample {}) is missing or not finite; \
-                 `skip_non_finite` goes on over such values",
-                self.file,
-                entry.at,
-                self.topic,
-                self.fields[odd],
-                self.values[odd],
-                self.samples
-            );
+            let (topic, field) = (self.topic.clone(), self.fields[odd].clone());
+            let (value, sample) = (self.values[odd], self.samples);
+            let kind = LogKind::NotFinite { topic, field, value, time, sample };
+            return Err(kind.at(Place::spot(&self.file, Spot::Byte(entry.at))));
         }
         for (column, value) in chunk.columns.iter_mut().zip(&self.values) {
             column.push(*value);
@@ -154,13 +151,14 @@ impl Channel {
     }
 
     /// The error of a topic without messages, or of an unknown topic.
-    fn nothing(&self) -> anyhow::Error {
-        let (file, topic) = (&self.file, &self.topic);
+    fn nothing(&self) -> Error {
+        let topic = self.topic.clone();
         if self.plans.iter().any(Option::is_some) {
-            return anyhow::anyhow!("{file}: topic {topic} has no messages");
+            return LogKind::NoMessages { topic }.at(&self.file);
         }
         let names = self.log.topics().iter().map(|topic| topic.name.as_str());
-        anyhow::anyhow!("{file}: no topic `{topic}`; {}", near(topic, names))
+        let near = near(&topic, names);
+        LogKind::NoTopic { topic, near }.at(&self.file)
     }
 }
 
@@ -197,14 +195,14 @@ impl Source for Channel {
     fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
         chunk.clear(self.fields.len());
         while chunk.len() < CHUNK {
-            let Some(entry) = self.log.next().map_err(advised)? else { break };
+            let Some(entry) = self.log.next()? else { break };
             self.plan()?;
             self.take(entry, chunk)?;
         }
         if self.samples == 0 {
             return Err(self.nothing());
         }
-        self.notes = self.log.faults().notes();
+        self.notes = self.log.faults().notes().into_iter().map(Words::from).collect();
         Ok(())
     }
 
@@ -216,7 +214,7 @@ impl Source for Channel {
         &self.origin
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Words] {
         &self.notes
     }
 }

@@ -1,9 +1,9 @@
 //! An overview of a log: its topics, and how their messages came.
 
-use super::{advised, damage};
+use super::damage;
+use crate::Result;
 use crate::input::times::Times;
 use crate::input::{Clock, Rollover};
-use anyhow::Result;
 use flight_logs::definition::Path as FieldPath;
 use flight_logs::{Kind, Topic, microseconds, open};
 use std::path::Path;
@@ -41,9 +41,9 @@ pub fn overview(
     accept_cut: bool,
     gap: f64,
 ) -> Result<(Vec<Overview>, Vec<String>)> {
-    let mut log = open(path, kind, damage(accept_cut)).map_err(advised)?;
+    let mut log = open(path, kind, damage(accept_cut))?;
     let mut watched: Vec<Watched> = Vec::new();
-    while let Some(entry) = log.next().map_err(advised)? {
+    while let Some(entry) = log.next()? {
         for topic in log.topics().iter().skip(watched.len()) {
             watched.push(Watched::new(topic, gap));
         }

@@ -5,7 +5,8 @@ use super::super::trained;
 use super::net::{Layer, Net, Neuron, Own, Spike};
 use super::rule::{Current, Decay, Framework, Needs, Reset, Rule};
 use super::{Asked, Model};
-use anyhow::{Context, Result, bail, ensure};
+use crate::network::NetworkKind;
+use crate::network::fault::{Context, Result, bail, ensure};
 
 /// The largest number of the crate's in `f32`.
 const LARGEST: f64 = 1e15;
@@ -25,11 +26,15 @@ impl Model {
             "layers in JSON have one reset, and {} are asked for",
             asked.resets.len()
         );
+        ensure!(
+            layers.iter().flat_map(|layer| &layer.neurons).all(|neuron| neuron.leak == 0.0),
+            "a leak by an amount is tinyODIN's: the controller's neurons keep a share"
+        );
         let rule = asked.or_plain();
         let of_layer = |layer: trained::Layer| {
-            let trained::Layer { name, weights, recurrent, bias, neurons } = layer;
+            let trained::Layer { name, weights, recurrent, bias, neurons, .. } = layer;
             let neurons = neurons.iter().zip(bias);
-            let neurons = neurons.map(|(&trained::Neuron { keep, threshold }, bias)| {
+            let neurons = neurons.map(|(&trained::Neuron { keep, threshold, .. }, bias)| {
                 let reset = if rule.reset.subtracts() { threshold } else { 0.0 };
                 let spike = Some(Spike { threshold, reset });
                 Neuron { current: None, decay: keep, bias, inner: 0.0, spike }
@@ -281,18 +286,14 @@ fn left(tau: f64, rule: &Rule) -> Result<f64> {
         return Ok((-dt / tau).exp());
     }
     if tau < dt * (1.0 - 1e-9) && framework != Some(Framework::SnnTorch) {
-        let hint = match framework {
-            Some(Framework::Norse) => {
-                // Without the digits that a product of two decimals has at its end.
-                let meant = (dt * dt * 1e12).round() / 1e12;
-                format!(
-                    "; Norse writes time constants times the dt that it was called with (0.001 unless told): if that was \
-                     {dt} s, they are right with --dt {meant}"
-                )
-            }
-            _ => "; --dt gives the step that the network was trained with".to_owned(),
+        let kind = if framework == Some(Framework::Norse) {
+            // Without the digits that a product of two decimals has at its end.
+            let meant = (dt * dt * 1e12).round() / 1e12;
+            NetworkKind::NorsesTime { tau, step: dt, meant }
+        } else {
+            NetworkKind::ShorterThanStep { tau, step: dt }
         };
-        bail!("a time constant of {tau:e} s is shorter than a step of {dt} s{hint}");
+        return Err(kind.into());
     }
     Ok((1.0 - dt / tau).clamp(0.0, 1.0))
 }

@@ -4,15 +4,17 @@ mod emit;
 mod form;
 mod net;
 mod number;
+mod on_chip;
 mod quantise;
 mod rule;
 
 pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 
 use super::Trains;
-use super::bring::{Brought, Original, figures};
+use super::bring::{Brought, HeldOut, Original, figures};
 use super::chip::{OnChip, Ran, Stepped, Told};
-use anyhow::{Result, bail};
+use super::costs::Cost;
+use crate::network::fault::{Result, bail};
 use net::{Done, Net, Own, State};
 use number::Number;
 use quantise::Integers;
@@ -42,7 +44,7 @@ pub struct ControllerRequest<'a> {
     /// The spikes on which integers are tuned, by step.
     pub tuned: &'a Trains,
     /// Spikes of another recording.
-    pub held_out: Option<&'a Trains>,
+    pub held_out: Option<HeldOut<'a>>,
     /// Called with the neurons that are done and those in all.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
@@ -178,10 +180,10 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     };
     let network: Box<dyn OnChip> = Box::new(OnController { held, notes, check });
     let held_out = held_out
-        .map(|held_out| figures(&model.original(held_out), &*network, held_out))
+        .map(|all| figures(&model.original(all.steps), &*network, all.steps, all.from))
         .transpose()?;
-    let tuned = figures(&original, &*network, tuned)?;
-    Ok(Brought { network, tuned, held_out })
+    let tuned = figures(&original, &*network, tuned, 0)?;
+    Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
 /// The steps of the recording in which most neurons fire from rest on, those of the last layer before all.
@@ -299,8 +301,8 @@ impl OnChip for OnController {
         self.notes.iter().cloned().chain([size]).collect()
     }
 
-    fn dearest(&self) -> &'static str {
-        "the controller's numbers"
+    fn costs(&self) -> Vec<Cost> {
+        vec![]
     }
 
     fn loss(&self) -> &'static str {

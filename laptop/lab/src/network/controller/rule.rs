@@ -1,6 +1,6 @@
 //! The rule by which neurons step, which a NIR file does not say.
 
-use anyhow::{Result, bail};
+use crate::network::fault::{Result, bail};
 use std::fmt::{self, Display, Write as _};
 
 /// The framework whose rule a network follows.
@@ -204,13 +204,25 @@ impl Asked {
     }
 
     /// The rule of a network in JSON, which says it unless something else is asked for.
-    pub(super) fn or_plain(&self) -> Rule {
+    pub(in super::super) fn or_plain(&self) -> Rule {
         let own = self.framework.map(Framework::says).unwrap_or_default();
         Rule {
             framework: self.framework,
             reset: self.reset(&own).unwrap_or(PLAIN.reset),
             fires: self.fires.or(own.fires).unwrap_or(PLAIN.fires),
             ..PLAIN
+        }
+    }
+
+    /// The same, with what every chip has where nothing is said, and with a recording's time of a step.
+    pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
+        let own = self.framework.map(Framework::says).unwrap_or_default();
+        Self {
+            fires: self.fires.or(own.fires).or(Some(Fires::Above)),
+            decay: self.decay.or(own.decay).or(Some(Decay::Euler)),
+            current: self.current.or(own.current).or(Some(Current::New)),
+            dt: self.dt.or(own.dt).or(seconds),
+            ..self.clone()
         }
     }
 
@@ -254,7 +266,7 @@ impl Reset {
     }
 
     /// Whether a spike subtracts the threshold, rather than set the potential.
-    pub(super) const fn subtracts(self) -> bool {
+    pub const fn subtracts(self) -> bool {
         !matches!(self, Self::ToValue | Self::ToValueLate | Self::ToValueHeld)
     }
 }

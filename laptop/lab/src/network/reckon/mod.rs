@@ -5,9 +5,10 @@ mod place;
 mod quantise;
 mod run;
 
-use super::chip::{Chip, OnChip, Ran, Told, written};
+use super::chip::{Chip, Compare, OnChip, Ran, Told, written};
+use super::costs::Cost;
 use super::{Trained, Trains};
-use anyhow::Result;
+use crate::Result;
 use quantise::{Quantised, quantise};
 use spikewire_chips::{DescribeReckOn, ReckOnBytes};
 
@@ -24,9 +25,12 @@ impl Chip for ReckOn {
         trained: &Trained,
         inputs: &Trains,
         fired: &[Trains],
+        _compare: Option<Compare>,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Box<dyn OnChip>> {
-        Ok(Box::new(quantise(trained, inputs, fired, progress)?))
+        // The chip subtracts a threshold behind its leak.
+        let trained = trained.clone().late();
+        Ok(Box::new(quantise(&trained, inputs, fired, progress)?))
     }
 }
 
@@ -84,8 +88,8 @@ impl OnChip for Quantised {
         notes
     }
 
-    fn dearest(&self) -> &'static str {
-        "weights of 8 bits, leaks that round down"
+    fn costs(&self) -> Vec<Cost> {
+        vec![Cost::Weights { largest: 127.0 }]
     }
 
     fn loss(&self) -> &'static str {

@@ -1,7 +1,7 @@
 //! The places of the layers' neurons on the chip.
 
 use super::super::Trained;
-use anyhow::{Result, ensure};
+use crate::network::fault::{Result, ensure};
 
 const NEURONS: usize = 256;
 const INPUTS: usize = 256;

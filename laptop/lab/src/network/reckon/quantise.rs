@@ -1,9 +1,10 @@
 //! Quantises a network from double precision to the numbers of `ReckOn`.
 
-use super::super::trained::{Layer, Neuron, Readout};
+use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
-use anyhow::{Result, ensure};
+use crate::network::Fires;
+use crate::network::fault::{Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -149,6 +150,17 @@ pub(super) fn quantise(
 ) -> Result<Quantised> {
     let has_bias = trained.layers.iter().any(|layer| layer.bias.iter().any(|bias| *bias != 0.0));
     let places = Places::new(trained, has_bias)?;
+    let resets_to_zero = !trained.layers.iter().any(|layer| layer.reset.subtracts());
+    ensure!(
+        resets_to_zero || trained.layers.iter().all(|layer| layer.reset.subtracts()),
+        "some layers subtract their threshold and others reset to a value: ReckOn does the same in all"
+    );
+    let mut neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
+    ensure!(
+        neurons.all(|neuron| neuron.leak == 0.0),
+        "a leak by an amount is tinyODIN's: ReckOn's neurons keep a share"
+    );
+    let at = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
     let peaks = peaks(trained, inputs, fired);
     let pairs: Vec<Vec<Source>> = places
         .pairs()
@@ -173,7 +185,15 @@ pub(super) fn quantise(
         let candidates = SCALES.map(|part| part * scale(pair, shifts));
         let distance = |scale: f64| -> f64 {
             let of = |source: &Source| {
-                Held::new(source, keep, scale, shifts, &places).distance(
+                Held::new(
+                    source,
+                    keep,
+                    scale,
+                    shifts,
+                    Firing { resets_to_zero, fires: at },
+                    &places,
+                )
+                .distance(
                     &drives[source.layer],
                     &fired[source.layer],
                     source.neuron,
@@ -183,7 +203,7 @@ pub(super) fn quantise(
         };
         let tried = candidates
             .into_iter()
-            .filter(|scale| threshold(*scale) <= f64::from(i16::MAX))
+            .filter(|scale| fires_at(*scale, at) <= f64::from(i16::MAX))
             .map(|scale| (scale, distance(scale)));
         let best = tried.min_by(|(_, one), (_, other)| one.total_cmp(other));
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
@@ -197,7 +217,7 @@ pub(super) fn quantise(
         inputs: vec![vec![0; count]; trained.inputs() + usize::from(has_bias)],
         recurrent: vec![vec![0; count]; count],
         outputs: Vec::new(),
-        shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero: true },
+        shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero },
         bias: has_bias.then(|| trained.inputs()),
         layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
         unit: None,
@@ -210,7 +230,7 @@ pub(super) fn quantise(
         places,
     };
     for (pair, &(keep, scale)) in pairs.iter().zip(&chosen) {
-        network.pairs.push(ReckOnPair { keep, threshold: threshold(scale) as i16 });
+        network.pairs.push(ReckOnPair { keep, threshold: fires_at(scale, at) as i16 });
         for source in pair {
             network.put(source, scale, shifts);
             network.tell_keep(source.keep, f64::from(keep) / KEEP, 1e-4);
@@ -221,11 +241,6 @@ pub(super) fn quantise(
         None => network.follow(trained.layers.len() - 1),
     }
     Ok(network)
-}
-
-/// Fires at, where the original fires above.
-fn threshold(scale: f64) -> f64 {
-    (scale + 1e-9).floor() + 1.0
 }
 
 fn mean_keep(pair: &[Source]) -> u16 {
@@ -242,7 +257,7 @@ fn source(
     peak: f64,
 ) -> Source {
     let layer = &trained.layers[at];
-    let Neuron { keep, threshold } = layer.neurons[neuron];
+    let Neuron { keep, threshold, .. } = layer.neurons[neuron];
     let part = |weight: &f64| weight / threshold;
     let row = layer.weights[neuron].iter().map(part);
     let mut inputs = vec![0.0; trained.inputs()];
@@ -306,6 +321,13 @@ fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive
     trained.layers.iter().enumerate().map(of_layer).collect()
 }
 
+/// How all neurons fire.
+#[derive(Clone, Copy)]
+struct Firing {
+    resets_to_zero: bool,
+    fires: Fires,
+}
+
 /// A neuron as the chip holds it.
 struct Held<'a> {
     keep: i32,
@@ -313,11 +335,19 @@ struct Held<'a> {
     inputs: Vec<i32>,
     recurrent: Vec<i32>,
     bias: i32,
+    resets_to_zero: bool,
     places: &'a Places,
 }
 
 impl<'a> Held<'a> {
-    fn new(source: &Source, keep: u16, scale: f64, shifts: [u8; 2], places: &'a Places) -> Self {
+    fn new(
+        source: &Source,
+        keep: u16,
+        scale: f64,
+        shifts: [u8; 2],
+        rule: Firing,
+        places: &'a Places,
+    ) -> Self {
         let mut change = Change::default();
         let mut held = |weight: f64, shift: u8| {
             i32::from(change.weight(weight, scale / f64::from(1 << shift))) << shift
@@ -331,10 +361,11 @@ impl<'a> Held<'a> {
         let bias = inputs.last().copied().filter(|_| source.has_bias).unwrap_or(0);
         Self {
             keep: keep.into(),
-            threshold: threshold(scale) as i32,
+            threshold: fires_at(scale, rule.fires) as i32,
             inputs,
             recurrent,
             bias,
+            resets_to_zero: rule.resets_to_zero,
             places,
         }
     }
@@ -342,16 +373,18 @@ impl<'a> Held<'a> {
     /// How far its spikes are from the original's.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
+        let mut is_over = false;
         for (drive, meant) in drives.iter().zip(fired) {
             let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
             let own = drive.neurons.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]);
             let added: i32 = first.chain(own).sum();
-            let kept = (potential * self.keep) >> 15;
+            let kept = match (is_over, self.resets_to_zero) {
+                (false, _) => (potential * self.keep) >> 15,
+                (true, true) => 0,
+                (true, false) => ((potential * self.keep) >> 15) - self.threshold,
+            };
             potential = (kept + added + self.bias).clamp(i16::MIN.into(), i16::MAX.into());
-            let is_over = potential >= self.threshold;
-            if is_over {
-                potential = 0;
-            }
+            is_over = potential >= self.threshold;
             let meant = meant.iter().filter(|fired| usize::from(**fired) == neuron).count();
             distance.step(is_over.into(), meant);
         }

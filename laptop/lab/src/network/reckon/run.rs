@@ -4,7 +4,7 @@ use super::super::Trains;
 use super::super::chip::{Ran, refused};
 use super::Quantised;
 use super::quantise::FIRED;
-use anyhow::{Result, bail};
+use crate::network::fault::{Result, bail};
 use silicon::reckon::{Board, Port, Spi};
 use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
 

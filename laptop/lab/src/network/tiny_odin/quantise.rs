@@ -1,8 +1,8 @@
 //! Quantises a network from double precision to the numbers of tinyODIN.
 
-use super::super::trained::{Layer, Neuron};
+use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
-use anyhow::{Result, ensure};
+use crate::network::fault::{Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
 use std::collections::{BTreeSet, VecDeque};
@@ -86,8 +86,11 @@ pub(super) fn quantise(
 ) -> Result<Quantised> {
     let has_bias = trained.layers.iter().any(|layer| layer.bias.iter().any(|bias| *bias != 0.0));
     check_room(trained, has_bias)?;
-    let leaks =
-        trained.layers.iter().flat_map(|layer| &layer.neurons).any(|neuron| neuron.keep < 1.0);
+    let leaks = trained
+        .layers
+        .iter()
+        .flat_map(|layer| &layer.neurons)
+        .any(|neuron| neuron.keep < 1.0 || neuron.leak > 0.0);
     let tried = if leaks { &STEPS[..] } else { &STEPS[..1] };
     let count = |layer: &Layer| layer.neurons.len();
     // Of a layer's neurons so many, evenly spaced, tell how often the leak should come.
@@ -306,13 +309,13 @@ fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
     let largest = weights.fold(0.0_f64, |most, weight| most.max(weight.abs()));
-    let Neuron { keep, threshold } = layer.neurons[at];
+    let Neuron { keep, threshold, leak } = layer.neurons[at];
     let mut choices = Vec::new();
     for most in LARGEST {
         let unit = if largest > 0.0 { largest / most } else { 1.0 };
-        // It fires at its threshold, where the original fires above; but for what rounding adds.
-        let threshold = ((threshold / unit + 1e-9).floor() + 1.0).min(MAX_THRESHOLD);
-        let lost = (1.0 - keep.powi(steps_a_leak as i32)) * threshold / 2.0;
+        let threshold = fires_at(threshold / unit, layer.fires).min(MAX_THRESHOLD);
+        let lost = (1.0 - keep.powi(steps_a_leak as i32)) * threshold / 2.0
+            + leak / unit * steps_a_leak as f64;
         let leaks = LEAKS.iter().map(|part| (part * lost).round().min(MAX_LEAK) as u8);
         let leaks: BTreeSet<u8> = leaks.collect();
         let of_leak = |leak| Choice { unit, threshold: threshold as u16, leak };
@@ -483,6 +486,7 @@ impl Describe<TinyOdinInput> for Quantised {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::{Fires, Reset};
 
     /// Steps of a spike at most: of several the chip's neuron may fire at the first, and keep what the others add.
     fn some(inputs: u16, steps: u32) -> Trains {
@@ -501,7 +505,9 @@ mod tests {
             weights,
             recurrent: vec![],
             bias: vec![0.0; count],
-            neurons: vec![Neuron { keep, threshold }; count],
+            neurons: vec![Neuron { keep, threshold, leak: 0.0 }; count],
+            reset: Reset::ToValue,
+            fires: Fires::Above,
         }
     }
 

@@ -3,12 +3,12 @@
 use super::super::Trains;
 use super::super::chip::{Ran, Stepped, refused};
 use super::Quantised;
-use anyhow::Result;
+use crate::Result;
 use silicon::Board;
 use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
 /// The chip's clocks to one of its SPI.
-const RATIO: u32 = 4;
+pub(super) const RATIO: u32 = 4;
 
 /// Loads the network, verifies it and runs it on the steps that come. Each step's leak comes first, unless no
 /// neuron leaks, then its bias, then

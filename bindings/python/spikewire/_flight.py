@@ -1,0 +1,74 @@
+"""A flight's file: both ends of a link from one description."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+
+from . import _native
+from ._filters import Filter
+from ._link import Receiver, Sender
+
+
+class Flight:
+    """A flight's file, ``flight.toml``, as ``spikewire advise -o`` writes it: what the vehicle codes and its far end decodes.
+
+    Both ends are made from it, as a firmware's are, so that they cannot disagree on a threshold. Samples and values are in
+    counts: :attr:`counts` times the unit. A bad file is a :class:`ValueError` with its line.
+
+    >>> import pathlib, tempfile, numpy as np, spikewire as sw
+    >>> text = 'version = 1\\nscheme = "sf"\\nperiod = 2000\\nparameters = { threshold = 0.1 }\\n'
+    >>> names = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"]
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "flight.toml"
+    >>> _ = path.write_text(text + "".join(f'[[channel]]\\nname = "{name}"\\n' for name in names))
+    >>> flight = sw.Flight(path)
+    >>> flight
+    Flight of sf: gyro_x, gyro_y, gyro_z, accel_x, accel_y, accel_z, one sample in 2000 µs
+    >>> sender, receiver = flight.sender(), flight.receiver()
+    >>> for frame in sender.encode([0, 0, 0, 0, 0, 9.8]):
+    ...     receiver.hear(frame)
+    >>> receiver.values.tolist() == [0, 0, 0, 0, 0, float(np.float32(9.8))], bool(receiver.exact.all())
+    (True, True)
+    """
+
+    def __init__(self, path: str | os.PathLike[str]):
+        from ._schemes import schemes
+
+        scheme, sample, period, keyframe_every, filtered, channels = _native.flight(os.fspath(path))
+        #: The short name of the scheme of every channel.
+        self.scheme: str = scheme
+        #: Names of the channels, in the order of a sample.
+        self.names: list[str] = [own[0] for own in channels]
+        #: The column, or topic and field, of a recording that holds each channel.
+        self.sources: list[str] = [own[1] for own in channels]
+        #: The unit of each channel; empty if it is not known.
+        self.units: list[str] = [own[2] for own in channels]
+        #: Counts for one unit of each channel.
+        self.counts = np.array([own[3] for own in channels])
+        #: The scheme of each channel.
+        self.schemes = [schemes[scheme]._of(dict(own[4]), sample) for own in channels]
+        #: The time from sample to sample in µs.
+        self.period: int = period
+        #: Samples from one keyframe or heartbeat to the next.
+        self.keyframe_every: int = keyframe_every
+        #: The filter before every code; ``None`` without.
+        self.filter: Filter | None = _filter(filtered, 1e6 / period)
+
+    def sender(self, session: int = 0) -> Sender:
+        """The bank and the frames of its events, for six channels; `session` differs at each start."""
+        return Sender(self.schemes, self.period, self.keyframe_every, session, self.filter)
+
+    def receiver(self) -> Receiver:
+        """The decoders, for six channels."""
+        return Receiver(self.schemes, self.period)
+
+    def __repr__(self) -> str:
+        return f"Flight of {self.scheme}: {', '.join(self.names)}, one sample in {self.period} µs"
+
+
+def _filter(told: tuple[str, float, float | None] | None, rate: float) -> Filter | None:
+    if told is None:
+        return None
+    kind, corner, q = told
+    return Filter.notch(corner, rate, q) if kind == "notch" else getattr(Filter, kind)(corner, rate)

@@ -1,0 +1,33 @@
+//! A flight's file.
+
+use lab::flight::{Channel, Filter, Flight};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::values::{Given, keywords};
+
+/// A channel: name, source, unit, counts a unit, keywords of its scheme.
+type Heard = (String, String, String, f64, Vec<(&'static str, Given)>);
+
+/// A filter: its kind, its corner or centre in Hz, and a notch's `q`.
+type Filtering = (&'static str, f32, Option<f32>);
+
+/// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, filter, channels.
+type Told = (&'static str, String, u16, u32, Option<Filtering>, Vec<Heard>);
+
+/// Reads a flight's file.
+#[pyfunction]
+pub(crate) fn flight(path: &str) -> PyResult<Told> {
+    let flight = Flight::read(path).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let filter = flight.filter.map(|own| match own {
+        Filter::FirstOrder { corner } => ("first_order", corner, None),
+        Filter::LowPass { corner } => ("low_pass", corner, None),
+        Filter::Notch { centre, q } => ("notch", centre, Some(q)),
+    });
+    let channels = flight.channels.iter().map(|own| {
+        let Channel { name, source, unit, counts, .. } = own.clone();
+        (name, source, unit, counts, keywords(&flight.asked(own)))
+    });
+    let (period, sample) = (flight.period.get(), flight.sample.to_string());
+    Ok((flight.scheme.name, sample, period, flight.keyframe_every, filter, channels.collect()))
+}

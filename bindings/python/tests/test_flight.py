@@ -1,0 +1,40 @@
+"""A flight's file: both ends from it have the bits of those written by hand, and what is none is told with its line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import spikewire as sw
+
+FLIGHTS = Path(__file__).parents[3] / "laptop/flight/tests/flights"
+
+
+def by_hand(flight):
+    """The same sender, number by number."""
+    if flight.scheme == "sod":
+        rate, force = (sw.SendOnDelta(threshold=own, spikes=4) for own in (0.12, 0.5))
+        return sw.Sender([rate] * 3 + [force] * 3, 2000, keyframe_every=10, session=5)
+    rate, force = (sw.StepForward(threshold=own, sample="q8.8") for own in (0.1, 0.3))
+    quiet = sw.Filter.low_pass(80, rate=1000)
+    return sw.Sender([rate] * 3 + [force] * 3, 1000, keyframe_every=50, session=5, filter=quiet)
+
+
+@pytest.mark.parametrize("name", ["sod", "sf"])
+def test_both_ends_have_the_bits_of_those_by_hand(name):
+    flight = sw.Flight(FLIGHTS / f"{name}.toml")
+    assert flight.names[0] == flight.sources[0] == "gyro_x" and flight.units[3] == "m/s²"
+    sender, known, receiver = flight.sender(session=5), by_hand(flight), flight.receiver()
+    for sample in np.sin(np.arange(300)[:, None] * 0.02 * np.arange(1, 7)):
+        frames = sender.encode(sample)
+        assert frames == known.encode(sample)
+        for frame in frames:
+            receiver.hear(frame)
+    assert receiver.exact.all() and np.abs(receiver.values - sample).max() < 0.8
+
+
+def test_what_is_no_flight_is_told_with_its_line(tmp_path):
+    path = tmp_path / "flight.toml"
+    path.write_text('version = 1\nscheme = "sf"\nperiod = 2000\nkeyframe_evry = 3\n')
+    with pytest.raises(ValueError, match=r"flight\.toml:4: keyframe_evry cannot be read: unknown field"):
+        sw.Flight(path)

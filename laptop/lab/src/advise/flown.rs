@@ -1,0 +1,165 @@
+//! How codes flew on simulated drones whose rotors shake the sensor: the flights of `docs/loop.md`, which
+//! `cargo xtask write loop` measures.
+
+use crate::flight::Filter;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// The figures; a link, so that source packages have them.
+const FIGURES: &str = include_str!("verdicts.json");
+
+/// A code flies if its error is within so many times that without a code.
+const WITHIN: f64 = 1.2;
+
+/// Percents of lost frames that were flown, from the lowest.
+pub(crate) const LOSSES: [f64; 2] = [1.0, 10.0];
+
+#[derive(Deserialize)]
+struct Figures {
+    banks: BTreeMap<String, Flown>,
+}
+
+/// A code's flights in the bank that was found for it by flying.
+#[derive(Deserialize)]
+pub(crate) struct Flown {
+    /// The corner of the low-pass before it, in Hz.
+    low_pass: Option<f32>,
+    /// The time from keyframe to keyframe, in ms.
+    keyframe_ms: Option<f64>,
+    /// One drone and controller, with 1 % of the frames lost.
+    here: Flights,
+    #[serde(rename = "every tenth frame lost")]
+    tenth: Flights,
+    /// Several drones, controllers and rates.
+    everywhere: BTreeMap<String, Flights>,
+}
+
+#[derive(Deserialize)]
+struct Flights {
+    /// The manoeuvres that were lost, one entry a flight.
+    lost: Vec<String>,
+    #[serde(rename = "flights")]
+    count: usize,
+    /// The mean error in degrees, unless all were lost.
+    error: Option<f64>,
+}
+
+/// The mean errors of a simulated drone, in degrees.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Error {
+    /// On the code.
+    pub(crate) coded: f64,
+    /// Without a code.
+    pub(crate) plain: f64,
+}
+
+static BANKS: LazyLock<BTreeMap<String, Flown>> = LazyLock::new(|| {
+    serde_json::from_str::<Figures>(FIGURES).map(|figures| figures.banks).unwrap_or_default()
+});
+
+fn without_a_code() -> Option<&'static Flown> {
+    BANKS.get("without a code")
+}
+
+/// How the scheme of this name flew, if it did.
+pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
+    BANKS.get(scheme)
+}
+
+/// Says why the scheme of this name is not to fly with this percent of its frames lost, if so.
+pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
+    let Some(own) = flown(scheme) else {
+        return Some("was not flown with rotors that shake the sensor".to_owned());
+    };
+    let missing = |cells: &[&Flights]| {
+        let crashed: usize = cells.iter().map(|own| own.lost.len()).sum();
+        (crashed > 0).then(|| (crashed, cells.iter().map(|own| own.count).sum::<usize>()))
+    };
+    let all: Vec<&Flights> = own.everywhere.values().chain([&own.here]).collect();
+    if let Some((crashed, of)) = missing(&all) {
+        return Some(format!(
+            "lost {crashed} of {of} flights with {} % of its frames lost",
+            LOSSES[0]
+        ));
+    }
+    if loss > LOSSES[0]
+        && let Some((crashed, of)) = missing(&[&own.tenth])
+    {
+        return Some(format!(
+            "lost {crashed} of {of} flights with {} % of its frames lost",
+            LOSSES[1]
+        ));
+    }
+    let far = own.beside(without_a_code()?)?;
+    (far > WITHIN)
+        .then(|| format!("flew loosely: it strayed {far:.2} times as far as without a code"))
+}
+
+impl Flown {
+    /// The filter before its code.
+    pub(crate) fn filter(&self) -> Option<Filter> {
+        self.low_pass.map(|corner| Filter::LowPass { corner })
+    }
+
+    /// The time from keyframe to keyframe, in seconds.
+    pub(crate) fn keyframes(&self) -> Option<f64> {
+        self.keyframe_ms.map(|own| own * 1e-3)
+    }
+
+    /// The errors with this percent of the frames lost.
+    pub(crate) fn error(&self, loss: f64) -> Option<Error> {
+        let at = |own: &Self| {
+            if loss > LOSSES[0] { own.tenth.error } else { own.here.error }
+        };
+        Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
+    }
+
+    /// The mean of the errors over those of another, wherever both flew.
+    fn beside(&self, other: &Self) -> Option<f64> {
+        let ratios = self
+            .everywhere
+            .iter()
+            .filter_map(|(place, own)| Some(own.error? / other.everywhere.get(place)?.error?));
+        let ratios: Vec<f64> = ratios.collect();
+        (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BANKS, LOSSES, flown, objection, without_a_code};
+    use crate::scheme::Scheme;
+
+    #[test]
+    fn what_flew_is_a_scheme_with_figures() {
+        assert!(without_a_code().is_some());
+        let flies = Scheme::all().filter(|own| objection(own.name(), LOSSES[0]).is_none());
+        let mut count = 0;
+        for scheme in flies {
+            let own = flown(scheme.name()).unwrap();
+            let error = own.error(LOSSES[1]).unwrap();
+            assert!(
+                error.plain > 1.0 && error.coded < 3.0 * error.plain,
+                "{} {error:?}",
+                scheme.name()
+            );
+            assert!(own.keyframes().is_some_and(|own| (0.001..2.0).contains(&own)));
+            count += 1;
+        }
+        assert!(count > 0 && count < BANKS.len(), "{count} of {}", BANKS.len());
+    }
+
+    #[test]
+    fn what_was_not_flown_or_was_lost_is_told() {
+        let told = objection("bernoulli", 1.0).unwrap();
+        assert!(told.contains("not flown") || told.contains("lost "), "{told}");
+        for (name, own) in BANKS.iter().filter(|(_, own)| !own.here.lost.is_empty()) {
+            assert!(
+                objection(name, 1.0).unwrap().starts_with("lost "),
+                "{name} {:?}",
+                own.here.lost
+            );
+        }
+    }
+}

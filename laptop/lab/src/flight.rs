@@ -1,0 +1,179 @@
+//! A flight's file on the laptop: its channels out of a recording, and the values of its frames.
+
+use crate::Result;
+use crate::coding::Coding;
+use crate::events::{Item, LinkTally, Values};
+use crate::input::{Chunk, InputOptions, Source};
+use crate::look::known_unit;
+use crate::scheme::Scheme;
+use crate::tune::RequestKind;
+use crate::tune::report::Row;
+use crate::values;
+use catalogue::run::{Asked, Given, SampleType, Words};
+use spikewire::link::Received;
+use spikewire_flight::FlightError;
+use std::num::NonZeroU16;
+
+pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust};
+
+impl From<FlightError> for crate::Error {
+    fn from(error: FlightError) -> Self {
+        Self::other(error)
+    }
+}
+
+impl Coding {
+    /// The scheme of a flight, with the parameters of all its channels.
+    pub fn of_flight(flight: &Flight) -> Self {
+        let scheme = Scheme::from(flight.run_time());
+        Self { scheme, sample: flight.sample, asked: flight.asked_of_all() }
+    }
+}
+
+/// The flight of tuned channels: their name, scheme and settings, in samples of this type and rate. A keyframe comes 20
+/// times a second.
+///
+/// # Errors
+/// Returns an error if there are no channels, they have several schemes or differ in more than numbers, or the rate has
+/// no period in µs.
+pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
+    const KEYFRAMES: f64 = 20.0;
+    let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
+    if rows.iter().any(|(_, own, _)| own != scheme) {
+        return Err(RequestKind::SeveralSchemes.into());
+    }
+    let channels = rows.iter().map(|(name, scheme, row)| Channel {
+        name: (*name).to_owned(),
+        source: (*name).to_owned(),
+        unit: known_unit(name).unwrap_or_default().to_owned(),
+        counts: 1.0,
+        asked: row.settings.to_asked(scheme.info()),
+    });
+    Ok(Flight::new(Parts {
+        scheme: scheme.info(),
+        sample,
+        period: period(rate)?,
+        keyframe_every: (rate / KEYFRAMES).round().max(1.0) as u32,
+        clock_ppm: CLOCK_PPM,
+        filter: None,
+        shared: Asked::default(),
+        channels: channels.collect(),
+    })?)
+}
+
+/// By how many millionths the time from sample to sample may differ from the period unless somebody knows better: as much as
+/// a sensor's own oscillator.
+pub(crate) const CLOCK_PPM: u32 = 20_000;
+
+/// The time from sample to sample, in µs.
+///
+/// # Errors
+/// Returns an error if the link has no such period.
+pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
+    let period = NonZeroU16::new((1e6 / rate).round().clamp(0.0, 65_535.0) as u16);
+    period.ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
+}
+
+/// The recording of these options, of which a flight's channels are read.
+pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
+    let mut own = options.clone();
+    own.channel.columns = flight.channels.iter().map(|own| own.source.clone()).collect();
+    own
+}
+
+/// A recording as a flight's sender has it: in counts, and filtered.
+pub(crate) struct Sampled<'a> {
+    flight: &'a Flight,
+    source: Box<dyn Source>,
+    filters: Vec<Filtering>,
+}
+
+impl<'a> Sampled<'a> {
+    pub(crate) fn new(flight: &'a Flight, source: Box<dyn Source>) -> Result<Self, FlightError> {
+        Ok(Self { flight, source, filters: flight.filters()? })
+    }
+}
+
+impl Source for Sampled<'_> {
+    fn next(&mut self, chunk: &mut Chunk) -> Result<()> {
+        self.source.next(chunk)?;
+        for (column, channel) in chunk.columns.iter_mut().zip(&self.flight.channels) {
+            for value in column {
+                *value *= channel.counts;
+            }
+        }
+        for (column, filter) in chunk.columns.iter_mut().zip(&mut self.filters) {
+            for value in column {
+                *value = filter(*value);
+            }
+        }
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.source.names()
+    }
+
+    fn origin(&self) -> &[(&'static str, String)] {
+        self.source.origin()
+    }
+
+    fn notes(&self) -> &[Words] {
+        self.source.notes()
+    }
+}
+
+/// Makes the receiver of a flight, whose values are in the channels' units, and passes it to `then`.
+///
+/// # Errors
+/// Returns an error of `then`.
+pub fn with_receiver<'a>(
+    flight: &'a Flight,
+    then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
+) -> Result<()> {
+    let slot_ticks = Some(flight.slot_ticks()).filter(|ticks| *ticks > 0);
+    let scheme = Scheme::from(flight.run_time());
+    let filter = flight.filter.map(|own| own.fingerprint(flight.sample, flight.rate() as f32));
+    let filter = filter.transpose()?;
+    let link = values::Link { slot_ticks, filter };
+    values::with_receiver(scheme, flight.sample, flight.settings(), link, move |values| {
+        then(Box::new(InUnits { flight, values }))
+    })
+}
+
+/// Values in the channels' units, from those in counts.
+struct InUnits<'a, 'b> {
+    flight: &'a Flight,
+    values: Box<dyn Values + 'b>,
+}
+
+impl InUnits<'_, '_> {
+    fn divide(&self, items: &mut [Item]) {
+        let neurons = self.flight.neurons();
+        for item in items {
+            if let Item::Value { address, value, .. } = item
+                && let Some(channel) = self.flight.channels.get(usize::from(*address) / neurons)
+            {
+                *value /= channel.counts;
+            }
+        }
+    }
+}
+
+impl Values for InUnits<'_, '_> {
+    fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
+        let known = items.len();
+        self.values.apply(received, items);
+        self.divide(&mut items[known..]);
+    }
+
+    fn finish(&mut self, items: &mut Vec<Item>) {
+        let known = items.len();
+        self.values.finish(items);
+        self.divide(&mut items[known..]);
+    }
+
+    fn count(&self, tally: &mut LinkTally) {
+        self.values.count(tally);
+    }
+}

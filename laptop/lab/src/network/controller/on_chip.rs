@@ -1,0 +1,97 @@
+//! A network in the crate's form as the chips take it: neurons at rest at 0, without a current.
+
+use super::super::trained::{self, Readout, Trained};
+use super::Model;
+use super::net::{Layer, Neuron, Own, Spike};
+use crate::network::fault::{Context, Result, ensure};
+
+/// The share of a current that a step may leave of it.
+const CURRENT: f64 = 1e-3;
+
+impl Model {
+    /// The network as the chips take it.
+    ///
+    /// # Errors
+    /// A current lasts, or outputs that never fire have a bias.
+    pub(in super::super) fn on_chip(self) -> Result<Trained> {
+        let mut layers = self.net.layers;
+        let is_silent =
+            |layer: &Layer<f64>| layer.neurons.iter().all(|neuron| neuron.spike.is_none());
+        let readout = layers.pop_if(|layer| is_silent(layer)).map(|layer| {
+            let name = layer.name.clone();
+            readout(layer).context(name)
+        });
+        let layers = layers.into_iter().map(|layer| {
+            let name = layer.name.clone();
+            of_layer(layer).context(name)
+        });
+        Trained::with_readout(layers.collect::<Result<_>>()?, readout.transpose()?)
+    }
+}
+
+/// Weights by neuron, from those by input.
+fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let neurons = rows.first().map_or(0, Vec::len);
+    (0..neurons).map(|neuron| rows.iter().map(|row| row[neuron]).collect()).collect()
+}
+
+fn check_current(neuron: &Neuron<f64>) -> Result<()> {
+    let left = neuron.current.unwrap_or(0.0);
+    ensure!(
+        left <= CURRENT,
+        "a spike's current lasts: a step leaves {left:.3} of it, and the chip's neurons have no current; train with \
+         `tau_syn` of a step, or LIF"
+    );
+    Ok(())
+}
+
+fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
+    let Layer { name, weights, own, neurons, rule } = layer;
+    let count = neurons.len();
+    let recurrent = match own {
+        Own::None => vec![],
+        Own::Full(own) => turned(&own),
+        Own::OneToOne(own) => {
+            let row = |at: usize| (0..count).map(move |from| f64::from(u8::from(from == at)));
+            let rows = own.iter().enumerate();
+            rows.map(|(at, weight)| row(at).map(|one| one * weight).collect()).collect()
+        }
+    };
+    let mut layer = trained::Layer {
+        name,
+        weights: turned(&weights),
+        recurrent,
+        bias: Vec::new(),
+        neurons: Vec::new(),
+        reset: rule.reset,
+        fires: rule.fires,
+    };
+    for neuron in neurons {
+        check_current(&neuron)?;
+        let Neuron { decay: keep, bias, inner, spike, .. } = neuron;
+        let Spike { threshold, reset } =
+            spike.context("neurons that never fire must be the last")?;
+        // A spike returns the chip's neurons to 0: potentials are told from there.
+        let zero = if rule.reset.subtracts() { 0.0 } else { reset };
+        let bias = bias + inner - (1.0 - keep) * zero;
+        // What rounding leaves of a rest at the reset is no bias.
+        layer.bias.push(if bias.abs() < 1e-9 * threshold.abs() { 0.0 } else { bias });
+        layer.neurons.push(trained::Neuron { keep, threshold: threshold - zero, leak: 0.0 });
+    }
+    Ok(layer)
+}
+
+fn readout(layer: Layer<f64>) -> Result<Readout> {
+    let Layer { name, weights, neurons, .. } = layer;
+    let mut keep = Vec::new();
+    for (at, neuron) in neurons.iter().enumerate() {
+        check_current(neuron)?;
+        let bias = neuron.bias + neuron.inner;
+        ensure!(
+            bias == 0.0,
+            "output {at} has a bias of {bias}: it must be 0, and be added where it is read"
+        );
+        keep.push(neuron.decay);
+    }
+    Ok(Readout { name, weights: turned(&weights), keep })
+}

@@ -1,0 +1,150 @@
+//! The cost of each part of a chip's arithmetic alone: what is left of a network in double precision with it.
+
+use super::controller::Fires;
+use super::trained::{Layer, Neuron};
+use super::{Distance, Trained, Trains};
+use std::fmt::{self, Display};
+
+/// A part of a chip's arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cost {
+    /// Neurons compare with their thresholds after each spike.
+    Order,
+    /// A leak takes a fixed amount, not a share.
+    Leak,
+    /// A neuron's weights are whole numbers, of which this is the largest.
+    Weights {
+        /// The largest.
+        largest: f64,
+    },
+}
+
+impl Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Order => write!(f, "comparing after each spike"),
+            Self::Leak => write!(f, "leaks by fixed amounts"),
+            Self::Weights { largest } => write!(f, "weights of -{largest} to {largest}"),
+        }
+    }
+}
+
+/// Amounts of a leak that are tried, as parts of the share at half the threshold.
+const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
+
+impl Cost {
+    /// The outputs that fire with this part alone, fitted to a recording and what fires there.
+    pub(super) fn alone(
+        self,
+        trained: &Trained,
+        (tuned, fired): (&Trains, &[Trains]),
+        inputs: &Trains,
+    ) -> Trains {
+        let (mut before, mut drive) = (inputs.clone(), tuned);
+        for (layer, own) in trained.layers.iter().zip(fired) {
+            let count = layer.neurons.len();
+            let leaks = (0..count).map(|at| match self {
+                Self::Leak => Some(leak(layer, at, drive, own)),
+                _ => None,
+            });
+            let leaks: Vec<Option<f64>> = leaks.collect();
+            let layer = match self {
+                Self::Weights { largest } => &rounded(layer, largest),
+                _ => layer,
+            };
+            before = run(layer, &leaks, self == Self::Order, &before);
+            drive = own;
+        }
+        before
+    }
+}
+
+fn rounded(layer: &Layer, largest: f64) -> Layer {
+    let mut layer = layer.clone();
+    for at in 0..layer.neurons.len() {
+        let own = layer.recurrent.get_mut(at).into_iter().flatten();
+        let all = layer.weights[at].iter_mut().chain(own).chain(&mut layer.bias[at..=at]);
+        let mut all: Vec<&mut f64> = all.collect();
+        let most = all.iter().fold(0.0_f64, |most, weight| most.max(weight.abs()));
+        let unit = if most > 0.0 { most / largest } else { 1.0 };
+        for weight in &mut all {
+            **weight = (**weight / unit).round() * unit;
+        }
+    }
+    layer
+}
+
+/// The amount with which a neuron's spikes are nearest to what they should be.
+fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
+    let Neuron { keep, threshold, .. } = layer.neurons[at];
+    let distance = |amount: f64| {
+        let mut distance = Distance::default();
+        let (mut potential, mut before): (f64, &[u16]) = (0.0, &[]);
+        for (inputs, fired) in drive.iter().zip(fired) {
+            let does = step(layer, at, Some(amount), false, inputs, before, &mut potential);
+            let meant = fired.iter().filter(|own| usize::from(**own) == at).count();
+            distance.step(does.into(), meant);
+            before = fired;
+        }
+        distance.value()
+    };
+    let amounts = LEAKS.map(|part| part * (1.0 - keep) * threshold / 2.0);
+    let rated = amounts.map(|amount| (distance(amount), amount));
+    let best = rated.into_iter().min_by(|(one, _), (other, _)| one.total_cmp(other));
+    best.map_or(0.0, |(_, amount)| amount)
+}
+
+fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) -> Trains {
+    let mut potentials = vec![0.0; layer.neurons.len()];
+    let mut before: Vec<u16> = Vec::new();
+    let of_step = |inputs: &Vec<u16>| {
+        let mut out = Vec::new();
+        for (at, potential) in potentials.iter_mut().enumerate() {
+            if step(layer, at, leaks[at], by_spike, inputs, &before, potential) {
+                out.push(at as u16);
+            }
+        }
+        before.clone_from(&out);
+        out
+    };
+    inputs.iter().map(of_step).collect()
+}
+
+/// Takes a step of a neuron, whose reset comes at once, and tells if it fires.
+fn step(
+    layer: &Layer,
+    at: usize,
+    leak: Option<f64>,
+    by_spike: bool,
+    inputs: &[u16],
+    before: &[u16],
+    potential: &mut f64,
+) -> bool {
+    let threshold = layer.neurons[at].threshold;
+    *potential = match leak {
+        Some(amount) => potential.signum() * (potential.abs() - amount).max(0.0),
+        None => layer.neurons[at].left(*potential),
+    };
+    let mut fired = false;
+    let mut compare = |potential: &mut f64| {
+        let is_over = match layer.fires {
+            Fires::Above => *potential > threshold,
+            Fires::At => *potential >= threshold,
+        };
+        if is_over {
+            *potential = if layer.reset.subtracts() { *potential - threshold } else { 0.0 };
+            fired = true;
+        }
+    };
+    let back = layer.recurrent.get(at);
+    let own = before.iter().filter_map(|&from| back.map(|back| back[usize::from(from)]));
+    let driven = inputs.iter().map(|&input| layer.weights[at][usize::from(input)]);
+    for weight in std::iter::once(layer.bias[at]).chain(own).chain(driven) {
+        *potential += weight;
+        if by_spike {
+            compare(potential);
+        }
+    }
+    compare(potential);
+    fired
+}

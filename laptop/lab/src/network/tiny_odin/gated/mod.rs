@@ -1,0 +1,361 @@
+//! Networks whose neurons compare with their thresholds once a step, by rows of weights that raise them and let them
+//! fall.
+
+mod emit;
+mod neuron;
+mod run;
+mod search;
+mod shape;
+
+use super::super::chip::{OnChip, Ran, Stepped, Told, written};
+use super::super::costs::Cost;
+use super::super::{Trained, Trains};
+use crate::network::fault::Result;
+use neuron::{Added, GatedNeuron};
+use rayon::prelude::*;
+use search::{Aim, CLIMBS, Drive, search};
+use shape::{Shape, rows_of, shapes};
+use spikewire_chips::{Describe, NetworkBytes, TinyOdinInput, TinyOdinNeuron};
+
+const NEURONS: usize = 256;
+const ROWS: usize = 256;
+const LARGEST_RUNG: f64 = 7.0;
+const MAX_LEAK: u8 = 127;
+const MAX_POTENTIAL: u16 = 2047;
+/// Neurons of each layer that tell which shape suits it.
+const SURVEYED: usize = 8;
+/// Shapes of which the whole network is found.
+const CHOSEN: usize = 2;
+
+/// A network as tinyODIN holds it.
+#[derive(Clone, Debug)]
+pub(super) struct Gated {
+    shape: Shape,
+    layers: Vec<GatedLayer>,
+    inputs: usize,
+    has_bias: bool,
+}
+
+#[derive(Clone, Debug)]
+struct GatedLayer {
+    /// The name in its file.
+    name: String,
+    inputs: usize,
+    /// Whether its spikes lead back to it.
+    loops: bool,
+    neurons: Vec<GatedNeuron>,
+}
+
+/// Finds networks of the shapes that promise most, with the progress of the neurons. Empty if none fits.
+pub(super) fn quantise(
+    trained: &Trained,
+    inputs: &Trains,
+    fired: &[Trains],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Vec<Gated> {
+    let has_bias = trained.layers.iter().any(|layer| layer.bias.iter().any(|bias| *bias != 0.0));
+    if rows_of(trained, has_bias, 1) > ROWS {
+        return vec![];
+    }
+    let before = || std::iter::once(inputs).chain(fired);
+    let drives: Vec<Drive> = (trained.layers.iter().zip(fired).zip(before()))
+        .map(|((layer, fired), before)| Drive::new(before, layer, fired))
+        .collect();
+    let targets: Vec<Vec<Vec<bool>>> = trained
+        .layers
+        .iter()
+        .zip(fired)
+        .map(|(layer, fired)| targets(fired, layer.neurons.len()))
+        .collect();
+    let (drive, threshold) = sizes(trained, inputs, fired);
+    let shapes = shapes(trained, has_bias, drive, threshold);
+    // Of a layer's neurons some tell how near a shape can bring it, driven by the original's spikes.
+    let survey = |shape: &Shape| -> f64 {
+        let mut sum = 0.0;
+        for (at, layer) in trained.layers.iter().enumerate() {
+            let count = layer.neurons.len();
+            let surveyed: Vec<usize> = (0..count).step_by(count.div_ceil(SURVEYED)).collect();
+            let of = |neuron: &usize| {
+                search(
+                    layer,
+                    *neuron,
+                    &Aim { drive: &drives[at], target: &targets[at][*neuron], shape },
+                    0,
+                )
+                .0
+            };
+            let own: Vec<f64> = surveyed.par_iter().map(of).collect();
+            sum += own.iter().sum::<f64>() * count as f64 / surveyed.len().max(1) as f64;
+        }
+        sum
+    };
+    let total = shapes.len() + CHOSEN.min(shapes.len());
+    let mut rated: Vec<(f64, Shape)> = Vec::new();
+    for shape in shapes {
+        rated.push((survey(&shape), shape));
+        progress(rated.len(), total);
+    }
+    rated.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+    let surveyed = rated.len();
+    let found = rated.into_iter().take(CHOSEN).enumerate().map(|(at, (_, shape))| {
+        let found = Gated::find(trained, inputs, &targets, fired, shape, has_bias);
+        progress(surveyed + at + 1, total);
+        found
+    });
+    found.collect()
+}
+
+/// The most that a step adds to a neuron of what is above 0, in largest weights, and the mean threshold.
+fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
+    let (mut most, mut thresholds) = (0.0_f64, Vec::new());
+    for ((layer, own), before) in
+        trained.layers.iter().zip(fired).zip(std::iter::once(inputs).chain(fired))
+    {
+        for (at, neuron) in layer.neurons.iter().enumerate() {
+            let back = layer.recurrent.get(at);
+            let all = layer.weights[at]
+                .iter()
+                .chain(back.into_iter().flatten())
+                .chain(&layer.bias[at..=at]);
+            let largest = all.fold(0.0_f64, |most, weight| most.max(weight.abs()));
+            if largest == 0.0 {
+                continue;
+            }
+            thresholds.push(neuron.threshold / largest);
+            let of_step = |step: usize| {
+                let first: f64 = before[step]
+                    .iter()
+                    .map(|&from| layer.weights[at][usize::from(from)].max(0.0))
+                    .sum();
+                let own: f64 = match (back, step.checked_sub(1)) {
+                    (Some(back), Some(last)) => {
+                        own[last].iter().map(|&from| back[usize::from(from)].max(0.0)).sum()
+                    }
+                    _ => 0.0,
+                };
+                first + own + layer.bias[at].max(0.0)
+            };
+            let drive = (0..inputs.len()).map(of_step).fold(0.0, f64::max);
+            most = most.max(drive / largest);
+        }
+    }
+    thresholds.sort_by(f64::total_cmp);
+    (most, thresholds.get(thresholds.len() / 2).copied().unwrap_or(1.0))
+}
+
+/// Whether each neuron fires, by step.
+fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
+    let mut all = vec![vec![false; fired.len()]; neurons];
+    for (step, fired) in fired.iter().enumerate() {
+        for &neuron in fired {
+            all[usize::from(neuron)][step] = true;
+        }
+    }
+    all
+}
+
+impl Gated {
+    /// Layer by layer, each driven by what the chip's layer before fires.
+    fn find(
+        trained: &Trained,
+        inputs: &Trains,
+        targets: &[Vec<Vec<bool>>],
+        fired: &[Trains],
+        shape: Shape,
+        has_bias: bool,
+    ) -> Self {
+        let mut network = Self { shape, layers: Vec::new(), inputs: trained.inputs(), has_bias };
+        let mut before = inputs.clone();
+        for (at, layer) in trained.layers.iter().enumerate() {
+            let drive = Drive::new(&before, layer, &fired[at]);
+            let of = |neuron: usize| {
+                let aim =
+                    Aim { drive: &drive, target: &targets[at][neuron], shape: &network.shape };
+                search(layer, neuron, &aim, CLIMBS).1
+            };
+            let neurons = (0..layer.neurons.len()).into_par_iter().map(of).collect();
+            let (name, loops) = (layer.name.clone(), !layer.recurrent.is_empty());
+            network.layers.push(GatedLayer { name, inputs: layer.inputs(), loops, neurons });
+            before = network.layers[at].run(&network.shape, &before);
+        }
+        network
+    }
+
+    fn count(&self) -> usize {
+        self.layers.iter().map(|layer| layer.neurons.len()).sum()
+    }
+
+    /// The layer, the place in it and the numbers of a neuron of the chip.
+    fn at(&self, neuron: usize) -> Option<(usize, usize, &GatedNeuron)> {
+        let mut first = 0;
+        for (at, layer) in self.layers.iter().enumerate() {
+            if let Some(found) = layer.neurons.get(neuron - first) {
+                return Some((at, neuron - first, found));
+            }
+            first += layer.neurons.len();
+        }
+        None
+    }
+
+    /// The rows of inputs and neurons, and all rows.
+    fn rows(&self) -> (u16, u16) {
+        self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
+    }
+
+    /// The weight of a row onto a neuron: see `spikewire_chips::Steps` for their order.
+    fn row(&self, row: usize, post: usize) -> i8 {
+        let Some((layer, _, neuron)) = self.at(post) else { return 0 };
+        let rows = usize::from(self.shape.rows);
+        let mut at = row;
+        let mut take = |sources: usize| {
+            let found = (at < sources * rows).then_some((at / rows, at % rows));
+            at = at.wrapping_sub(sources * rows);
+            found
+        };
+        let part = |weight: Option<&i16>, row: usize| {
+            GatedNeuron::part(weight.copied().unwrap_or(0), row, self.shape.rows)
+        };
+        if let Some((from, row)) = take(self.inputs) {
+            return part(neuron.weights.get(from).filter(|_| layer == 0), row);
+        }
+        if let Some((_, row)) = take(self.has_bias.into()) {
+            return part(Some(&neuron.bias), row);
+        }
+        for (source, own) in self.layers.iter().enumerate() {
+            if source + 1 < self.layers.len()
+                && let Some((from, row)) = take(own.neurons.len())
+            {
+                return part(neuron.weights.get(from).filter(|_| layer == source + 1), row);
+            }
+            if own.loops
+                && let Some((from, row)) = take(own.neurons.len())
+            {
+                return part(
+                    neuron.weights.get(own.inputs + from).filter(|_| layer == source),
+                    row,
+                );
+            }
+        }
+        let rung = neuron.rung as i8;
+        match at.checked_sub(self.layers.len()) {
+            None => i8::from(layer == at) * rung,
+            Some(0) => -rung,
+            Some(_) => rung,
+        }
+    }
+}
+
+impl GatedLayer {
+    fn run(&self, shape: &Shape, inputs: &Trains) -> Trains {
+        let mut potentials = vec![0; self.neurons.len()];
+        let mut before: Vec<u16> = Vec::new();
+        let step = |(at, inputs): (usize, &Vec<u16>)| {
+            let turn = shape.turn(at);
+            let mut out = Vec::new();
+            for ((number, neuron), potential) in (0..).zip(&self.neurons).zip(&mut potentials) {
+                let mut added = Added::default();
+                added.add(neuron.bias);
+                for &from in inputs {
+                    added.add(neuron.weights[usize::from(from)]);
+                }
+                for &own in before.iter().filter(|_| self.loops) {
+                    added.add(neuron.weights[self.inputs + usize::from(own)]);
+                }
+                if neuron.step(shape, turn, potential, added) {
+                    out.push(number);
+                }
+            }
+            before.clone_from(&out);
+            out
+        };
+        inputs.iter().enumerate().map(step).collect()
+    }
+}
+
+impl Describe<TinyOdinInput> for Gated {
+    fn neurons(&self) -> u16 {
+        self.count() as u16
+    }
+
+    fn neuron(&self, neuron: u8) -> TinyOdinNeuron {
+        let Some((_, _, neuron)) = self.at(neuron.into()) else { return TinyOdinNeuron::DISABLED };
+        let (potential, threshold) = neuron.held(&self.shape);
+        TinyOdinNeuron { threshold, leak: neuron.leak, potential, is_disabled: false }
+    }
+
+    fn inputs(&self) -> u16 {
+        self.rows().1
+    }
+
+    fn virtual_input(&self, _: u16) -> Option<(u8, i8)> {
+        None
+    }
+
+    fn input_weight(&self, input: u16, post: u8) -> i8 {
+        self.row(input.into(), post.into())
+    }
+
+    fn is_recurrent(&self) -> bool {
+        false
+    }
+
+    fn weight(&self, _: u8, _: u8) -> i8 {
+        0
+    }
+
+    fn output(&self, neuron: u8) -> Option<u16> {
+        let (layer, place, _) = self.at(neuron.into())?;
+        (layer + 1 == self.layers.len()).then_some(place as u16)
+    }
+}
+
+impl OnChip for Gated {
+    fn run(&self, inputs: &Trains) -> Result<Ran> {
+        run::run(self, inputs)
+    }
+
+    fn follow(
+        &self,
+        steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
+        see: &mut dyn FnMut(Stepped) -> Result<()>,
+    ) -> Result<u32> {
+        run::follow(self, steps, see)
+    }
+
+    fn clipped(&self) -> Vec<usize> {
+        let of_layer = |layer: &GatedLayer| layer.neurons.iter().map(|n| n.clipped).sum();
+        self.layers.iter().map(of_layer).collect()
+    }
+
+    fn emit(&self, told: &Told) -> String {
+        emit::emit(self, told)
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>> {
+        Ok(written(|bytes| NetworkBytes::write(self, bytes))?)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let Shape { rows, leaks, .. } = &self.shape;
+        let leaks = leaks.iter().map(Vec::len).max().unwrap_or(0);
+        let (sources, all) = self.rows();
+        let each = if *rows == 1 { "a row".to_owned() } else { format!("{rows} rows") };
+        vec![format!(
+            "{} of the chip's 256 neurons, {} of its 256 rows: {each} a weight, and {} to compare once a step; {} events \
+             a step beside its spikes, {leaks} of them leaks",
+            self.count(),
+            all,
+            all - sources,
+            self.shape.events(self.layers.len()),
+        )]
+    }
+
+    fn costs(&self) -> Vec<Cost> {
+        let bits = Cost::Weights { largest: LARGEST_RUNG * f64::from(self.shape.rows) };
+        if self.shape.spacing == 0 { vec![Cost::Leak, bits] } else { vec![bits] }
+    }
+
+    fn loss(&self) -> &'static str {
+        "the chip's queue of 128 was full"
+    }
+}

@@ -1,0 +1,105 @@
+//! A neuron that compares once a step, in the chip's whole numbers.
+
+use super::shape::Shape;
+
+/// A neuron, and what leads to it. Its potential is that of the moment at which it compares, less what it is raised by.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct GatedNeuron {
+    /// The weights by input, then in a recurrent layer by its neurons: the sums of their rows.
+    pub weights: Vec<i16>,
+    /// The weight that every step adds.
+    pub bias: i16,
+    /// The potential at which it fires.
+    pub threshold: u16,
+    /// The amount by which a leak moves the potential.
+    pub leak: u8,
+    /// The amount by which an event raises it.
+    pub rung: u8,
+    /// Leaks of its own after a spike.
+    pub own_leaks: u16,
+    /// How many weights were larger than the chip's.
+    pub clipped: usize,
+}
+
+/// What a step adds to a potential.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Added {
+    pub all: i32,
+    /// What is above 0 of it, which may come first.
+    pub raised: i32,
+}
+
+impl Added {
+    pub(super) fn add(&mut self, weight: i16) {
+        self.all += i32::from(weight);
+        self.raised += i32::from(weight.max(0));
+    }
+}
+
+fn towards(potential: i32, centre: i32, by: i32) -> i32 {
+    let away = potential - centre;
+    centre + away.signum() * (away.abs() - by).max(0)
+}
+
+impl GatedNeuron {
+    /// Takes a step, and tells if the neuron fires.
+    #[inline]
+    pub(super) fn step(
+        &self,
+        shape: &Shape,
+        turn: &[u16],
+        potential: &mut i32,
+        added: Added,
+    ) -> bool {
+        let (above, below) = (i32::from(shape.above), i32::from(shape.below));
+        let (threshold, rung) = (i32::from(self.threshold), i32::from(self.rung));
+        let (leak, early) = (i32::from(self.leak), threshold + (above + below) * rung);
+        let fires = *potential + added.all >= threshold || *potential + added.raised >= early;
+        *potential = (*potential + added.all).max(below * rung - 2048);
+        if fires {
+            // It is raised on from 0, by what it was beyond its threshold in whole rungs; if these lead to its threshold
+            // once more it fires again, which counts once.
+            let beyond = (*potential - threshold).max(0);
+            let again = (threshold + above * rung - 1) / rung.max(1) + 1;
+            *potential = if rung > 0 { (beyond / rung % again - above) * rung } else { 0 };
+        }
+        for fallen in turn {
+            *potential = towards(*potential, (i32::from(*fallen) - above) * rung, leak);
+        }
+        if fires {
+            let centre = (below - i32::from(shape.lift)) * rung;
+            *potential = towards(*potential, centre, leak * i32::from(self.own_leaks));
+        }
+        fires
+    }
+
+    /// A row's part of a weight, of so many rows.
+    pub(super) fn part(weight: i16, row: usize, rows: u16) -> i8 {
+        let rows = rows as i16;
+        let rest = i16::from((row as i16) < weight.abs() % rows);
+        (weight.signum() * (weight.abs() / rows + rest)) as i8
+    }
+
+    /// The potential with which the chip's neuron begins, and its threshold.
+    pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
+        let rung = i16::from(self.rung);
+        (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_add_up_to_their_weight() {
+        for rows in [1, 2, 4, 8] {
+            for weight in -8 * rows as i16..=7 * rows as i16 {
+                let parts = (0..usize::from(rows)).map(|row| GatedNeuron::part(weight, row, rows));
+                let parts: Vec<i8> = parts.collect();
+                assert!(parts.iter().all(|part| (-8..=7).contains(part)), "{weight} {parts:?}");
+                assert_eq!(parts.iter().map(|part| i16::from(*part)).sum::<i16>(), weight);
+            }
+        }
+    }
+}

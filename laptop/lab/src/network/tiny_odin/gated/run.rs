@@ -1,0 +1,80 @@
+//! The network on the chip's model, clock by clock, through the crate's driver.
+
+use super::super::super::Trains;
+use super::super::super::chip::{Ran, Stepped, refused};
+use super::super::run::RATIO;
+use super::Gated;
+use crate::network::fault::Result;
+use silicon::Board;
+use spikewire_chips::{Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput};
+
+impl Gated {
+    /// Hands over the steps of the driver.
+    pub(super) fn with_steps<T>(&self, see: impl FnOnce(&Steps) -> T) -> T {
+        let layers = self.layers.iter();
+        let layers: Vec<StepsLayer> = layers
+            .map(|layer| StepsLayer { neurons: layer.neurons.len() as u16, loops: layer.loops })
+            .collect();
+        let leaks: Vec<&[u16]> = self.shape.leaks.iter().map(Vec::as_slice).collect();
+        let neurons = self.layers.iter().flat_map(|layer| &layer.neurons);
+        let own_leaks: Vec<u16> = neurons.map(|neuron| neuron.own_leaks).collect();
+        see(&Steps {
+            inputs: self.inputs as u16,
+            has_bias: self.has_bias,
+            rows: self.shape.rows,
+            layers: &layers,
+            rungs: self.shape.rungs(),
+            leaks: &leaks,
+            lift: self.shape.lift,
+            own_leaks: &own_leaks,
+        })
+    }
+}
+
+/// Loads the network, verifies it and runs it on the steps that come.
+pub(super) fn follow(
+    network: &Gated,
+    inputs: &mut dyn Iterator<Item = Result<Vec<u16>>>,
+    see: &mut dyn FnMut(Stepped) -> Result<()>,
+) -> Result<u32> {
+    network.with_steps(|steps| {
+        let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
+        board.pins().has_full_pin = true;
+        let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
+        let mut gated = chip.reset(&mut board.clone()).map_err(|error| refused(&error))?;
+        gated.load(network, |_| ()).map_err(|error| refused(&error))?;
+        let mut running = gated.run(&network.registers()).map_err(|error| refused(&error))?;
+        let mut state = StepsState::REST;
+        for inputs in inputs {
+            let before = board.pins().chip.clocks;
+            let mut fired = vec![vec![]; network.layers.len()];
+            let on_output = |neuron: u8| {
+                if let Some((layer, place, _)) = network.at(neuron.into()) {
+                    fired[layer].push(place as u16);
+                }
+            };
+            running.step(steps, &mut state, inputs?, on_output).map_err(|error| refused(&error))?;
+            while !board.pins().chip.is_idle() {
+                running.poll(|_| ()).map_err(|error| refused(&error))?;
+            }
+            // In order of their number, as in double precision.
+            for layer in &mut fired {
+                layer.sort_unstable();
+            }
+            see(Stepped { fired, clocks: board.pins().chip.clocks - before })?;
+        }
+        Ok(board.pins().chip.overflows)
+    })
+}
+
+/// Runs the network on a recording's steps.
+pub(super) fn run(network: &Gated, inputs: &Trains) -> Result<Ran> {
+    let mut fired = vec![Vec::with_capacity(inputs.len()); network.layers.len()];
+    let mut clocks = Vec::with_capacity(inputs.len());
+    let lost = follow(network, &mut inputs.iter().cloned().map(Ok), &mut |step| {
+        fired.iter_mut().zip(step.fired).for_each(|(layer, step)| layer.push(step));
+        clocks.push(step.clocks);
+        Ok(())
+    })?;
+    Ok(Ran { fired, potentials: vec![], clocks, lost })
+}

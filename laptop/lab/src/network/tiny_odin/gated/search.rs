@@ -1,0 +1,232 @@
+//! The search for a gated network's numbers, neuron by neuron.
+
+use super::super::super::trained::{Layer, Neuron, fires_at};
+use super::super::super::{Distance, Trains};
+use super::neuron::{Added, GatedNeuron};
+use super::shape::Shape;
+use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
+use crate::network::Reset;
+
+/// The values tried for the largest weight, with one row: above 7 it is clipped, for the sake of the others.
+/// With the last all weights vanish, so that the neuron stays silent.
+const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
+/// The rungs that are tried first.
+const RUNGS: [u8; 4] = [7, 5, 3, 2];
+/// The choices from which the search goes on.
+pub(super) const CLIMBS: usize = 2;
+
+/// The spikes that drive a layer, by step: its inputs, then its own neurons of the step before, counted on from them.
+pub(super) struct Drive {
+    ends: Vec<usize>,
+    spikes: Vec<u16>,
+}
+
+impl Drive {
+    pub(super) fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
+        let (mut ends, mut spikes) = (Vec::new(), Vec::new());
+        let first = layer.inputs() as u16;
+        for (step, inputs) in inputs.iter().enumerate() {
+            spikes.extend(inputs);
+            if let (Some(last), false) = (step.checked_sub(1), layer.recurrent.is_empty()) {
+                spikes.extend(fired[last].iter().map(|own| first + own));
+            }
+            ends.push(spikes.len());
+        }
+        Self { ends, spikes }
+    }
+}
+
+/// The spikes that a neuron should have.
+pub(super) struct Aim<'a> {
+    pub drive: &'a Drive,
+    /// Whether it fires, by step.
+    pub target: &'a [bool],
+    pub shape: &'a Shape,
+}
+
+/// The searched settings of a neuron.
+#[derive(Clone, Copy, PartialEq)]
+struct Choice {
+    /// The value of a weight of 1 on the chip.
+    unit: f64,
+    threshold: u16,
+    leak: u8,
+    rung: u8,
+    /// Leaks of its own beyond those that its reset needs.
+    more: i16,
+}
+
+/// The best neuron, and its distance from the original. From the best choices the search goes on, from so many.
+pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
+    let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
+    let mut best: Vec<(f64, Choice)> = Vec::new();
+    for choice in choices(layer, at, aim.shape) {
+        let most = best.get(climbs.max(1) - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
+        let distance = distance(choice, most);
+        if distance < most || best.is_empty() {
+            let place = best.partition_point(|(other, _)| *other <= distance);
+            best.insert(place, (distance, choice));
+            best.truncate(climbs.max(1));
+        }
+    }
+    for (least, best) in best.iter_mut().take(climbs) {
+        let mut is_better = *least > 0.0;
+        while is_better {
+            is_better = false;
+            for choice in best.neighbours(aim.shape) {
+                let distance = distance(choice, *least);
+                if distance < *least {
+                    (*least, *best, is_better) = (distance, choice, true);
+                }
+            }
+        }
+    }
+    let best = best.into_iter().min_by(|(one, _), (other, _)| one.total_cmp(other));
+    let (least, best) = best.expect("there is a choice at least");
+    (least, made(layer, at, aim.shape, best))
+}
+
+fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
+    let own = layer.recurrent.get(at).into_iter().flatten();
+    let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
+    let largest = weights.fold(0.0_f64, |most, weight| most.max(weight.abs()));
+    let Neuron { keep, threshold, leak: amount } = layer.neurons[at];
+    let mut choices: Vec<Choice> = Vec::new();
+    for most in LARGEST {
+        let most = most * f64::from(shape.rows);
+        let unit = if largest > 0.0 { largest / most } else { threshold / LARGEST_RUNG };
+        let threshold = fires_at(threshold / unit, layer.fires);
+        for rung in RUNGS {
+            let room = MAX_POTENTIAL - shape.above * u16::from(rung);
+            let threshold = threshold.min(room.into()) as u16;
+            // What a leak takes off at half the threshold, or with leaks at several heights as a share.
+            let lost = amount / unit
+                + (1.0 - keep) / 2.0
+                    * if shape.spacing == 0 {
+                        threshold.into()
+                    } else {
+                        f64::from(shape.spacing * u16::from(rung))
+                    };
+            // Without leaks of all, only neurons that fired get some.
+            let leaks = if shape.leaks.is_empty() {
+                [f64::from(MAX_LEAK); 2]
+            } else {
+                [lost.floor(), lost.ceil()].map(|leak| leak.min(MAX_LEAK.into()))
+            };
+            for leak in leaks.map(|leak| leak as u8) {
+                let choice = Choice { unit, threshold, leak, rung, more: 0 };
+                if !choices.contains(&choice) {
+                    choices.push(choice);
+                }
+            }
+        }
+    }
+    choices
+}
+
+impl Choice {
+    fn neighbours(self, shape: &Shape) -> Vec<Self> {
+        let Self { unit, threshold, leak, rung, more } = self;
+        let with = |threshold_by: i16, leak_by: i8, rung_by: i8, more_by: i16, unit_by: f64| {
+            let rung = rung.saturating_add_signed(rung_by).clamp(1, LARGEST_RUNG as u8);
+            let room = MAX_POTENTIAL - shape.above * u16::from(rung);
+            Self {
+                unit: unit * unit_by,
+                threshold: threshold.saturating_add_signed(threshold_by).clamp(1, room),
+                leak: leak.saturating_add_signed(leak_by).min(MAX_LEAK),
+                rung,
+                more: more + more_by,
+            }
+        };
+        let wide = (threshold / 16).max(2) as i16;
+        let mut all = vec![
+            with(1, 0, 0, 0, 1.0),
+            with(-1, 0, 0, 0, 1.0),
+            with(wide, 0, 0, 0, 1.0),
+            with(-wide, 0, 0, 0, 1.0),
+            with(0, 0, 0, 0, 1.05),
+            with(0, 0, 0, 0, 1.0 / 1.05),
+            with(0, 0, 1, 0, 1.0),
+            with(0, 0, -1, 0, 1.0),
+        ];
+        if !shape.leaks.is_empty() {
+            all.extend([
+                with(0, 1, 0, 0, 1.0),
+                with(0, -1, 0, 0, 1.0),
+                with(1, -1, 0, 0, 1.0),
+                with(-1, 1, 0, 0, 1.0),
+            ]);
+        }
+        if shape.lift == 0 {
+            all.extend([with(0, 0, 0, 1, 1.0), with(0, 0, 0, -1, 1.0), with(0, 0, 0, 4, 1.0)]);
+        }
+        all
+    }
+}
+
+/// A neuron with these settings.
+fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron {
+    let Choice { unit, threshold, leak, rung, more } = choice;
+    let rows = f64::from(shape.rows);
+    let mut clipped = 0;
+    let mut quantised = |weight: &f64| {
+        let rounded = (weight / unit).round();
+        clipped += usize::from(!(-8.0 * rows..=7.0 * rows).contains(&rounded));
+        rounded.clamp(-8.0 * rows, 7.0 * rows) as i16
+    };
+    let own = layer.recurrent.get(at).into_iter().flatten();
+    let weights = layer.weights[at].iter().chain(own).map(&mut quantised).collect();
+    let bias = quantised(&layer.bias[at]);
+    let own_leaks =
+        own_leaks(layer, at, shape, choice).saturating_add(more.into()).clamp(0, 255) as u16;
+    GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
+}
+
+/// Leaks that a neuron needs after a spike: to 0 from wherever rungs and leaks have brought it, or by the amount by which
+/// its reset lies beside subtraction.
+fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
+    let Choice { threshold, leak, rung, .. } = choice;
+    if leak == 0 || shape.rungs() == 0 {
+        return 0;
+    }
+    let (above, rung, leak) = (i32::from(shape.above), f64::from(rung), f64::from(leak));
+    let above = f64::from(above) * rung;
+    let keep = layer.neurons[at].keep;
+    if shape.lift > 0 {
+        let beyond = (f64::from(shape.rungs()) - 1.0) * rung;
+        let levels = shape.leaks.iter().map(Vec::len).max().unwrap_or(0);
+        let farthest = above.max(beyond.min(f64::from(threshold)));
+        return (farthest / leak).ceil() as i32 + levels as i32;
+    }
+    // Of what it is beyond its threshold whole rungs stay; leaks have taken it for a potential far below 0.
+    let late = if layer.reset == Reset::SubtractLate {
+        f64::from(threshold) * (1.0 / keep.max(0.1) - 1.0)
+    } else {
+        0.0
+    };
+    let passed = if shape.spacing > 0 { (1.0 - keep) * above } else { 0.0 };
+    ((above - passed + rung / 2.0 - late) / leak).round().max(0.0) as i32
+}
+
+impl GatedNeuron {
+    /// How far its spikes are from what they should be; infinite if that is `most` or more.
+    fn distance(&self, aim: &Aim, most: f64) -> f64 {
+        let mut distance = Distance::default();
+        let (mut potential, mut first) = (0_i32, 0);
+        let ends = aim.drive.ends.iter().zip(aim.target);
+        for (step, (&end, &target)) in ends.enumerate() {
+            let mut added = Added::default();
+            added.add(self.bias);
+            for &spike in &aim.drive.spikes[first..end] {
+                added.add(self.weights[usize::from(spike)]);
+            }
+            first = end;
+            let fires = self.step(aim.shape, aim.shape.turn(step), &mut potential, added);
+            distance.step(fires.into(), target.into());
+            if fires != target && distance.so_far() >= most {
+                return f64::INFINITY;
+            }
+        }
+        distance.value()
+    }
+}
