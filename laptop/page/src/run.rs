@@ -31,8 +31,7 @@ impl Choice {
     /// # Errors
     /// There is no such scheme or type, or a text is no value of its parameter.
     pub(crate) fn read(&self) -> Result<(Scheme, SampleType, Asked)> {
-        let scheme =
-            Scheme::named(&self.scheme).ok_or_else(|| Error::no_scheme(&self.scheme))?;
+        let scheme = Scheme::named(&self.scheme).ok_or_else(|| Error::no_scheme(&self.scheme))?;
         let mut asked = Asked::default();
         asked.paper = true;
         for (name, text) in &self.parameters {
