@@ -191,7 +191,8 @@ impl Pace {
         let samples = self.samples(since.wrapping_add(u64::from(self.period / 2)));
         let doubt = self.doubt(samples);
         if doubt > quarter {
-            let least = samples.saturating_sub(doubt / u64::from(self.period)).saturating_sub(1);
+            let doubtful = doubt.checked_div(self.period.into()).unwrap_or_default();
+            let least = samples.saturating_sub(doubtful).saturating_sub(1);
             let is_settled = least > u64::from(settled);
             return if is_settled { Elapsed::Settled { samples } } else { Elapsed::Unknown };
         }
@@ -230,7 +231,8 @@ impl Pace {
         let samples = self.samples(since.wrapping_add(period / 2));
         let doubt = self.doubt(samples);
         if doubt.wrapping_add(u64::from(self.unit / 2)) > period / 2 {
-            let least = samples.saturating_sub(doubt / period).saturating_sub(1);
+            let doubtful = doubt.checked_div(period).unwrap_or_default();
+            let least = samples.saturating_sub(doubtful).saturating_sub(1);
             let is_settled = least > u64::from(settled);
             return if is_settled { Elapsed::Settled { samples } } else { Elapsed::Unknown };
         }
