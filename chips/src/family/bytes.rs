@@ -161,7 +161,9 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
         if !(0..shape.neurons).all(|neuron| is_told(neuron as u8)) {
             return Err(FormatError::Value);
         }
-        let needed = HEADER + shape.lengths::<I>().iter().sum::<usize>();
+        let lengths = shape.lengths::<I>();
+        // Not `sum`, which panics where overflow is checked.
+        let needed = lengths.iter().fold(HEADER, |sum, length| sum.saturating_add(*length));
         let given = buffer.len();
         let target = buffer.get_mut(..needed).ok_or(FormatError::Length { needed, given })?;
         let mut bytes = target.iter_mut();

@@ -2,7 +2,8 @@
 //!
 //! A spell of one second with a fault takes turns with half a second without. Whatever the far end calls exact must have
 //! the bits of a decoder beside the encoder, every frame that it takes must be one that was sent, every frame or item that
-//! is missing must have been counted, and all channels must be exact again by the next keyframe.
+//! is missing must have been counted, and all channels must be exact again by the next keyframe; where the far end itself
+//! starts again, by the first keyframe with the sender's fingerprint.
 //! `SOAK_SPELLS` at build time says how many spells each fault has; 40 of them are twelve minutes of flight.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]

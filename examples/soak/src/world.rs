@@ -23,6 +23,8 @@ const TURN: u32 = 4;
 /// Samples of a spell with a fault, and of the one after it without: together no multiple of those between keyframes.
 const SPELL: u32 = 233;
 const CALM: u32 = 100;
+/// Samples until a far end that starts again has the fingerprint of the sender: 2¹⁹ µs, and the next keyframe.
+const FINGERPRINT: u32 = (1 << 19) / PERIOD + KEYFRAME_EVERY;
 /// One of so many turns has a brown-out.
 const BROWN_OUT: u32 = 16;
 
@@ -106,7 +108,8 @@ impl World {
             for _ in 0..SPELL {
                 self.sample(Some(fault), &mut tally)?;
             }
-            self.calm(&mut tally)?;
+            let learns = if fault == Fault::FarEndOut { FINGERPRINT } else { 0 };
+            self.calm(learns, &mut tally)?;
         }
         let told = self.far.told();
         tally.injected += self.line.harmed - before.3;
@@ -128,17 +131,18 @@ impl World {
         self.rejected + self.sender.rejected()
     }
 
-    /// Until the second keyframe; by the first one all is exact, but for what main has not yet sent.
-    fn calm(&mut self, tally: &mut Tally) -> Result<(), &'static str> {
+    /// Until the second keyframe; by the first one all is exact, but for what main has not yet sent. A far end that must
+    /// learn who sends takes so many samples longer.
+    fn calm(&mut self, learns: u32, tally: &mut Tally) -> Result<(), &'static str> {
         let mut recovered = None;
-        for sample in 1..=CALM {
+        for sample in 1..=CALM + learns {
             let is_exact = self.sample(None, tally)?;
             if is_exact && recovered.is_none() {
                 recovered = Some(sample);
             }
         }
         let recovered = recovered.ok_or("not exact again")?;
-        if recovered > KEYFRAME_EVERY + TURN {
+        if recovered > KEYFRAME_EVERY + TURN + learns {
             return Err("not exact by the next keyframe");
         }
         tally.recovery = tally.recovery.max(recovered);

@@ -172,6 +172,12 @@ impl Pace {
         }
     }
 
+    /// The fewest samples that there may have been, if about so many were and so many µs are in doubt.
+    fn least(&self, samples: u64, doubt: u64) -> u64 {
+        let doubtful = doubt.checked_div(self.period.into()).unwrap_or(u64::MAX);
+        samples.saturating_sub(doubtful).saturating_sub(1)
+    }
+
     /// How far a tick may lie from its sample or sub-timestep: at most three eighths of a unit, so that one that is half a
     /// unit early or late is always noticed.
     fn most_away(&self, quarter: u64, doubt: u64) -> u64 {
@@ -191,7 +197,7 @@ impl Pace {
         let samples = self.samples(since.wrapping_add(u64::from(self.period / 2)));
         let doubt = self.doubt(samples);
         if doubt > quarter {
-            let least = samples.saturating_sub(doubt / u64::from(self.period)).saturating_sub(1);
+            let least = self.least(samples, doubt);
             let is_settled = least > u64::from(settled);
             return if is_settled { Elapsed::Settled { samples } } else { Elapsed::Unknown };
         }
@@ -230,7 +236,7 @@ impl Pace {
         let samples = self.samples(since.wrapping_add(period / 2));
         let doubt = self.doubt(samples);
         if doubt.wrapping_add(u64::from(self.unit / 2)) > period / 2 {
-            let least = samples.saturating_sub(doubt / period).saturating_sub(1);
+            let least = self.least(samples, doubt);
             let is_settled = least > u64::from(settled);
             return if is_settled { Elapsed::Settled { samples } } else { Elapsed::Unknown };
         }

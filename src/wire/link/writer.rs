@@ -296,7 +296,7 @@ impl<'a> FrameWriter<'_, 'a> {
         let [b0, b1, b2, b3] = bits.to_le_bytes();
         let bytes = [a0, a1, b0, b1, b2, b3];
         self.bits.put_bytes(bytes.get(..keyframe_size(kind)).unwrap_or_default());
-        self.keyframes += 1;
+        self.keyframes = self.keyframes.saturating_add(1);
         Ok(())
     }
 

@@ -270,7 +270,8 @@ fn published<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result
     let scheme = scheme.try_with_shift(channel.min)?;
     visitor.visit("bsa", Scheme::INFO.words, &scheme, Bsa::START)?;
 
-    let taps = Taps::<_, TAPS>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(MULTIPLICATIVE_SUM)))?;
+    let taps =
+        Taps::<_, TAPS>::try_shaped(Shape::Hann, Scale::Sum(channel.fraction(MULTIPLICATIVE_SUM)))?;
     let scheme = Bsa::try_multiplicative(taps, FACTOR)?.try_with_shift(channel.min)?;
     visitor.visit("bsa-mul", "Ben's spiker, multiplicative", &scheme, Bsa::START)
 }

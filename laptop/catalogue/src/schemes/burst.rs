@@ -63,7 +63,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Burst::<_, SLOTS>::try_new(channel.min..=channel.max, SPIKES, SHORTEST..=LONGEST)?;
+        let scheme =
+            Burst::<_, SLOTS>::try_new(channel.min..=channel.max, SPIKES, SHORTEST..=LONGEST)?;
         visitor.visit("burst", Self::INFO.words, &scheme, Burst::<V::Sample, SLOTS>::START)
     }
 

@@ -88,7 +88,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Gaussian::<_, NEURONS>::try_companded(channel.min..=channel.max, COMPANDED_BY)?;
+        let scheme =
+            Gaussian::<_, NEURONS>::try_companded(channel.min..=channel.max, COMPANDED_BY)?;
         let start = Gaussian::<V::Sample, NEURONS>::START;
         visitor.visit(Self::INFO.name, Self::INFO.words, &scheme, start)
     }

@@ -35,7 +35,8 @@ impl Entry for Scheme {
     const IN_C: &'static [InC] = &[];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = Probabilistic::<_, Pcg32, NEURONS, 64>::try_new(channel.min..=channel.max, 1.5)?;
+        let scheme =
+            Probabilistic::<_, Pcg32, NEURONS, 64>::try_new(channel.min..=channel.max, 1.5)?;
         let generator = Pcg32::new(2026, channel.index as u64);
         let start = Probabilistic::<V::Sample, Pcg32, NEURONS, 64>::state(generator);
         visitor.visit("grf-prob", Self::INFO.words, &scheme, start)

@@ -53,7 +53,12 @@ impl Entry for Scheme {
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
         let scheme = Slots::<_, NEURONS, SLOTS>::try_new(channel.min..=channel.max, BETA)?;
-        visitor.visit("grf-slots", Self::INFO.words, &scheme, Slots::<V::Sample, NEURONS, SLOTS>::START)
+        visitor.visit(
+            "grf-slots",
+            Self::INFO.words,
+            &scheme,
+            Slots::<V::Sample, NEURONS, SLOTS>::START,
+        )
     }
 
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {

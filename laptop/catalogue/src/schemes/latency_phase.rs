@@ -49,7 +49,11 @@ impl Entry for Scheme {
         made: &[Made {
             name: "init",
             words: "`min`, `max`: the range, which must rise. `spacing`: from one neuron's peaks to the next's, in slots.",
-            arguments: &[Argument::MIN, Argument::MAX, Argument::number("spacing", "u16", SPACING as f64)],
+            arguments: &[
+                Argument::MIN,
+                Argument::MAX,
+                Argument::number("spacing", "u16", SPACING as f64),
+            ],
             value: "timing::LatencyPhase::try_new(min..=max, spacing)",
             flies: Some("latency-phase"),
         }],

@@ -49,7 +49,8 @@ impl Entry for Scheme {
     }];
 
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
-        let scheme = IntegrateAndFire::<_, SPIKES>::try_new(channel.fraction(THRESHOLD), POWER)?.leaky();
+        let scheme =
+            IntegrateAndFire::<_, SPIKES>::try_new(channel.fraction(THRESHOLD), POWER)?.leaky();
         let start = IntegrateAndFire::<V::Sample, SPIKES>::START;
         visitor.visit("lif", Self::INFO.words, &scheme, start)
     }

@@ -33,7 +33,11 @@ impl Entry for Scheme {
             made: &[Made {
                 name: "init",
                 words: "`min`, `max`: the range, which must rise. `power`: the decoder's average is over about 2^power samples, 1 to 15.",
-                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", POWER as f64)],
+                arguments: &[
+                    Argument::MIN,
+                    Argument::MAX,
+                    Argument::number("power", "u8", POWER as f64),
+                ],
                 value: "rate::SigmaDelta::try_new(min..=max, rate::Average::try_new(power)?)",
                 flies: Some("sigma-delta"),
             }],
@@ -45,7 +49,11 @@ impl Entry for Scheme {
             made: &[Made {
                 name: "init",
                 words: "`min`, `max`: the range, which must rise. `power`: the decoder's mean is over 2^power samples, at most 32 a word.",
-                arguments: &[Argument::MIN, Argument::MAX, Argument::number("power", "u8", WINDOW_POWER as f64)],
+                arguments: &[
+                    Argument::MIN,
+                    Argument::MAX,
+                    Argument::number("power", "u8", WINDOW_POWER as f64),
+                ],
                 value: "rate::SigmaDelta::try_new(min..=max, rate::Window::try_new(power)?)",
                 flies: Some("sigma-delta-window"),
             }],

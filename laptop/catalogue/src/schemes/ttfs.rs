@@ -69,7 +69,11 @@ impl Entry for Scheme {
             Made {
                 name: "init_logarithmic",
                 words: "`min`, `max`: the range, which must rise. `ratio`: of the largest value that has a spike to the smallest, above 1.",
-                arguments: &[Argument::MIN, Argument::MAX, Argument::number("ratio", "f32", RATIO as f64)],
+                arguments: &[
+                    Argument::MIN,
+                    Argument::MAX,
+                    Argument::number("ratio", "f32", RATIO as f64),
+                ],
                 value: "timing::FirstSpike::try_logarithmic(min..=max, ratio)",
                 flies: Some("ttfs-log"),
             },
