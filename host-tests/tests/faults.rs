@@ -1006,7 +1006,13 @@ fn check_noticed(faults: &[Fault], tally: &Tally) {
         [LateSamples] => assert!(noticed("misfits") > 0),
         [ClockBack] => assert!(noticed("frames after a loss") > 0),
         [Busy | BusError] => assert_eq!(noticed("write errors"), tally.injected),
-        [Short | Jitter | Drift | FarDrift | Stuck | Floating] => assert!(tally.noticed.is_empty()),
+        // A clock at the end of what the receiver is told may be noticed before its pace is measured.
+        [FarDrift] => {
+            assert!(tally.noticed.keys().all(|what| *what == "misfits"), "{:?}", tally.noticed);
+        }
+        [Short | Jitter | Drift | Stuck | Floating] => {
+            assert!(tally.noticed.is_empty(), "{:?}", tally.noticed);
+        }
         _ => assert!(!tally.noticed.is_empty() || tally.injected == 0),
     }
 }
