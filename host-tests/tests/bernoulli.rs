@@ -84,7 +84,7 @@ fn all_draws() {
     assert_eq!(fired(-1e31_f32, 1e31, f32::MIN), 0);
 }
 
-/// What is not finite is counted, and draws nothing.
+/// A sample that is not finite is counted, and draws no number.
 #[test]
 fn what_is_not_finite_draws_nothing() {
     let scheme = Bernoulli::<f32, Draws, _>::new(0.0..=255.0, Average::new(4));

@@ -79,7 +79,7 @@ def run(weights, inputs):
 
 
 def gradients(weights, inputs, labels):
-    """How the loss grows with each weight."""
+    """The gradient of the loss by each weight."""
     (hidden, sent), (outs, told) = run(weights, inputs)
     steps, count = labels.shape
     counts = np.zeros_like(told)

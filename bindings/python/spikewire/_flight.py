@@ -14,8 +14,9 @@ from ._link import Receiver, Sender
 class Flight:
     """A flight's file, ``flight.toml``, as ``spikewire advise -o`` writes it: what the vehicle codes and its far end decodes.
 
-    Both ends are made from it, as a firmware's are, so that they cannot disagree on a threshold. Samples and values are in
-    counts: :attr:`counts` times the unit. A bad file is a :class:`ValueError` with its line.
+    Both ends are made from it, so that they cannot disagree on a threshold; with a filter they hear only each other,
+    as their fingerprint leaves it out. Samples and values are in counts: :attr:`counts` times the unit. A bad file is
+    a :class:`ValueError` with its line.
 
     >>> import pathlib, tempfile, numpy as np, spikewire as sw
     >>> text = 'version = 1\\nscheme = "sf"\\nperiod = 2000\\nparameters = { threshold = 0.1 }\\n'

@@ -22,7 +22,8 @@ class Sender:
     `schemes` are one scheme for all channels, or one for each, of one kind and with as many neurons. A sample is taken
     every `period` µs. After the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
     `filter` is one before the code of all channels, or one for each, or None. The bytes are those of a firmware with the
-    same schemes, filters, `period` and `session`.
+    same schemes, `period` and `session`, and no filter; behind a filter the events are, but not the fingerprint, which
+    leaves the filter out.
 
     >>> import spikewire as sw
     >>> scheme = sw.StepForward(threshold=0.1)

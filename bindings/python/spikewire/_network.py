@@ -16,7 +16,7 @@ Reset = Literal["to-value", "to-value-late", "to-value-held", "subtract", "subtr
 
 
 class Ran(NamedTuple):
-    """What a network's last layer did, by step."""
+    """The spikes and potentials of a network's last layer, by step."""
 
     #: Whether each neuron fired: (steps, neurons).
     spikes: NDArray[np.bool_]
@@ -60,7 +60,7 @@ class Network:
 
     @property
     def layers(self) -> list[int]:
-        """How many neurons each layer has."""
+        """The number of neurons of each layer."""
         return self._native.layers()
 
     def run(self, spikes: ArrayLike | Sequence[Sequence[int]]) -> Ran:

@@ -29,7 +29,7 @@ pub(crate) fn value(error: impl Into<anyhow::Error>) -> PyErr {
     set.err().unwrap_or(exception)
 }
 
-/// What a program can act on.
+/// The attributes of an exception, for a program to act on.
 #[derive(Default)]
 struct Attributes<'a> {
     parameter: Option<&'a str>,

@@ -4,7 +4,7 @@ use embedded_hal::spi::SpiDevice;
 
 use super::{AerPort, ChipError, Input, Outcome, Running};
 
-/// How a network's steps run on tinyODIN: data that belongs to a [`Network`](super::Network) in open loop, which
+/// The events that make a network's step on tinyODIN: data that belongs to a [`Network`](super::Network) in open loop, which
 /// `spikewire network` writes. [`Running::step`] runs a step.
 ///
 /// While a step's inputs come, potentials lie lower than they mean, so that no neuron reaches its threshold. Then a row of
@@ -90,7 +90,7 @@ pub struct Steps<'a> {
     /// Events that lift all neurons again after the fall, before the leaks of neurons that fired, and let them fall after
     /// these.
     pub lift: u16,
-    /// How many leaks of its own a neuron gets that has fired, by neuron.
+    /// The number of leaks that a neuron gets alone once it has fired, by neuron.
     pub own_leaks: &'a [u16],
 }
 

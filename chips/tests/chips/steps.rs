@@ -11,7 +11,7 @@ use spikewire_chips::{
 struct Neuron {
     threshold: i32,
     leak: i32,
-    /// What an event raises it by.
+    /// The amount by which an event raises the potential.
     rung: i32,
     /// Leaks of its own after a spike.
     own: u16,

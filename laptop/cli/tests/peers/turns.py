@@ -67,7 +67,7 @@ def run(weights, inputs):
 
 
 def gradients(weights, inputs, labels):
-    """How the loss grows with each weight."""
+    """The gradient of the loss by each weight."""
     first, back, out = weights
     v, s, y = run(weights, inputs)
     steps, count = inputs.shape

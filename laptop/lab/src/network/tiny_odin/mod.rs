@@ -1,5 +1,6 @@
 //! tinyODIN: 256 neurons, weights of 4 bits, thresholds looked at after every spike.
 
+mod climb;
 mod emit;
 mod gated;
 mod quantise;
@@ -71,7 +72,7 @@ const FOUND: (usize, usize) = (3, 4);
 
 impl OnChip for Quantised {
     fn run(&self, inputs: &Trains) -> Result<Ran> {
-        run::run(self, inputs)
+        run::run(self.layers.len(), inputs, |steps, see| run::follow(self, steps, see))
     }
 
     fn follow(

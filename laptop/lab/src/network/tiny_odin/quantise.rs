@@ -2,6 +2,7 @@
 
 use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
+use super::climb::climb;
 use crate::network::fault::{Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
@@ -273,34 +274,9 @@ fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuro
     let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();
     let bias = layer.bias[at];
     let neuron = |choice: Choice| ChipNeuron::new(&weights, bias, choice);
-    // Gives up where it is no nearer than `most`, as almost all are.
     let distance = |choice, most| neuron(choice).distance(aim, most);
-    let mut best: Vec<(f64, Choice)> = Vec::new();
-    for choice in choices(layer, at, aim.steps_a_leak) {
-        let most = best.get(climbs.max(1) - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
-        let distance = distance(choice, most);
-        if distance < most || best.is_empty() {
-            // Of equals the first.
-            let place = best.partition_point(|(other, _)| *other <= distance);
-            best.insert(place, (distance, choice));
-            best.truncate(climbs.max(1));
-        }
-    }
-    for (least, best) in best.iter_mut().take(climbs) {
-        // A step of scale, threshold or leak, for as long as it helps.
-        let mut is_better = *least > 0.0;
-        while is_better {
-            is_better = false;
-            for choice in best.neighbours() {
-                let distance = distance(choice, *least);
-                if distance < *least {
-                    (*least, *best, is_better) = (distance, choice, true);
-                }
-            }
-        }
-    }
-    let best = best.into_iter().min_by(|(one, _), (other, _)| one.total_cmp(other));
-    let (least, best) = best.expect("there is a choice at least");
+    let first = choices(layer, at, aim.steps_a_leak);
+    let (least, best) = climb(first, Choice::neighbours, distance, climbs);
     (least, neuron(best))
 }
 

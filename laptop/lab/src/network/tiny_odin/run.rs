@@ -10,17 +10,19 @@ use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 /// The chip's clocks to one of its SPI.
 pub(super) const RATIO: u32 = 4;
 
+/// The steps that come, each the inputs that fire.
+pub(super) type Steps<'a> = dyn Iterator<Item = Result<Vec<u16>>> + 'a;
+
+/// Told what came of each step.
+pub(super) type See<'a> = dyn FnMut(Stepped) -> Result<()> + 'a;
+
 /// Loads the network, verifies it and runs it on the steps that come. Each step's leak comes first, unless no
 /// neuron leaks, then its bias, then
 /// its inputs in order. `see` is told what came of each, before the next is taken. Returns how many spikes got lost.
 ///
 /// # Errors
 /// The chip or `see` refuses something.
-pub(super) fn follow(
-    network: &Quantised,
-    steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
-    see: &mut dyn FnMut(Stepped) -> Result<()>,
-) -> Result<u32> {
+pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'_>) -> Result<u32> {
     let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
     board.pins().has_full_pin = true;
     let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
@@ -54,14 +56,18 @@ pub(super) fn follow(
     Ok(board.pins().chip.overflows)
 }
 
-/// Runs the network on a recording's steps.
+/// Runs a network of so many layers on a recording's steps, by the function that follows them.
 ///
 /// # Errors
 /// The chip refuses something.
-pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
-    let mut fired = vec![Vec::with_capacity(inputs.len()); network.layers.len()];
+pub(super) fn run(
+    layers: usize,
+    inputs: &Trains,
+    follow: impl FnOnce(&mut Steps<'_>, &mut See<'_>) -> Result<u32>,
+) -> Result<Ran> {
+    let mut fired = vec![Vec::with_capacity(inputs.len()); layers];
     let mut clocks = Vec::with_capacity(inputs.len());
-    let lost = follow(network, &mut inputs.iter().cloned().map(Ok), &mut |step| {
+    let lost = follow(&mut inputs.iter().cloned().map(Ok), &mut |step| {
         fired.iter_mut().zip(step.fired).for_each(|(layer, step)| layer.push(step));
         clocks.push(step.clocks);
         Ok(())

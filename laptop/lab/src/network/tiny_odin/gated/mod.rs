@@ -311,7 +311,7 @@ impl Describe<TinyOdinInput> for Gated {
 
 impl OnChip for Gated {
     fn run(&self, inputs: &Trains) -> Result<Ran> {
-        run::run(self, inputs)
+        super::run::run(self.layers.len(), inputs, |steps, see| run::follow(self, steps, see))
     }
 
     fn follow(

@@ -1,8 +1,7 @@
 //! The network on the chip's model, clock by clock, through the crate's driver.
 
-use super::super::super::Trains;
-use super::super::super::chip::{Ran, Stepped, refused};
-use super::super::run::RATIO;
+use super::super::super::chip::{Stepped, refused};
+use super::super::run::{self, RATIO};
 use super::Gated;
 use crate::network::fault::Result;
 use silicon::Board;
@@ -34,8 +33,8 @@ impl Gated {
 /// Loads the network, verifies it and runs it on the steps that come.
 pub(super) fn follow(
     network: &Gated,
-    inputs: &mut dyn Iterator<Item = Result<Vec<u16>>>,
-    see: &mut dyn FnMut(Stepped) -> Result<()>,
+    inputs: &mut run::Steps<'_>,
+    see: &mut run::See<'_>,
 ) -> Result<u32> {
     network.with_steps(|steps| {
         let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
@@ -65,16 +64,4 @@ pub(super) fn follow(
         }
         Ok(board.pins().chip.overflows)
     })
-}
-
-/// Runs the network on a recording's steps.
-pub(super) fn run(network: &Gated, inputs: &Trains) -> Result<Ran> {
-    let mut fired = vec![Vec::with_capacity(inputs.len()); network.layers.len()];
-    let mut clocks = Vec::with_capacity(inputs.len());
-    let lost = follow(network, &mut inputs.iter().cloned().map(Ok), &mut |step| {
-        fired.iter_mut().zip(step.fired).for_each(|(layer, step)| layer.push(step));
-        clocks.push(step.clocks);
-        Ok(())
-    })?;
-    Ok(Ran { fired, potentials: vec![], clocks, lost })
 }

@@ -2,6 +2,7 @@
 
 use super::super::super::trained::{Layer, Neuron, fires_at};
 use super::super::super::{Distance, Trains};
+use super::super::climb::climb;
 use super::neuron::{Added, GatedNeuron};
 use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
@@ -59,30 +60,9 @@ struct Choice {
 /// The best neuron, and its distance from the original. From the best choices the search goes on, from so many.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
-    let mut best: Vec<(f64, Choice)> = Vec::new();
-    for choice in choices(layer, at, aim.shape) {
-        let most = best.get(climbs.max(1) - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
-        let distance = distance(choice, most);
-        if distance < most || best.is_empty() {
-            let place = best.partition_point(|(other, _)| *other <= distance);
-            best.insert(place, (distance, choice));
-            best.truncate(climbs.max(1));
-        }
-    }
-    for (least, best) in best.iter_mut().take(climbs) {
-        let mut is_better = *least > 0.0;
-        while is_better {
-            is_better = false;
-            for choice in best.neighbours(aim.shape) {
-                let distance = distance(choice, *least);
-                if distance < *least {
-                    (*least, *best, is_better) = (distance, choice, true);
-                }
-            }
-        }
-    }
-    let best = best.into_iter().min_by(|(one, _), (other, _)| one.total_cmp(other));
-    let (least, best) = best.expect("there is a choice at least");
+    let neighbours = |choice: Choice| choice.neighbours(aim.shape);
+    let first = choices(layer, at, aim.shape);
+    let (least, best) = climb(first, neighbours, distance, climbs);
     (least, made(layer, at, aim.shape, best))
 }
 

@@ -1,0 +1,37 @@
+//! The search for a neuron's numbers: the nearest of its first choices, and from there the nearest neighbours.
+
+/// Finds the choice that is nearest to the original, and its distance. From the best `climbs` of the first choices it goes
+/// on to neighbours for as long as one is nearer. `distance` may give up where a choice is no nearer than its second
+/// argument, as almost all are.
+pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
+    first: impl IntoIterator<Item = C>,
+    neighbours: impl Fn(C) -> N,
+    distance: impl Fn(C, f64) -> f64,
+    climbs: usize,
+) -> (f64, C) {
+    let mut best: Vec<(f64, C)> = Vec::new();
+    for choice in first {
+        let most = best.get(climbs.max(1) - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
+        let distance = distance(choice, most);
+        if distance < most || best.is_empty() {
+            // Of equals the first.
+            let place = best.partition_point(|(other, _)| *other <= distance);
+            best.insert(place, (distance, choice));
+            best.truncate(climbs.max(1));
+        }
+    }
+    for (least, best) in best.iter_mut().take(climbs) {
+        let mut is_better = *least > 0.0;
+        while is_better {
+            is_better = false;
+            for choice in neighbours(*best) {
+                let distance = distance(choice, *least);
+                if distance < *least {
+                    (*least, *best, is_better) = (distance, choice, true);
+                }
+            }
+        }
+    }
+    let best = best.into_iter().min_by(|(one, _), (other, _)| one.total_cmp(other));
+    best.expect("there is a choice at least")
+}
