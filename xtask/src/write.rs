@@ -34,7 +34,7 @@ const PARTS: [Part; 19] = [
     ),
     part(
         "verdicts",
-        "docs/loop.md: its tables from loop/verdicts.json",
+        "docs/loop.md: its tables from laptop/loop/verdicts.json",
         simulated_drone::write_tables,
     ),
     part("chip", "docs/loop.md: the chip's flights", simulated_drone::write_chip),

@@ -13,7 +13,7 @@ use board::usart::Usart1;
 
 const CHANNELS: usize = 6;
 type Scheme = SendOnDelta<f32, 10>;
-/// As `loop/codes.json` has them.
+/// As `laptop/loop/codes.json` has them.
 static RATE: Scheme = SendOnDelta::new(0.133_065);
 static ASIDE: Scheme = SendOnDelta::new(0.320_045);
 static UP: Scheme = SendOnDelta::new(0.755_087_44);

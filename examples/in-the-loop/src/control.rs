@@ -1,4 +1,4 @@
-//! The cascade of `loop/control.py`, in the order in which it stands there, which gives the same bits.
+//! The cascade of `laptop/loop/control.py`, in the order in which it stands there, which gives the same bits.
 
 use libm::sqrtf;
 

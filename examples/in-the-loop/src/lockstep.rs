@@ -1,7 +1,7 @@
 //! A flight controller in the loop: registers and what is wanted in at USART1, frames, values and motor speeds out.
 //!
 //! It encodes the registers, drops the frames that it is told to, hears the others, and flies the cascade on what they
-//! decode to: the same chain, step by step, that `loop/flight.py` has on the laptop.
+//! decode to: the same chain, step by step, that `laptop/loop/flight.py` has on the laptop.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -16,6 +16,6 @@ fn main() -> ! {
     board::finish(chain::run(&mut board::console()))
 }
 
-/// The world is another program: `loop/board.py`.
+/// The world is another program: `laptop/loop/board.py`.
 #[cfg(not(target_os = "none"))]
 fn main() {}

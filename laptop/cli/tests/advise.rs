@@ -104,7 +104,7 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
     let bytes: Vec<f64> =
         banks.iter().map(|own| own["bytes_per_second"].as_f64().unwrap()).collect();
     assert!(bytes.is_sorted() && !bytes.is_empty(), "{banks:#?}");
-    let flown = std::fs::read_to_string("../../loop/verdicts.json").unwrap();
+    let flown = std::fs::read_to_string("../loop/verdicts.json").unwrap();
     let flown: Value = serde_json::from_str(&flown).unwrap();
     for bank in banks {
         let scheme = bank["scheme"].as_str().unwrap();

@@ -38,7 +38,7 @@ pub fn long() -> Result<()> {
         fuzzer
             .env("FUZZ_TARGET", target)
             .arg(&found)
-            .arg(paths::root().join("fuzz/corpus").join(target))
+            .arg(paths::root().join("host-tests/fuzz/corpus").join(target))
             .arg(format!("-max_total_time={seconds}"))
             .arg(format!("-max_len={LONGEST}"))
             .arg(format!("-artifact_prefix={}/{target}-", crashes.display()))
@@ -89,7 +89,7 @@ fn build() -> Result<PathBuf> {
 
 /// The targets, each of which has a corpus.
 fn targets() -> Result<Vec<String>> {
-    let mut names: Vec<String> = fs::read_dir(paths::root().join("fuzz/corpus"))?
+    let mut names: Vec<String> = fs::read_dir(paths::root().join("host-tests/fuzz/corpus"))?
         .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
         .collect::<Result<_>>()?;
     names.sort();

@@ -10,7 +10,7 @@ use std::fs;
 
 const PAGE: &str = "docs/loop.md";
 const MARKER: &str = "network";
-const EXPORT: &str = "network loop/network.nir --on controller --reset subtract --fires above --decay euler \
+const EXPORT: &str = "network laptop/loop/network.nir --on controller --reset subtract --fires above --decay euler \
                       --current new --dt 0.002";
 
 /// What the page says of the network comes again from the committed graph.

@@ -40,7 +40,7 @@ pub fn write() -> Result<()> {
     put(&output(&mut program(&python, "table.py"))?)
 }
 
-/// Puts the tables of the flights that `loop/verdicts.json` keeps into the page, and flies none.
+/// Puts the tables of the flights that `laptop/loop/verdicts.json` keeps into the page, and flies none.
 pub fn write_tables() -> Result<()> {
     put(&output(program(&environment()?, "table.py").arg("--print"))?)
 }
@@ -108,18 +108,20 @@ fn draw(python: &Path, name: &str) -> Result<PathBuf> {
     Ok(picture)
 }
 
-/// A program of `loop`, with this Python.
+/// A program of `laptop/loop`, with this Python.
 pub(super) fn program(python: &Path, name: &str) -> Command {
     let mut program = command(python);
-    program.arg(paths::root().join("loop").join(name));
+    program.arg(paths::root().join("laptop/loop").join(name));
     program
 }
 
 /// `RotorPy`, and the package of this repository, compiled as its tests are.
 pub(super) fn environment() -> Result<PathBuf> {
-    println!("Installs in target/loop, from PyPI: what loop/requirements.txt names, 1.1 GB.");
+    println!(
+        "Installs in target/loop, from PyPI: what laptop/loop/requirements.txt names, 1.1 GB."
+    );
     let python = python::environment("loop")?;
-    python::install(&python, &["--requirement", "loop/requirements.txt"])?;
+    python::install(&python, &["--requirement", "laptop/loop/requirements.txt"])?;
     python::package(&python, "dev")?;
     Ok(python)
 }

@@ -56,8 +56,14 @@ const PROSE: &[&str] = &[
 /// What firmware does not use.
 const HOST: &[&str] = &["flight-logs", "host-tests", "laptop/cli", "laptop/lab"];
 /// What no other room uses.
-const LAST: &[&str] =
-    &["bindings/c", "bindings/python", "bindings/ros", "fuzz", "laptop/page", "loop"];
+const LAST: &[&str] = &[
+    "bindings/c",
+    "bindings/python",
+    "bindings/ros",
+    "host-tests/fuzz",
+    "laptop/page",
+    "laptop/loop",
+];
 /// What the crate does not use.
 const REST: &[&str] = &["data", "examples", "laptop/catalogue", "laptop/flight", "memory.x"];
 /// For checks of emulated boards.
@@ -81,7 +87,14 @@ const STEPS: &[Step] = &[
     )
     .apart(&[
         PROSE,
-        &["bindings/c", "bindings/python", "bindings/ros", "examples", "laptop/page", "loop"],
+        &[
+            "bindings/c",
+            "bindings/python",
+            "bindings/ros",
+            "examples",
+            "laptop/page",
+            "laptop/loop",
+        ],
     ]),
     step("peers", "event formats against other programs", peers::peers).apart(&[
         PROSE,
@@ -90,9 +103,9 @@ const STEPS: &[Step] = &[
             "bindings/python",
             "bindings/ros",
             "examples",
-            "fuzz",
+            "host-tests/fuzz",
             "laptop/page",
-            "loop",
+            "laptop/loop",
         ],
     ]),
     step("readme", "the code of README and docs runs", everyday::readme),
@@ -116,7 +129,7 @@ const STEPS: &[Step] = &[
     step("c", "the library for C, on the host and on a Cortex-M4F", c_library::verify).apart(&[
         PROSE,
         HOST,
-        &["bindings/python", "bindings/ros", "fuzz", "laptop/page", "loop"],
+        &["bindings/python", "bindings/ros", "host-tests/fuzz", "laptop/page", "laptop/loop"],
     ]),
     step(
         "boards",
@@ -146,7 +159,10 @@ const STEPS: &[Step] = &[
     step("laptop", "the laptop program on a flight, and the paper's tables", everyday::laptop)
         .apart(&[LAST]),
     step("python", "the Python package: tests, hashes, README, example", python_package::python)
-        .apart(&[PROSE, &["bindings/c", "bindings/ros", "fuzz", "laptop/page", "loop"]]),
+        .apart(&[
+            PROSE,
+            &["bindings/c", "bindings/ros", "host-tests/fuzz", "laptop/page", "laptop/loop"],
+        ]),
     step("video", "the paper's figure of a video, from a packaged clip", video::video)
         .apart(&[PROSE, LAST]),
     step("bench", "instruction counts of a Cortex-M4F against the baseline", || {
@@ -207,11 +223,16 @@ const LONG: &[Step] = &[
         c_library::watched,
     ),
     step("c-cost", "what the calls of C take beside the crate's", c_library::cost),
-    step("page", "the page in a browser, against the laptop program", page::verify)
-        .apart(&[PROSE, &["bindings/c", "bindings/python", "bindings/ros", "fuzz", "loop"]]),
+    step("page", "the page in a browser, against the laptop program", page::verify).apart(&[
+        PROSE,
+        &["bindings/c", "bindings/python", "bindings/ros", "host-tests/fuzz", "laptop/loop"],
+    ]),
     step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", ros::ros2),
     step("ros", "ROS nodes in the distribution's ROS, a flight through every scheme", ros::ros)
-        .apart(&[PROSE, &["bindings/c", "bindings/python", "fuzz", "laptop/page", "loop"]]),
+        .apart(&[
+            PROSE,
+            &["bindings/c", "bindings/python", "host-tests/fuzz", "laptop/page", "laptop/loop"],
+        ]),
     step(
         "py-speed",
         "the Python package from its source package, and its speed",
