@@ -37,17 +37,33 @@ impl Coding {
 /// Returns an error if there are no channels, they have several schemes or differ in more than numbers, or the rate has
 /// no period in µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
-    const KEYFRAMES: f64 = 20.0;
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
         return Err(RequestKind::SeveralSchemes.into());
     }
-    let channels = rows.iter().map(|(name, scheme, row)| Channel {
-        name: (*name).to_owned(),
-        source: (*name).to_owned(),
-        unit: known_unit(name).unwrap_or_default().to_owned(),
+    let asked = |(name, _, row): &(&str, Scheme, &Row)| {
+        ((*name).to_owned(), row.settings.to_asked(scheme.info()))
+    };
+    of_settings(*scheme, sample, rate, rows.iter().map(asked))
+}
+
+/// The flight of channels by their names and what is asked of their parameters. A keyframe comes 20 times a second.
+///
+/// # Errors
+/// Returns an error if there are no channels, they differ in more than numbers, or the rate has no period in µs.
+pub fn of_settings(
+    scheme: Scheme,
+    sample: SampleType,
+    rate: f64,
+    channels: impl Iterator<Item = (String, Asked)>,
+) -> Result<Flight> {
+    const KEYFRAMES: f64 = 20.0;
+    let channels = channels.map(|(name, asked)| Channel {
+        source: name.clone(),
+        unit: known_unit(&name).unwrap_or_default().to_owned(),
         counts: 1.0,
-        asked: row.settings.to_asked(scheme.info()),
+        name,
+        asked,
     });
     Ok(Flight::new(Parts {
         scheme: scheme.info(),
