@@ -10,13 +10,12 @@ use std::{
 use syn::{Item, UseTree};
 
 /// The crate's rooms from the lowest to the highest. Those of one line stand side by side, and none names the other.
-const ORDER: [&[&str]; 9] = [
+const ORDER: [&[&str]; 8] = [
     &["serial"], // what serde does not derive
     &["error"],
     &["num"],
     &["scheme"],
     &["filter", "event"],
-    &["frame"],
     &["wire"],
     &["out"],
     &["lib"],

@@ -32,14 +32,14 @@ pub fn test() -> Result<()> {
     run(&mut tests("")?)
 }
 
-/// Each page with code is the documentation of an item in `pages`, which exists for doctests only.
+/// Each page with code is the documentation of an item in the `pages` of a crate, which exists for doctests only.
 pub fn readme() -> Result<()> {
     let said = output(&mut tests("--doc -- pages")?)?;
     print!("{said}");
     for page in ["Readme", "Usage", "Frames"] {
         ensure!(
             said.contains(&format!(" - pages::{page} (line ")),
-            "no doctest of `pages::{page}`: is the page included in src/lib.rs?"
+            "no doctest of `pages::{page}`: is the page included in a lib.rs?"
         );
     }
     Ok(())

@@ -21,14 +21,16 @@ use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, env};
 
 /// The rooms, which their tests' programs are named after, and where their sources begin.
-const ROOMS: [(&str, &[&str]); 3] = [
+const ROOMS: [(&str, &[&str]); 4] = [
     ("wire", &["src/wire/", "src/event/", "src/out/", "src/serial.rs"]),
+    ("cameras", &["cameras/src/"]),
     ("chips", &["chips/src/"]),
-    ("codes", &["src/scheme/", "src/num/", "src/frame/", "src/error/"]),
+    ("codes", &["src/scheme/", "src/num/", "src/error/"]),
 ];
 
 /// The crates that are changed, and their sources.
-const CRATES: [(&str, &str); 2] = [("spikewire", "src"), ("spikewire-chips", "chips/src")];
+const CRATES: [(&str, &str); 3] =
+    [("spikewire", "src"), ("spikewire-cameras", "cameras/src"), ("spikewire-chips", "chips/src")];
 
 /// Why a change cannot be switched on.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,9 +1,9 @@
 //! Event Stream (`.es`) of the generic type: a log file of events that loses nothing.
 
 use super::{Clock, EventDecoder, EventFormat, FormatError};
-use crate::Polarity;
-use crate::event::{Event, Tick};
-use crate::wire::bytes::Cursor;
+use crate::bytes::Cursor;
+use spikewire::Polarity;
+use spikewire::{Event, Tick};
 
 /// Event Stream version 2, generic events whose payload is the address, little endian, and a byte
 /// that is 1 for up and 0 for down.
@@ -17,7 +17,8 @@ use crate::wire::bytes::Cursor;
 /// Source: Event Stream specification, neuromorphic-paris/event_stream.
 ///
 /// ```
-/// use spikewire::{Event, Polarity, Tick, format::{EventDecoder, EventFormat, EventStream}};
+/// use spikewire::{Event, Polarity, Tick};
+/// use spikewire_cameras::format::{EventDecoder, EventFormat, EventStream};
 ///
 /// let event = Event { tick: Tick::from_micros(300), address: 0x0102, polarity: Polarity::Up };
 /// let mut bytes = [0; 8];

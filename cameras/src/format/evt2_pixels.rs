@@ -11,8 +11,9 @@ use crate::frame::PixelEvent;
 ///   `% geometry WxH` and `% end`, a line each.
 ///
 /// ```
-/// use spikewire::{Polarity, Tick, frame::PixelEvent};
-/// use spikewire::format::{EventDecoder, EventFormat, Evt2Pixels};
+/// use spikewire::{Polarity, Tick};
+/// use spikewire_cameras::frame::PixelEvent;
+/// use spikewire_cameras::format::{EventDecoder, EventFormat, Evt2Pixels};
 ///
 /// let event = PixelEvent { tick: Tick::from_micros(0x41), x: 5, y: 239, polarity: Polarity::Up };
 /// let mut bytes = [0; 8];

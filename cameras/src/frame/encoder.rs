@@ -4,8 +4,8 @@ use core::fmt;
 
 use super::pass::{Budget, Pass, slots};
 use super::{PixelCode, PixelEvent};
-use crate::error::{first_address, unwrap};
-use crate::{ConfigError, Item, Keyframe, Polarity, Put, Tick};
+use crate::config::{first_address, unwrap};
+use spikewire::{ConfigError, Item, Keyframe, Polarity, Put, Tick};
 
 /// The pixels of a camera of `W` columns and `H` rows.
 ///
@@ -21,7 +21,8 @@ use crate::{ConfigError, Item, Keyframe, Polarity, Put, Tick};
 /// - **Memory:** the code's state of `W * H` pixels, `H` bytes and about 32. **Latency:** 0 frames.
 ///
 /// ```
-/// use spikewire::{EventQueue, Overflow, Tick, frame::{FrameEncoder, Intensity}};
+/// use spikewire::{EventQueue, Overflow, Tick};
+/// use spikewire_cameras::frame::{FrameEncoder, Intensity};
 ///
 /// static EVENTS: EventQueue<512> = EventQueue::new(Overflow::DropNewest);
 ///
@@ -254,7 +255,7 @@ fn put(event: PixelEvent, width: usize, first_address: u16, queue: &mut impl Put
     let PixelEvent { tick, x, y, polarity } = event;
     let place = y.wrapping_mul(width as u16).wrapping_add(x);
     let address = first_address.wrapping_add(place);
-    queue.put(Item::Event(crate::Event { tick, address, polarity }));
+    queue.put(Item::Event(spikewire::Event { tick, address, polarity }));
 }
 
 impl<C: PixelCode + fmt::Debug, const W: usize, const H: usize> fmt::Debug

@@ -3,8 +3,8 @@
 use core::num::NonZeroU8;
 
 use super::PixelCode;
-use crate::ConfigError;
-use crate::error::{unwrap, within};
+use crate::config::{unwrap, within};
+use spikewire::ConfigError;
 
 /// A code whose pixels are silent for some frames after one with events, while their bases stay.
 ///
@@ -13,7 +13,7 @@ use crate::error::{unwrap, within};
 ///   afterwards.
 ///
 /// ```
-/// use spikewire::frame::{Intensity, PixelCode, Refractory};
+/// use spikewire_cameras::frame::{Intensity, PixelCode, Refractory};
 ///
 /// const FLOW: Refractory<Intensity> = Refractory::new(Intensity::new(10), 1);
 /// let mut pixel = FLOW.begin(100);

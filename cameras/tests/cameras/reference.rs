@@ -4,40 +4,40 @@
 
 /// How the pixels of a camera fire.
 #[derive(Clone, Debug)]
-pub struct FrameLaw {
+pub(crate) struct FrameLaw {
     /// What each sample from 0 to 255 is as a base.
-    pub bases: Vec<i64>,
+    pub(crate) bases: Vec<i64>,
     /// The threshold upwards.
-    pub on: i64,
+    pub(crate) on: i64,
     /// The threshold downwards.
-    pub off: i64,
+    pub(crate) off: i64,
     /// The most events of a pixel and frame.
-    pub most: i64,
+    pub(crate) most: i64,
     /// The frames of silence after one with events.
-    pub refractory: u32,
+    pub(crate) refractory: u32,
     /// The most events of a frame.
-    pub budget: Option<i64>,
+    pub(crate) budget: Option<i64>,
 }
 
 /// What became of a frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrameOutcome {
+pub(crate) struct FrameOutcome {
     /// The events of every pixel, negative if they go down.
-    pub counts: Vec<i64>,
+    pub(crate) counts: Vec<i64>,
     /// The bases after the frame.
-    pub bases: Vec<i64>,
+    pub(crate) bases: Vec<i64>,
     /// Events that were due and beyond the budget.
-    pub kept_back: i64,
+    pub(crate) kept_back: i64,
 }
 
 /// Samples as they are, with one threshold.
-pub fn frame_intensity(threshold: i64, most: i64) -> FrameLaw {
+pub(crate) fn frame_intensity(threshold: i64, most: i64) -> FrameLaw {
     let bases = (0..256).collect();
     FrameLaw { bases, on: threshold, off: threshold, most, refractory: 0, budget: None }
 }
 
 /// Levels of a logarithm, so many for a factor of e.
-pub fn frame_log(scale: i64, on: i64, off: i64, most: i64) -> FrameLaw {
+pub(crate) fn frame_log(scale: i64, on: i64, off: i64, most: i64) -> FrameLaw {
     let bases = (0..256).map(|sample| log_level(scale, sample)).collect();
     FrameLaw { bases, on, off, most, refractory: 0, budget: None }
 }
@@ -50,7 +50,7 @@ fn log_level(scale: i64, sample: i64) -> i64 {
 }
 
 /// All frames, row-major. The first sets the bases, and has no events.
-pub fn frame_events(law: &FrameLaw, frames: &[Vec<u8>]) -> Vec<FrameOutcome> {
+pub(crate) fn frame_events(law: &FrameLaw, frames: &[Vec<u8>]) -> Vec<FrameOutcome> {
     let Some(first) = frames.first() else { return Vec::new() };
     let level = |sample: u8| law.bases[usize::from(sample)];
     let mut bases: Vec<i64> = first.iter().map(|&sample| level(sample)).collect();
@@ -86,7 +86,7 @@ pub fn frame_events(law: &FrameLaw, frames: &[Vec<u8>]) -> Vec<FrameOutcome> {
 
 /// The events of a frame in their order, each with its time, its pixel and its sign: event j of n in the slot
 /// ⌈(j+1)K/n⌉-1 of K, whose time is `before + ⌊(slot+1)(now-before)/K⌋`.
-pub fn frame_interpolated(
+pub(crate) fn frame_interpolated(
     counts: &[i64],
     most: i64,
     before: i64,
@@ -106,14 +106,14 @@ pub fn frame_interpolated(
 }
 
 /// The sample that a base stands for: how many neighbours' middles lie below it.
-pub fn frame_value(law: &FrameLaw, base: i64) -> u8 {
+pub(crate) fn frame_value(law: &FrameLaw, base: i64) -> u8 {
     law.bases.windows(2).filter(|pair| 2 * base > pair[0] + pair[1]).count() as u8
 }
 
 /// v2e's model of a dynamic vision sensor without noise, leak, filter and refractory period (`v2ecore`, Hu, Liu,
 /// Delbruck 2021): the events of every pixel and frame, in single precision as there. It fires where a threshold is
 /// reached, and as often as it is.
-pub fn v2e_events(frames: &[Vec<u8>], on: f32, off: f32) -> Vec<Vec<i64>> {
+pub(crate) fn v2e_events(frames: &[Vec<u8>], on: f32, off: f32) -> Vec<Vec<i64>> {
     let lin_log = |sample: u8| {
         let x = f64::from(sample);
         let y = if x <= 20.0 { x * (1.0 / 20.0 * 20_f64.ln()) } else { x.ln() };

@@ -1,10 +1,10 @@
 //! Event Stream (`.es`), DVS type: the pixels of an event camera.
 
 use super::{Clock, EventDecoder, EventFormat, FormatError};
-use crate::Polarity;
-use crate::event::Tick;
+use crate::bytes::Cursor;
 use crate::frame::PixelEvent;
-use crate::wire::bytes::Cursor;
+use spikewire::Polarity;
+use spikewire::Tick;
 
 /// Event Stream version 2, DVS events, of a [camera](crate::frame) of this size.
 ///
@@ -18,8 +18,9 @@ use crate::wire::bytes::Cursor;
 /// Source: Event Stream specification, neuromorphic-paris/event_stream.
 ///
 /// ```
-/// use spikewire::{Polarity, Tick, frame::PixelEvent};
-/// use spikewire::format::{Dvs, EventDecoder, EventFormat};
+/// use spikewire::{Polarity, Tick};
+/// use spikewire_cameras::frame::PixelEvent;
+/// use spikewire_cameras::format::{Dvs, EventDecoder, EventFormat};
 ///
 /// let camera = Dvs::new(320, 240);
 /// let event = PixelEvent { tick: Tick::from_micros(130), x: 5, y: 239, polarity: Polarity::Up };

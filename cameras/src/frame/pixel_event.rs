@@ -1,6 +1,6 @@
 //! An event of a pixel: where, when, and brighter or darker.
 
-use crate::{Event, Polarity, Tick};
+use spikewire::{Event, Polarity, Tick};
 
 /// An event of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,9 +4,8 @@ use core::num::NonZeroU8;
 
 use super::PixelCode;
 use super::band::{Band, FOUR, lanes_of_bytes, lanes_of_pairs, quiet};
-use crate::ConfigError;
-use crate::error::{unwrap, within};
-use crate::num::{DoubleDouble, curve};
+use crate::config::{unwrap, within};
+use spikewire::ConfigError;
 
 /// The levels of a logarithm: `u8`, 46 of them for a factor of e, or `u16`, 1024.
 ///
@@ -76,12 +75,27 @@ const fn level(sample: u8, scale: u16) -> u16 {
     /// Up to this sample a line takes the place of the logarithm, which would go to minus infinity.
     const KNEE: f64 = 20.0;
     let sample = sample as f64;
-    let log = if sample <= KNEE {
-        curve::ln(DoubleDouble::new(KNEE)).nearest() * sample / KNEE
-    } else {
-        curve::ln(DoubleDouble::new(sample)).nearest()
-    };
+    let log = if sample <= KNEE { ln(KNEE) * sample / KNEE } else { ln(sample) };
     (scale as f64 * log + 0.5) as u16
+}
+
+/// The natural logarithm of 1 to 255, to a few units in the last place: no level of these lies so near to a half.
+///
+/// With `x = 2^k * m`, `m` from 1 to 2 and `s = (m - 1) / (m + 1)`, it is `k ln 2 + 2 (s + s³/3 + s⁵/5 + ...)`; as `s` is
+/// a third at most, the terms left out are below 3⁻⁴¹.
+const fn ln(x: f64) -> f64 {
+    let (mut power, mut mantissa) = (0.0, x);
+    while mantissa >= 2.0 {
+        mantissa /= 2.0;
+        power += 1.0;
+    }
+    let s = (mantissa - 1.0) / (mantissa + 1.0);
+    let (mut sum, mut odd) = (0.0, 39.0);
+    while odd > 0.0 {
+        sum = sum * s * s + 1.0 / odd;
+        odd -= 2.0;
+    }
+    power * core::f64::consts::LN_2 + 2.0 * s * sum
 }
 
 // Constants have no iterators, and every index is compared first.
@@ -123,7 +137,7 @@ const fn narrowed(wide: &[u16; 256]) -> [u8; 256] {
 /// which fires where a threshold is reached, and this code where it is exceeded.
 ///
 /// ```
-/// use spikewire::frame::{LogIntensity, PixelCode};
+/// use spikewire_cameras::frame::{LogIntensity, PixelCode};
 ///
 /// const DVS: LogIntensity<u16> = LogIntensity::<u16>::new(205, 205).with_most(4);
 /// let base = DVS.base(100);

@@ -7,10 +7,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use host_tests::flight;
-use spikewire::format::{EventDecoder, EventFormat, EventStream, Evt2};
+use flight_data::{HEXAROTOR, records};
 use spikewire::temporal::StepForward;
 use spikewire::{Bank, Event, Polarity};
+use spikewire_cameras::format::{EventDecoder, EventFormat, EventStream, Evt2};
 
 const WHY: &str = "run by `cargo verify peers`";
 
@@ -19,8 +19,8 @@ fn events() -> Vec<Event> {
     let scheme = StepForward::new(0.1);
     let mut bank = Bank::<_, 6>::new(&scheme);
     let mut events = Vec::new();
-    for sample in flight::hexarotor() {
-        bank.encode(sample.time_us.into(), sample.channels(), |event| events.push(event));
+    for record in records(HEXAROTOR) {
+        bank.encode(record.micros.into(), record.channels, |event| events.push(event));
     }
     let tick = events.last().unwrap().tick;
     for address in [0, 255, 256, 2047, 2048, 32_767, u16::MAX] {

@@ -14,7 +14,8 @@
 //! [`FrameDecoder`] makes frames again. Events come in raster order.
 //!
 //! ```
-//! use spikewire::{Polarity, Tick, frame::{FrameDecoder, FrameEncoder, Intensity}};
+//! use spikewire::{Polarity, Tick};
+//! use spikewire_cameras::frame::{FrameDecoder, FrameEncoder, Intensity};
 //!
 //! const FLOW: Intensity = Intensity::new(10).with_most(4); // grey levels; events a pixel and frame
 //!

@@ -3,8 +3,8 @@
 use core::num::NonZeroU8;
 
 use super::band::FOUR;
-use crate::ConfigError;
-use crate::error::within;
+use crate::config::within;
+use spikewire::ConfigError;
 
 /// How a pixel's samples become events: a base that follows the samples in steps.
 ///

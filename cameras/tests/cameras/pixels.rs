@@ -1,11 +1,11 @@
 //! Formats with columns and rows: golden bytes, round trips, and what they refuse.
 
-use crate::common::cases;
+use crate::cases;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use spikewire::format::{Dvs, EventDecoder, EventFormat, Evt2Pixels, FormatError};
-use spikewire::frame::PixelEvent;
 use spikewire::{Polarity, Tick};
+use spikewire_cameras::format::{Dvs, EventDecoder, EventFormat, Evt2Pixels, FormatError};
+use spikewire_cameras::frame::PixelEvent;
 
 const CAMERA: Dvs = Dvs::new(320, 240);
 

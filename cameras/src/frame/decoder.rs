@@ -3,8 +3,8 @@
 use core::fmt;
 
 use super::{PixelCode, PixelEvent};
-use crate::error::{first_address, unwrap};
-use crate::{ConfigError, Event, Keyframe, Polarity};
+use crate::config::{first_address, unwrap};
+use spikewire::{ConfigError, Event, Keyframe, Polarity};
 
 /// The picture at the far end: the base of every pixel, which each event moves as it moved the encoder's.
 ///

@@ -1,9 +1,9 @@
 //! EVT 2.0: the format of Prophesee's cameras and tools.
 
 use super::{Clock, EventDecoder, EventFormat, FormatError};
-use crate::Polarity;
-use crate::event::{Event, Tick};
-use crate::wire::bytes::Cursor;
+use crate::bytes::Cursor;
+use spikewire::Polarity;
+use spikewire::{Event, Tick};
 
 /// Prophesee EVT 2.0: words of 32 bits, little endian.
 ///
@@ -17,7 +17,8 @@ use crate::wire::bytes::Cursor;
 /// Source: Prophesee, EVT 2.0 format.
 ///
 /// ```
-/// use spikewire::{Event, Polarity, Tick, format::{EventDecoder, EventFormat, Evt2}};
+/// use spikewire::{Event, Polarity, Tick};
+/// use spikewire_cameras::format::{EventDecoder, EventFormat, Evt2};
 ///
 /// let event = Event { tick: Tick::from_micros(0x41), address: 5, polarity: Polarity::Up };
 /// let mut bytes = [0; 8];

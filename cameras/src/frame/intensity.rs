@@ -4,8 +4,8 @@ use core::num::NonZeroU8;
 
 use super::PixelCode;
 use super::band::{Band, FOUR, lanes_of_bytes, quiet};
-use crate::ConfigError;
-use crate::error::{unwrap, within};
+use crate::config::{unwrap, within};
+use spikewire::ConfigError;
 
 /// Step forward or send-on-delta of a pixel: an event for every threshold by which the sample lies beyond the base.
 ///
@@ -22,7 +22,7 @@ use crate::error::{unwrap, within};
 /// Source: Dupeyroux et al. 2022, section V; Miskowicz, *Send-on-delta concept*, 2006.
 ///
 /// ```
-/// use spikewire::frame::{Intensity, PixelCode};
+/// use spikewire_cameras::frame::{Intensity, PixelCode};
 ///
 /// const PAPER: Intensity = Intensity::new(10);
 /// assert_eq!(PAPER.steps(100, 110), 0); // strictly above

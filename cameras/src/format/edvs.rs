@@ -1,9 +1,9 @@
 //! eDVS and mini-eDVS: the serial protocol of the drone-sized event cameras.
 
 use super::{Clock, EventDecoder, EventFormat, FormatError};
-use crate::Polarity;
-use crate::event::{Event, Tick};
-use crate::wire::bytes::Cursor;
+use crate::bytes::Cursor;
+use spikewire::Polarity;
+use spikewire::{Event, Tick};
 
 /// How the camera sends time: `!E0` to `!E4`. Older firmware numbers them one lower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -37,7 +37,8 @@ pub enum EdvsTime {
 /// Source: eDVS user guide; libcaer, `edvs.c`.
 ///
 /// ```
-/// use spikewire::{Event, Polarity, Tick, format::{Edvs, EdvsTime, EventDecoder, EventFormat}};
+/// use spikewire::{Event, Polarity, Tick};
+/// use spikewire_cameras::format::{Edvs, EdvsTime, EventDecoder, EventFormat};
 ///
 /// const CAMERA: Edvs = Edvs::new(EdvsTime::Delta);
 /// let event = Event { tick: Tick::from_micros(0x80), address: 3 << 7 | 5, polarity: Polarity::Up };

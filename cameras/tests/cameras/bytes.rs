@@ -3,12 +3,12 @@
 use std::num::NonZeroU16;
 
 use proptest::prelude::*;
-use spikewire::format::{
-    Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio,
-};
 use spikewire::link::{Coding, Session, Transmitter};
-use spikewire::out::{Batch, Formatted};
+use spikewire::out::Batch;
 use spikewire::{Event, FromEvents, FromItems, Item, Keyframe, Polarity, Tick};
+use spikewire_cameras::format::{
+    Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, Formatted, eieio,
+};
 
 fn event(tick: u32, address: u16, is_up: bool) -> Event {
     let tick = Tick::from(tick);
@@ -383,7 +383,7 @@ fn goes_on<B: Batch>(mut batch: B, items: &[Item]) {
 }
 
 proptest! {
-    #![proptest_config(crate::common::cases(256))]
+    #![proptest_config(crate::cases(256))]
 
     #[test]
     fn the_shortest_batch_always_holds_something(

@@ -2,20 +2,20 @@
 
 use core::num::NonZeroU8;
 
-use crate::common::cases;
-use camera_frames::{FRAMES, Line, PERIOD, SIZE};
-use host_tests::reference::{
+use crate::cases;
+use crate::reference::{
     FrameLaw, FrameOutcome, frame_events, frame_intensity, frame_interpolated, frame_log,
     frame_value, v2e_events,
 };
+use camera_frames::{FRAMES, Line, PERIOD, SIZE};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use spikewire::frame::{
+use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
+use spikewire::{ConfigError, Event, FromItems, Item, Keyframe, Polarity, Put, Tick};
+use spikewire_cameras::frame::{
     DynamicFrameEncoder, FrameDecoder, FrameEncoder, FrameSize, Intensity, LogIntensity, PixelCode,
     PixelEvent, Refractory,
 };
-use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
-use spikewire::{ConfigError, Event, FromItems, Item, Keyframe, Polarity, Put, Tick};
 
 /// Odd, so that fours of pixels and what is left of a row are both there.
 const W: usize = 11;
@@ -284,6 +284,7 @@ fn thresholds_and_numbers_that_make_no_sense() {
     let said = |result: Result<(), ConfigError>| result.unwrap_err().to_string();
     let threshold = |value| said(Intensity::try_new(value).map(drop));
     assert_eq!(threshold(0), "threshold 0 must lie in 1..=254");
+    assert_eq!(Intensity::new(7).threshold(), 7);
     assert_eq!(threshold(255), "threshold 255 must lie in 1..=254");
     let fine = |on, off| said(LogIntensity::<u16>::try_new(on, off).map(drop));
     assert_eq!(fine(0, 1), "ON threshold 0 must lie in 1..=5673");
@@ -588,4 +589,19 @@ fn a_row_beyond_the_height_renews_no_budget() {
         }
     }
     assert_eq!((sent, camera.outside()), (3, 2));
+}
+
+#[test]
+fn a_camera_takes_addresses_of_its_own_at_run_time() {
+    let code = Intensity::new(10);
+    let mut camera = FrameEncoder::<_, 2, 1>::new(code).try_with_first_address(100).unwrap();
+    let mut decoder = FrameDecoder::<_, 2, 1>::new(code).try_with_first_address(100).unwrap();
+    let mut items = Vec::new();
+    camera.encode_frame_into(Tick::from(1), &[[50, 50]], Items(&mut items));
+    camera.encode_frame_into(Tick::from(2), &[[50, 61]], Items(&mut items));
+    let [Item::Event(event)] = items[..] else { panic!("not one event, but {items:?}") };
+    assert_eq!(event, Event { tick: Tick::from(2), address: 101, polarity: Polarity::Up });
+    decoder.start(&[[50, 50]]);
+    decoder.event(event);
+    assert_eq!(decoder.base(1, 0), Some(60));
 }

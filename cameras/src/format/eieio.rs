@@ -1,7 +1,7 @@
 //! EIEIO, the format of `SpiNNaker` boards: the payload of a UDP datagram, up to 255 keys of 32 bits, little endian.
 //!
 //! ```
-//! use spikewire::format::eieio;
+//! use spikewire_cameras::format::eieio;
 //!
 //! let mut bytes = [0; 16];
 //! let length = eieio::encode(None, [0x0007_0105, 0x0007_0106], &mut bytes)?;
@@ -10,11 +10,11 @@
 //! let datagram = eieio::decode(&bytes[..length]).unwrap();
 //! assert_eq!(datagram.timestamp, None);
 //! assert!(datagram.keys().eq([0x0007_0105, 0x0007_0106]));
-//! # Ok::<(), spikewire::format::FormatError>(())
+//! # Ok::<(), spikewire_cameras::format::FormatError>(())
 //! ```
 
 use super::FormatError;
-use crate::wire::bytes::Cursor;
+use crate::bytes::Cursor;
 
 const KEYS_32: u8 = 0x08;
 const KEYS_32_TIMED: u8 = 0x38;

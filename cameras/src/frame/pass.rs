@@ -3,8 +3,8 @@
 use core::num::{NonZeroU8, NonZeroU32, NonZeroU64};
 
 use super::PixelCode;
-use crate::error::within;
-use crate::{ConfigError, Polarity, Tick};
+use crate::config::within;
+use spikewire::{ConfigError, Polarity, Tick};
 
 /// Which of a pixel's events are sent in one pass over a frame.
 #[derive(Clone, Copy)]

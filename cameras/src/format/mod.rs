@@ -24,16 +24,18 @@ pub mod eieio;
 mod event_stream;
 mod evt2;
 mod evt2_pixels;
+mod formatted;
 
 use core::fmt;
 
-use crate::event::{Event, Tick};
+use spikewire::{Event, Tick};
 
 pub use dvs::{Dvs, DvsDecoder, DvsEncoder};
 pub use edvs::{Edvs, EdvsDecoder, EdvsEncoder, EdvsTime};
 pub use event_stream::{EventStream, EventStreamDecoder, EventStreamEncoder};
 pub use evt2::{Evt2, Evt2Decoder, Evt2Encoder};
 pub use evt2_pixels::{Evt2Pixels, Evt2PixelsDecoder, Evt2PixelsEncoder};
+pub use formatted::Formatted;
 
 /// Writes events, one after the other: [`Event`]s with an address, or the
 /// [`PixelEvent`](crate::frame::PixelEvent)s of a camera.

@@ -5,8 +5,8 @@ use core::fmt;
 
 use super::pass::{Budget, Pass, slots};
 use super::{PixelCode, PixelEvent};
-use crate::error::within;
-use crate::{ConfigError, Tick};
+use crate::config::within;
+use spikewire::{ConfigError, Tick};
 
 /// A [`FrameEncoder`](super::FrameEncoder) of any size, on the heap: for videos, not for firmware.
 ///
