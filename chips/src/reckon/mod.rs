@@ -47,8 +47,8 @@ use wire::{Address, Wire};
 /// more for each event.
 ///
 /// # What to know about the chip
-/// - After reset learning is on, and the chip waits without end for the target of the first tick. Therefore
-///   [`Programmed::run`] always writes [`ReckOnSettings::learning`].
+/// - After reset learning is on: at the first tick with `TARGET_VALID` the chip would wait for a target without end.
+///   Therefore [`Programmed::run`] always writes [`ReckOnSettings::learning`].
 /// - A tick that comes before the last step is done stops the chip until a reset, although `TIMING_ERROR_RDY` then says
 ///   ready. [`ReckOnSample::step`] waits for this line before the tick. After the tick the line is low for 2 N + 4 clocks
 ///   only, which a driver that reads its pins rarely would miss. Therefore the chip is always set to send an answer in each
