@@ -11,13 +11,13 @@ use core::{fmt::Debug, hint::black_box, slice};
 
 /// `OUT` neurons and the weights that lead to them from `IN` inputs, as references to data in flash.
 ///
-/// - **Order of additions:** first a neuron's bias; then the weights of the inputs, in the order of the list (or of values, in
-/// the order of the inputs); then the weights of the neurons of this layer that fired in the step before, in rising
-/// order. Each addition and product is rounded by itself.
-/// - **Work:** a step adds a row for each spike, for up to 16 neurons at a time, and visits each neuron once. If there are more
-/// spikes than inputs, as some inputs fire several times, the additional ones take about twice as long.
-/// - **Memory:** potentials, currents, and two bytes for each neuron in a list of spikes. On the stack: four bytes for each input,
-/// and four for each neuron if the layer is recurrent.
+/// - **Order of additions:** first a neuron's bias; then the weights of the inputs, in the order of the list (or of
+///   values, in the order of the inputs); then the weights of the neurons of this layer that fired in the step before, in
+///   rising order. Each addition and product is rounded by itself.
+/// - **Work:** a step adds a row for each spike, for up to 16 neurons at a time, and visits each neuron once. If there are
+///   more spikes than inputs, as some inputs fire several times, the additional ones take about twice as long.
+/// - **Memory:** potentials, currents, and two bytes for each neuron in a list of spikes. On the stack: four bytes for each
+///   input, and four for each neuron if the layer is recurrent.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a, N: Neuron, const IN: usize, const OUT: usize, I = Spiking, R = Forward> {
     weights: &'a Weights<N::Value, IN, OUT>,
