@@ -1,7 +1,8 @@
-//! Blackbox logs of Betaflight and its kin: full frames, and between them frames of differences.
+//! Reads blackbox logs of Betaflight and related firmware: full frames, and between them frames of differences.
 //!
-//! A topic each for the frames of the main loop (`main`), for what changes seldom (`slow`) and for `gps`; those of a
-//! second log in the file are `main:1`. Numbers are as logged, in the flight controller's units.
+//! The frames of the main loop are on the topic `main`, values that change rarely on `slow`, and those of the GPS on
+//! `gps`. Those of a second log in the file are on `main:1` and so on. Numbers are as logged, in the flight
+//! controller's units.
 
 mod encoding;
 mod header;
@@ -22,50 +23,51 @@ pub(crate) const START: &[u8] = b"H Product:Blackbox";
 /// The topic of the frames of the main loop.
 pub(crate) const MAIN: &str = "main";
 
-/// The longest frame, and the longest line of the header.
+/// Length in bytes of the longest frame and of the longest line of the header.
 const LONGEST: usize = 4096;
-/// The longest plausible step from frame to frame, in µs and in iterations. A longer one counts as damage unless the
-/// frames after it agree.
+/// Longest plausible step between frames, in µs and in iterations. A longer one counts as damage unless the following
+/// frames confirm it.
 const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
 
-/// A log that is read from its start to its end.
+/// A log that is being read.
 pub(crate) struct Blackbox {
     bytes: Bytes,
     faults: Faults,
-    /// Bytes read from the file and not yet taken, from `at` on, and the place of the first in the file.
+    /// Bytes read from the file. Those from index `at` on are not decoded yet; `start` is the offset of the first in
+    /// the file.
     window: Vec<u8>,
     at: usize,
     start: u64,
     is_read: bool,
-    /// The number of logs in the file so far: a flight controller appends one for each flight.
+    /// Number of logs in the file so far: a flight controller appends one for each flight.
     logs: usize,
     session: Option<Session>,
     topics: Vec<Topic>,
     message: Vec<u8>,
-    /// The place at which the present damage began.
+    /// Offset at which the present damage began.
     damaged: Option<u64>,
 }
 
-/// A log of the file.
+/// One of the logs in the file.
 struct Session {
     header: Header,
-    /// The index of its main topic; `slow` and `gps` are those of the others.
+    /// Index of its main topic; `slow` and `gps` are the indices of the other topics.
     main: usize,
     slow: Option<usize>,
     gps: Option<usize>,
-    /// The frame before, and the one before that.
+    /// The last two frames, the latest first.
     previous: Option<[Vec<i32>; 2]>,
     home: Vec<i32>,
-    /// The iteration and the time of the last good frame.
+    /// Iteration and time of the last good frame.
     last: Option<(i64, i64)>,
-    /// The iteration and time of a frame far from the last good one, until another confirms them.
+    /// Iteration and time of a frame far from the last good one, until the next frame confirms or refutes it.
     doubted: Option<(i64, i64)>,
-    /// The place of `loopIteration` and `time`.
+    /// Indices of the fields `loopIteration` and `time`.
     iteration: Option<usize>,
     time: usize,
 }
 
-/// The result of reading a frame.
+/// The outcome of reading a frame.
 enum Frame {
     Message { topic: usize, time: i64, numbers: Vec<i64> },
     Other,
@@ -89,7 +91,7 @@ impl Blackbox {
         })
     }
 
-    /// Reads on until the window holds a whole frame, or the file ends.
+    /// Reads until the window holds a whole frame, or the file ends.
     fn fill(&mut self) -> Result<()> {
         const MORE: u64 = 1 << 16;
         if self.is_read || self.window.len() - self.at >= LONGEST {
@@ -119,7 +121,7 @@ impl Blackbox {
         self.start + self.at as u64
     }
 
-    /// Reads the head of a log.
+    /// Reads the header of a log.
     fn head(&mut self) -> Result<()> {
         let place = self.place();
         let mut lines = Vec::new();
@@ -178,7 +180,7 @@ impl Blackbox {
         Ok(())
     }
 
-    /// Takes a frame, or a byte that begins none.
+    /// Reads a frame, or skips a byte that cannot begin one.
     fn frame(&mut self) -> Result<Option<Entry>> {
         let place = self.place();
         let Some(session) = &mut self.session else {
@@ -262,7 +264,7 @@ impl Session {
         }
     }
 
-    /// Takes a frame of the main loop, if it follows from the one before.
+    /// Accepts a frame of the main loop if it follows from the frame before.
     fn main(&mut self, frame: Vec<i32>, is_full: bool) -> Result<Frame, Fault> {
         let mut numbers = self.header.full.widened(&frame);
         let mut time = numbers[self.time];
@@ -292,7 +294,7 @@ impl Session {
         Ok(Frame::Message { topic: self.main, time, numbers })
     }
 
-    /// The numbers of a frame: the packed difference plus the prediction, for each field.
+    /// Decodes the numbers of a frame: for each field the packed difference plus the prediction.
     fn numbers(
         &self,
         fields: &Fields,
@@ -382,7 +384,7 @@ impl Session {
 }
 
 impl Fields {
-    /// The numbers of a frame, in which unsigned fields are not negative.
+    /// Converts the numbers of a frame, so that unsigned fields are not negative.
     fn widened(&self, frame: &[i32]) -> Vec<i64> {
         let numbers = frame.iter().zip(&self.signed);
         numbers

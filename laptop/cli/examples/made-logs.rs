@@ -1,4 +1,4 @@
-//! Writes a log of each kind that is made byte by byte, for checks in other languages.
+//! Writes one hand-made log of each kind, for checks in other languages.
 
 use flight_logs::made as logs;
 use std::{env, fs, io, path::Path};

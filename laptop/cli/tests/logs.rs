@@ -8,13 +8,13 @@ use flight_logs::made::{
 };
 use serde_json::Value;
 
-/// What `info` says of a log, with these options.
+/// Returns what `info` prints for a log, with these options.
 fn info(name: &str, log: impl AsRef<[u8]>, options: &str) -> String {
     let (_directory, path) = file(name, log);
     ran!("info {options} {path}").output
 }
 
-/// A log that `info` refuses with these words; what it says of it where damage is accepted.
+/// Asserts that `info` refuses a log with these words; returns what it prints if damage is accepted.
 fn damaged(name: &str, log: &[u8], words: &[&str]) -> String {
     let (_directory, path) = file(name, log);
     refused(&format!("info {path}"), "", words);
@@ -124,7 +124,7 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {}", empty.path().display()), "", &["which has a file metadata.yaml"]);
 }
 
-/// Steps of 100 follow the rate, which changes by less from frame to frame.
+/// Steps of 101 follow the rate, which changes by less than that from frame to frame.
 #[test]
 fn a_blackbox_log_is_read_frame_by_frame() {
     let (_directory, path) = file("log.bbl", blackbox());
@@ -223,8 +223,8 @@ fn bags_are_tuned_and_advised_on() {
     }
 }
 
-/// What is decoded from a log is what is decoded from a table of spikes, for one neuron and several, with a sign and
-/// without, with sub-timesteps and with several spikes a sample, for one channel and two.
+/// A log decodes to the same values as a table of the same spikes: for one neuron and several, with a sign and without,
+/// with sub-timesteps, with several spikes a sample, for one channel and two.
 #[test]
 fn spikes_as_messages_decode_as_those_of_a_table() {
     let flight = flight("hexarotor.csv");
@@ -256,7 +256,7 @@ fn spikes_as_messages_decode_as_those_of_a_table() {
     assert!(told.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{told}");
 }
 
-/// The toolbox's script takes the mean of the thresholds, and leaves out the spike of the first message.
+/// The toolbox's script uses the mean of the thresholds, and ignores the spike of the first message.
 #[test]
 fn the_toolboxs_own_bag_decodes_as_its_script_does() {
     let numbers =

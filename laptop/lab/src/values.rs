@@ -1,4 +1,4 @@
-//! Decodes frames to values, with the receiver that runs on boards, in any sample type.
+//! Decodes frames to values in any sample type, with the receiver that runs on boards.
 
 use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
@@ -10,24 +10,24 @@ use spikewire::link::{Received, Receiver};
 use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
-/// The most channels of a code of one neuron.
+/// Maximum number of channels, for codes with one neuron for each.
 const MOST: usize = 256;
 
-/// The most channels of any code: with 1024 neurons each they have all addresses.
+/// Maximum number of channels, for all other codes: with 1024 neurons each they fill all addresses.
 const FEWER: usize = 64;
 
-/// The most events of one sample, over all channels.
+/// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function that uses a receiver.
+/// The function that uses a receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
-/// What a sender has beside its schemes.
+/// Properties of a sender besides its schemes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Link {
-    /// The length of its sub-timesteps in µs, if it has some.
+    /// Length of the sub-timesteps in µs, if there are any.
     pub slot_ticks: Option<u32>,
-    /// The fingerprint of the filter before its schemes, if there is one.
+    /// Fingerprint of the filter before the schemes, if there is one.
     pub filter: Option<Fingerprint>,
 }
 
@@ -37,10 +37,10 @@ impl From<Option<u32>> for Link {
     }
 }
 
-/// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
+/// Makes a receiver with these settings, one set for each channel or one for all, and passes it to `then`.
 ///
 /// # Errors
-/// A parameter out of its range, too many channels, or an error of `then`.
+/// Returns an error if a parameter is out of its range, or if there are too many channels; or the error of `then`.
 pub fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
@@ -83,7 +83,7 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 }
 
 impl Receive<'_> {
-    /// Makes a receiver of `N` channels for this scheme.
+    /// Makes a receiver of up to `N` channels.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
         let Self { scheme, sample, settings, link: Link { slot_ticks, filter }, then } = self;
         if settings.len() > N {
@@ -130,7 +130,7 @@ impl Receive<'_> {
     }
 }
 
-/// Hands a scheme on by itself.
+/// A visitor that returns the scheme built.
 struct Boxed;
 
 impl<S: Sample> Visit<S> for Boxed {
@@ -145,7 +145,7 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// The sample type's name on a link.
+/// Returns the link's name of a sample type.
 fn kind(sample: SampleType) -> SampleKind {
     match sample {
         SampleType::F32 => SampleKind::F32,
@@ -154,10 +154,10 @@ fn kind(sample: SampleType) -> SampleKind {
     }
 }
 
-/// A scheme whose decoders start from a given value. Only the decoding half is of use.
+/// A scheme whose decoders start from a given value. It serves only for decoding.
 struct Started<P: Scheme> {
     scheme: P,
-    /// Whether there is such a channel; false for what stands in its place beyond the last one.
+    /// Whether the channel exists; false for the placeholder after the last one.
     is_given: bool,
     start: Option<P::Sample>,
 }
@@ -224,32 +224,33 @@ impl<P: Scheme> Scheme for Started<P> {
 struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     receiver: Receiver<[&'a Started<P>; N], N, EVENTS>,
     channels: usize,
-    /// How many neurons a channel has.
+    /// Number of neurons of each channel.
     neurons: usize,
-    /// The channels that have values: those of temporal codes, and others from their first event on.
+    /// Which channels have values: all of a temporal code; others from their first event on.
     has_fired: [bool; N],
-    /// A tick at which the last sample heard is over.
+    /// A tick by which the last sample received is over.
     end: Option<Tick>,
-    /// Keyframes for a code that has none.
+    /// Number of keyframes received for a code that has none.
     unused_keyframes: u64,
-    /// The value of 1 in the unit of the decoders.
+    /// The number that represents 1 in the decoders' unit.
     one: f64,
-    /// The sample type of the sender.
+    /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of events outside, beside those that the receiver counts.
+    /// Number of events for channels that do not exist, besides those that the receiver counts.
     outside: u64,
-    /// The length of a sub-timestep in µs, or 0.
+    /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
-    /// The fingerprint of each channel's scheme, or of the one of all channels, however many the sender has.
+    /// Fingerprint of each channel's scheme; or of the one scheme that all channels share, however many there are.
     schemes: Vec<Fingerprint>,
-    /// Whether a value was exact.
+    /// Whether any value so far was exact.
     has_exact: bool,
     decoded: Vec<(u16, Tick, P::Sample)>,
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// The frame with keyframes of the sender's type as those of the decoders, which run all fixed point of one width
-    /// as one type; keyframes of any other type stay another.
+    /// Relabels keyframes of the sender's sample type as the decoders': these treat all fixed-point types of one width
+    /// alike. Keyframes of the decoders' type, if that is not the sender's, are relabelled too, so that they count as
+    /// misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -262,7 +263,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         Received { frame, ..*received }
     }
 
-    /// For each channel, whether it is exact.
+    /// Returns for each channel whether its value is exact.
     fn exact(&self) -> [bool; N] {
         std::array::from_fn(|channel| self.receiver.exact(channel as u16).is_some())
     }
@@ -279,9 +280,10 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Adds the values decoded, of which the first so many are keyframes.
+    /// Appends the decoded values as items; the first `keyframes` of them are keyframes.
     ///
-    /// A sample becomes exact amid a frame. Its values are called exact from the next frame on, so that no estimate is.
+    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on, so
+    /// that no estimate is marked exact.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
@@ -305,8 +307,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// The fingerprint that a sender of these channels has, in its own sample type: that of as many channels as make it
-    /// the sender's where one scheme is given for all.
+    /// Returns the fingerprint that a sender of these channels has, in its own sample type. If all channels share one
+    /// scheme, tries each number of channels until one gives `sender`.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {
