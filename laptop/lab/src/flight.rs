@@ -149,9 +149,8 @@ pub fn with_receiver<'a>(
 ) -> Result<()> {
     let slot_ticks = Some(flight.slot_ticks()).filter(|ticks| *ticks > 0);
     let scheme = Scheme::from(flight.run_time());
-    let filter = flight.filter.map(|own| own.fingerprint(flight.sample, flight.rate() as f32));
-    let filter = filter.transpose()?;
-    let link = values::Link { slot_ticks, filter };
+    let (fingerprint, clock_ppm) = (Some(flight.fingerprint()), Some(flight.clock_ppm));
+    let link = values::Link { slot_ticks, fingerprint, clock_ppm };
     values::with_receiver(scheme, flight.sample, flight.settings(), link, move |values| {
         then(Box::new(InUnits { flight, values }))
     })
