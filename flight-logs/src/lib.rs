@@ -1,4 +1,5 @@
-//! Flight logs, message by message: PX4's `ULog`, bags of ROS 1 and ROS 2, MCAP files, Betaflight's blackbox.
+//! Flight logs, message by message: PX4's `ULog`, `ArduPilot`'s `DataFlash`, `MAVLink` telemetry, bags of ROS 1 and ROS 2, MCAP
+//! files, Betaflight's blackbox.
 //!
 //! All formats read alike: [`Kind::of`] recognises a log by its first bytes, [`Reading`] gives its messages in the order
 //! of the file, and a message gives its numbers by the name of their field. Memory does not grow with the log, but for
@@ -25,12 +26,13 @@
 //! The readers are written here and not taken from other crates, because each names the byte of a fault and can go on
 //! behind it. Compared in November 2026: `mcap` 0.26 takes a damaged chunk without a word unless it is asked to look at
 //! checksums, and ends there if it is; `blackbox-log` 0.4.3 refuses a log whose head names no firmware that it knows;
-//! `yule_log` 0.4 is what the tests of this repository compare with; `SQLite` itself needs a C compiler.
+//! `ardupilot-binlog` 0.2 passes damage over without a word, and ends there after 256 places; `yule_log` 0.4 is what the tests of this repository compare with; `SQLite` itself needs a C compiler.
 
 mod bag;
 mod blackbox;
 mod bytes;
 mod chunk;
+mod dataflash;
 pub mod definition;
 mod error;
 mod faults;
@@ -39,6 +41,7 @@ mod known;
 #[cfg(any(test, feature = "made"))]
 #[doc(hidden)]
 pub mod made;
+mod mavlink;
 mod mcap;
 #[cfg(test)]
 mod mutated;
@@ -47,6 +50,7 @@ mod rosbag2;
 mod sqlite;
 mod topic;
 mod ulog;
+mod window;
 mod wire;
 pub mod zstd;
 
@@ -116,6 +120,12 @@ pub enum Kind {
     Blackbox,
     /// A PX4 log.
     Ulog,
+    /// An `ArduPilot` log, `.bin`.
+    ArduPilot,
+    /// An `ArduPilot` log as text, `.log`.
+    ArduPilotText,
+    /// A telemetry log of a ground station, `.tlog`.
+    Mavlink,
 }
 
 impl Kind {
@@ -125,7 +135,6 @@ impl Kind {
     /// Returns an error if the file cannot be opened or read, or promises a log by its name and is none: a directory
     /// without `metadata.yaml`, or a file `.ulg` with other bytes.
     pub fn of(path: &Path) -> Result<Option<Self>> {
-        const START: u64 = 32;
         if path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
             return Ok(Some(Self::Directory));
         }
@@ -142,7 +151,7 @@ impl Kind {
             return Ok(None);
         }
         let mut start = Vec::new();
-        let read = Bytes::open(path)?.take(START, &mut start);
+        let read = Bytes::open(path)?.take(dataflash::LOOKED_AT, &mut start);
         let is_named = path.extension().is_some_and(|own| own == "ulg");
         match (read, of_start(&start)) {
             (Err(error), _) if is_named => Err(Error::of(path, ErrorKind::Unpack(error))),
@@ -160,7 +169,14 @@ impl Kind {
     pub fn usual_topic(self) -> Option<&'static str> {
         match self {
             Self::Blackbox => Some(blackbox::MAIN),
-            Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory | Self::Ulog => None,
+            Self::Bag
+            | Self::Mcap
+            | Self::Sqlite
+            | Self::Directory
+            | Self::Ulog
+            | Self::ArduPilot
+            | Self::ArduPilotText
+            | Self::Mavlink => None,
         }
     }
 }
@@ -177,7 +193,18 @@ fn of_start(start: &[u8]) -> Option<Kind> {
         (blackbox::START, Kind::Blackbox),
         (ulog::START, Kind::Ulog),
     ];
-    kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
+    let kind = kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind);
+    let looked_into = || {
+        let is_begun = |window: &[u8]| window == dataflash::START;
+        if start.windows(dataflash::START.len()).any(is_begun) {
+            Some(Kind::ArduPilot)
+        } else if dataflash::is_text(start) {
+            Some(Kind::ArduPilotText)
+        } else {
+            mavlink::is_log(start).then_some(Kind::Mavlink)
+        }
+    };
+    kind.or_else(looked_into)
 }
 
 /// The code of the README, for doctests alone.
@@ -197,6 +224,9 @@ pub fn open(path: &Path, kind: Kind, damage: Damage) -> Result<Box<dyn Log>> {
         Kind::Sqlite => Box::new(rosbag2::Sqlite::open(path, faults)?),
         Kind::Blackbox => Box::new(blackbox::Blackbox::open(path, faults)?),
         Kind::Ulog => Box::new(ulog::Ulog::open(path, faults)?),
+        Kind::ArduPilot => Box::new(dataflash::Binary::open(path, faults)?),
+        Kind::ArduPilotText => Box::new(dataflash::Text::open(path, faults)?),
+        Kind::Mavlink => Box::new(mavlink::Mavlink::open(path, faults)?),
         Kind::Directory => Box::new(rosbag2::Directory::open(path, faults)?),
     })
 }

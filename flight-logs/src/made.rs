@@ -1,6 +1,9 @@
-//! Bags of ROS 1 and 2 and MCAP files, made byte by byte.
+//! Logs of every kind, made byte by byte.
 #![allow(dead_code, unreachable_pub)]
 
+mod ardupilot;
+
+pub use ardupilot::*;
 use std::io::Write;
 
 /// The kind of a log to make: one topic `/imu` with a counted header, an array and a text.

@@ -19,9 +19,8 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options to read it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
-    /// 2, MCAP, Betaflight's blackbox; `-` is a CSV table on
-    /// standard input
+    /// CSV table with a header, or log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or
+    /// 2, MCAP, Betaflight's blackbox; also compressed; `-` is a CSV table on standard input
     pub input: PathBuf,
     #[command(flatten)]
     channel: ChannelOptions,
@@ -53,7 +52,7 @@ pub(crate) struct ChannelOptions {
     /// What stands between columns: `,` `;` `|` `tab` `space`; found in the header unless given
     #[arg(long, help_heading = "Input")]
     delimiter: Option<Delimiter>,
-    /// Topic of a log; in a PX4 log with `:1` after it for its second instance
+    /// Topic of a log; with `:1` after it for the second instance of a sensor
     #[arg(long, help_heading = "Input")]
     topic: Option<String>,
     /// Field of that topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several

@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 Example:
   spikewire info flight.ulg")]
 pub(crate) struct Info {
-    /// PX4's `ULog`, a bag of ROS 1 or 2, an MCAP file, Betaflight's blackbox or a CSV table, also compressed by gzip; `-` is
-    /// a table on standard input
+    /// PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an MCAP file, Betaflight's
+    /// blackbox or a CSV table, also compressed; `-` is a table on standard input
     log: PathBuf,
     /// Report steps in time above this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]

@@ -36,9 +36,8 @@ pub const CHUNK: usize = 8192;
 /// A recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
-    /// 2, MCAP, Betaflight's blackbox; `-` is a CSV table on
-    /// standard input
+    /// CSV table with a header, or log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or
+    /// 2, MCAP, Betaflight's blackbox; also compressed; `-` is a CSV table on standard input
     pub input: PathBuf,
     /// The channel to read.
     pub channel: ChannelOptions,
@@ -67,7 +66,7 @@ pub struct ChannelOptions {
     pub time_unit: Option<TimeUnit>,
     /// Delimiter of columns: `,` `;` `|` `tab` `space`; found in the header unless given
     pub delimiter: Option<Delimiter>,
-    /// Topic of a log; in a PX4 log with `:1` after it for its second instance
+    /// Topic of a log; with `:1` after it for the second instance of a sensor
     pub topic: Option<String>,
     /// Field of that topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several
     pub field: Vec<String>,
