@@ -1,5 +1,6 @@
 //! Reasons that a network cannot be read or brought onto a chip.
 
+use super::controller::{Choice, Framework};
 use crate::error::{At, room};
 use crate::{Error, Place, Spot};
 use catalogue::kinds;
@@ -10,6 +11,10 @@ kinds! {
     /// The reason that a network cannot be read, or does not fit.
     pub enum NetworkKind by spell of subject {
         Fault { what: String } => ("{what}"),
+        OpenRule { framework: Option<Framework>, open: Vec<Choice> } => (
+            "the file does not say by which rule its neurons step: {}",
+            super::controller::words(spell, *framework, open)
+        ),
         NoNetwork => ("neither a NIR graph, which is an HDF5 file, nor a network in JSON"),
         NotAnInput { word: String } => ("`{word}` is not the number of an input"),
         NoInputs { inputs: usize, step: Vec<u16> } =>

@@ -17,8 +17,8 @@ pub use bring::{
 };
 pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Stepped, Told};
 pub use controller::{
-    Asked, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers, Reset, Rule,
-    bring_to_controller,
+    Asked, Choice, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers,
+    Reset, Rule, bring_to_controller,
 };
 pub use costs::Cost;
 pub use distance::Distance;

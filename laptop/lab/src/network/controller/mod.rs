@@ -5,9 +5,12 @@ mod form;
 mod net;
 mod number;
 mod on_chip;
+mod open;
 mod quantise;
 mod rule;
 
+pub use open::Choice;
+pub(super) use open::words;
 pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 
 use super::Trains;

@@ -1,7 +1,8 @@
 //! The rule by which neurons decay, fire and reset, which a NIR file does not contain.
 
-use crate::network::fault::{Result, bail};
-use std::fmt::{self, Display, Write as _};
+use super::open::Choice;
+use crate::network::fault::{NetworkKind, Result};
+use std::fmt::{self, Display};
 
 /// The framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,33 +166,22 @@ impl Asked {
     /// # Errors
     /// Returns an error that lists all missing parts which the network needs.
     pub(super) fn rule(&self, needs: Needs) -> Result<Rule> {
-        let own = self.framework.map(Framework::says).unwrap_or_default();
-        let (reset, fires) = (self.reset(&own), self.fires.or(own.fires));
-        let (current, dt) = (self.current.or(own.current), self.dt.or(own.dt));
-        let decay = self.decay.or(own.decay);
-        let mut open = String::new();
-        let mut line = |words: &str| _ = write!(open, "\n  {words}");
-        if needs.fires && reset.is_none() {
-            line(self.resets());
-        }
-        if needs.fires && fires.is_none() {
-            line(FIRES);
-        }
-        if needs.time && decay.is_none() {
-            line("--decay euler (1 - dt / tau) or exponential (e to the -dt / tau)");
-        }
-        if needs.current && current.is_none() {
-            line(CURRENT);
-        }
-        if needs.time && dt.is_none() {
-            line("--dt SECONDS: the step that it was trained with");
-        }
+        let says = self.framework.map(Framework::says).unwrap_or_default();
+        let (reset, fires) = (self.reset(&says), self.fires.or(says.fires));
+        let (current, dt) = (self.current.or(says.current), self.dt.or(says.dt));
+        let decay = self.decay.or(says.decay);
+        let open: Vec<Choice> = [
+            (Choice::Reset, needs.fires && reset.is_none()),
+            (Choice::Fires, needs.fires && fires.is_none()),
+            (Choice::Decay, needs.time && decay.is_none()),
+            (Choice::Current, needs.current && current.is_none()),
+            (Choice::Step, needs.time && dt.is_none()),
+        ]
+        .into_iter()
+        .filter_map(|(choice, is_open)| is_open.then_some(choice))
+        .collect();
         if !open.is_empty() {
-            let how = match self.framework {
-                Some(framework) => format!("`--as {}` leaves open", framework.name()),
-                None => format!("name the framework, {AS}, or say"),
-            };
-            bail!("the file does not say by which rule its neurons step: {how}{open}");
+            return Err(NetworkKind::OpenRule { framework: self.framework, open }.into());
         }
         Ok(Rule {
             framework: self.framework,
@@ -205,52 +195,32 @@ impl Asked {
 
     /// Returns the rule of a network in JSON, changed by what was asked for.
     pub(in super::super) fn or_plain(&self) -> Rule {
-        let own = self.framework.map(Framework::says).unwrap_or_default();
+        let says = self.framework.map(Framework::says).unwrap_or_default();
         Rule {
             framework: self.framework,
-            reset: self.reset(&own).unwrap_or(PLAIN.reset),
-            fires: self.fires.or(own.fires).unwrap_or(PLAIN.fires),
+            reset: self.reset(&says).unwrap_or(PLAIN.reset),
+            fires: self.fires.or(says.fires).unwrap_or(PLAIN.fires),
             ..PLAIN
         }
     }
 
     /// Completes the rule with what holds for every chip, and with `seconds`, the step of a recording.
     pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
-        let own = self.framework.map(Framework::says).unwrap_or_default();
+        let says = self.framework.map(Framework::says).unwrap_or_default();
         Self {
-            fires: self.fires.or(own.fires).or(Some(Fires::Above)),
-            decay: self.decay.or(own.decay).or(Some(Decay::Euler)),
-            current: self.current.or(own.current).or(Some(Current::New)),
-            dt: self.dt.or(own.dt).or(seconds),
+            fires: self.fires.or(says.fires).or(Some(Fires::Above)),
+            decay: self.decay.or(says.decay).or(Some(Decay::Euler)),
+            current: self.current.or(says.current).or(Some(Current::New)),
+            dt: self.dt.or(says.dt).or(seconds),
             ..self.clone()
         }
     }
 
     /// Returns the first layer's reset: the one asked for, or the framework's.
-    fn reset(&self, own: &Self) -> Option<Reset> {
-        self.resets.iter().chain(&own.resets).next().copied()
-    }
-
-    const fn resets(&self) -> &'static str {
-        match self.framework {
-            Some(Framework::SnnTorch) => SNNTORCH,
-            Some(Framework::Nir) => {
-                "--reset to-value (NIR's definition) or subtract (its reference program)"
-            }
-            _ => RESETS,
-        }
+    fn reset(&self, says: &Self) -> Option<Reset> {
+        self.resets.iter().chain(&says.resets).next().copied()
     }
 }
-
-const AS: &str = "`--as snntorch|norse|spikingjelly|rockpool|sinabs|nir`";
-const FIRES: &str = "--fires above (v > threshold) or at (v >= threshold)";
-const CURRENT: &str = "--current new (NIR's order, and how Norse reads a CubaLIF), whole (a spike adds its whole weight: \
-                       Norse's LIFCell wrote it) or old (the current of the step before)";
-const RESETS: &str = "--reset to-value or subtract, to-value-late or subtract-late for a step late, or snnTorch's \
-                      to-value-held and subtract-no-delay";
-const SNNTORCH: &str = "--reset subtract-late (its default), to-value-late (reset_mechanism=\"zero\"), subtract-no-delay \
-                        (reset_delay=False), or to-value (both, or a file that snnTorch has read);\n    \
-                        of each layer that fires, with commas between; in 1.0.0 RSynaptic does not heed reset_delay=False";
 
 impl Reset {
     /// Returns the name of the type in `spikewire-network`.

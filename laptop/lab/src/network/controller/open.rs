@@ -1,0 +1,73 @@
+//! Choices of a rule that a file leaves open, and their words.
+
+use super::Framework;
+use catalogue::run::Spell;
+use std::fmt::Write as _;
+
+/// A choice that a network needs and that neither its file nor its framework makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Choice {
+    /// What a spike does to its neuron.
+    Reset,
+    /// The potential at which a neuron fires.
+    Fires,
+    /// The share of a potential that a step leaves.
+    Decay,
+    /// The current that a potential takes.
+    Current,
+    /// Seconds of a step.
+    Step,
+}
+
+/// Says what is open and how it is chosen, a line for each choice.
+pub(in super::super) fn words(
+    spell: Spell,
+    framework: Option<Framework>,
+    open: &[Choice],
+) -> String {
+    let named = spell("as");
+    let mut words = match framework {
+        Some(framework) => format!("`{named} {}` leaves open", framework.name()),
+        None => format!(
+            "name the framework, `{named} snntorch|norse|spikingjelly|rockpool|sinabs|nir`, or say"
+        ),
+    };
+    for choice in open {
+        let (name, values) = choice.values(framework);
+        _ = write!(words, "\n  {}{values}", spell(name));
+    }
+    words
+}
+
+impl Choice {
+    /// Its setting, and the values that it takes.
+    const fn values(self, framework: Option<Framework>) -> (&'static str, &'static str) {
+        match (self, framework) {
+            (Self::Reset, Some(Framework::SnnTorch)) => (
+                "reset",
+                " subtract-late (its default), to-value-late (reset_mechanism=\"zero\"), subtract-no-delay \
+                 (reset_delay=False), or to-value (both, or a file that snnTorch has read);\n    \
+                 of each layer that fires, with commas between; in 1.0.0 RSynaptic does not heed reset_delay=False",
+            ),
+            (Self::Reset, Some(Framework::Nir)) => {
+                ("reset", " to-value (NIR's definition) or subtract (its reference program)")
+            }
+            (Self::Reset, _) => (
+                "reset",
+                " to-value or subtract, to-value-late or subtract-late for a step late, or snnTorch's to-value-held \
+                 and subtract-no-delay",
+            ),
+            (Self::Fires, _) => ("fires", " above (v > threshold) or at (v >= threshold)"),
+            (Self::Decay, _) => {
+                ("decay", " euler (1 - dt / tau) or exponential (e to the -dt / tau)")
+            }
+            (Self::Current, _) => (
+                "current",
+                " new (NIR's order, and how Norse reads a CubaLIF), whole (a spike adds its whole weight: Norse's \
+                 LIFCell wrote it) or old (the current of the step before)",
+            ),
+            (Self::Step, _) => ("dt", " SECONDS: the step that it was trained with"),
+        }
+    }
+}
