@@ -1,23 +1,23 @@
-//! Akida AKD1500: access to the chip's memory over SPI, and its event words.
+//! Akida AKD1500: access to the chip's memory over SPI, and the words of its events.
 
 use embedded_hal::spi::{Operation, SpiDevice};
 
 use super::ChipError;
 use super::error::{at_most, in_range};
 
-/// AKD1500 over SPI: reads and writes memory. An inference also needs a program from the vendor's compiler, which is
-/// written with this.
+/// AKD1500 over SPI: reads and writes the chip's memory. An inference also needs a program from the vendor's compiler, which
+/// is loaded by writing it to memory.
 ///
 /// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
 /// - **Blocks:** 1, 4, 8, 16 or 32 words each; a longer run takes several.
 /// - **Addresses:** multiples of 4 from `0xFC00_0000` to `0xFCFF_FFFC`, as in the vendor's driver. The bus carries the low
 ///   26 bits, and the chip adds the rest.
-/// - **Faults:** chip select begins every block anew, so that a clock lost or doubled spoils one block and no more. There
-///   is no checksum: [`program`](Self::program) reads all back. A disturbed header may write a block to another
-///   address: after [`ReadBack`](ChipError::ReadBack) write all memory again that must be right. If the right address
-///   already held the same words, this goes unnoticed.
+/// - **Faults:** chip select begins every block anew, so that a lost or doubled clock spoils one block only. There is no
+///   checksum, so [`program`](Self::program) reads everything back. A disturbed header may write a block to another
+///   address: after [`ReadBack`](ChipError::ReadBack) write all memory again that must be right. If the intended address
+///   already held the same words, the fault goes unnoticed.
 ///
-/// Checked against the vendor's sources, and a model of the transport written from them; never against a chip.
+/// Checked against the vendor's sources, and against a model of the transport made from them; never against a chip.
 ///
 /// Source: the vendor's Arduino library and engine, for the protocol; no code was taken.
 ///
@@ -42,24 +42,24 @@ pub struct Akd1500<D> {
 
 const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
-/// The number of words of a block, and its code; longest first.
+/// Sizes of a block in words, each with its code; longest first.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
-/// The first address; the chip adds its high 6 bits to those of the bus.
+/// First address; the chip adds its high 6 bits to the address on the bus.
 const BASE: u32 = 0xFC00_0000;
-/// The end of the addresses, exclusive.
+/// End of the addresses, exclusive.
 const END: u32 = 0xFD00_0000;
 const MAX_BLOCK_BYTES: usize = 128;
 
 impl<D: SpiDevice> Akd1500<D> {
-    /// A chip on this device.
+    /// Makes a driver on an SPI device.
     pub const fn new(device: D) -> Self {
         Self { device }
     }
 
-    /// Writes words from an address on.
+    /// Writes words from `address` on.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, and some blocks may be written; or the address is out of range.
+    /// Returns an error if the bus failed, after which some blocks may be written; or if the address is out of range.
     pub fn write(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         for (address, code, block) in blocks(address, words) {
@@ -77,10 +77,10 @@ impl<D: SpiDevice> Akd1500<D> {
         Ok(())
     }
 
-    /// Reads words from an address on.
+    /// Reads words from `address` on.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, or the address is out of range.
+    /// Returns an error if the bus failed, or if the address is out of range.
     pub fn read(&mut self, address: u32, words: &mut [u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         let mut address = address;
@@ -121,7 +121,7 @@ impl<D: SpiDevice> Akd1500<D> {
         Ok(())
     }
 
-    /// Gives the device back.
+    /// Returns the SPI device.
     pub fn release(self) -> D {
         self.device
     }
@@ -135,13 +135,13 @@ fn check<E>(address: u32, words: usize) -> Result<(), ChipError<E>> {
     at_most("length in bytes", bytes, END.saturating_sub(address))
 }
 
-/// `{command, word address}`, of 24 bits.
+/// Returns the header of a block: the command, and the word address in 24 bits.
 fn header(command: u8, address: u32) -> [u8; 4] {
     let [_, high, middle, low] = (address >> 2).to_be_bytes();
     [command, high, middle, low]
 }
 
-/// The longest block of at most this many words.
+/// Returns the size and the code of the longest block of at most this many words.
 fn block_of(words: usize) -> Option<(usize, u8)> {
     BLOCKS.into_iter().find(|&(count, _)| count <= words)
 }
@@ -171,18 +171,18 @@ fn blocks(address: u32, words: &[u32]) -> impl Iterator<Item = (u32, u8, &[u32])
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ConvolutionEvent {
-    /// The column, 0 to 4095.
+    /// Column, 0 to 4095.
     pub x: u16,
-    /// The row, 0 to 4095.
+    /// Row, 0 to 4095.
     pub y: u16,
-    /// The feature, 0 to 2047.
+    /// Feature, 0 to 2047.
     pub feature: u16,
-    /// The activation, 0 to 255.
+    /// Activation, 0 to 255.
     pub activation: u8,
 }
 
 impl ConvolutionEvent {
-    /// The words of the event.
+    /// Returns the two words of the event.
     ///
     /// # Errors
     /// Returns an error if a value has too many bits.
@@ -194,7 +194,7 @@ impl ConvolutionEvent {
         Ok([y << 16 | x, u32::from(self.activation) << 16 | feature])
     }
 
-    /// The event of these words.
+    /// Decodes an event from two words.
     pub fn from_words([first, second]: [u32; 2]) -> Self {
         Self {
             x: first as u16 & 0xFFF,
@@ -219,9 +219,9 @@ impl ConvolutionEvent {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DenseEvent {
-    /// The feature, 0 to 262 143.
+    /// Feature, 0 to 262 143.
     pub feature: u32,
-    /// The activation, 0 to 67 108 863.
+    /// Activation, 0 to 67 108 863.
     pub activation: u32,
 }
 
@@ -230,7 +230,7 @@ impl DenseEvent {
     const MAX_ACTIVATION: u32 = (1 << 26) - 1;
     const DENSE: u32 = 1 << 31;
 
-    /// The words of the event.
+    /// Returns the two words of the event.
     ///
     /// # Errors
     /// Returns an error if a value has too many bits.
@@ -240,7 +240,7 @@ impl DenseEvent {
         Ok([self.feature, Self::DENSE | self.activation])
     }
 
-    /// The event of these words, if they are those of a dense layer.
+    /// Decodes an event from two words; `None` if they are not those of a dense layer.
     pub fn from_words([first, second]: [u32; 2]) -> Option<Self> {
         (second & Self::DENSE != 0).then_some(Self {
             feature: first & Self::MAX_FEATURE,

@@ -1,4 +1,4 @@
-//! Errors of the chips.
+//! The errors of all chip drivers.
 
 use core::convert::Infallible;
 use core::fmt;
@@ -6,7 +6,7 @@ use core::fmt;
 use super::Phase;
 use super::family::AerError;
 
-/// Why a call on a chip failed. `B` is the error of its bus, `P` that of its port.
+/// The reason that a call on a chip failed. `B` is the error type of its bus, `P` that of its port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -16,27 +16,26 @@ pub enum ChipError<B, P = Infallible> {
     Bus(B),
     /// The port failed.
     Port(P),
-    /// The chip did not answer in this phase of a handshake. The phase says whether the chip has taken the word.
+    /// The chip did not answer in this phase of a handshake; the phase shows whether it has taken the word.
     Handshake(Phase),
     /// The chip did not finish its time step.
     Unfinished,
     /// The chip may be out of step with the bus: reset it first.
     NotReset,
-    /// The chip runs: its memory can only be accessed while its activity is gated.
+    /// The chip runs: its memories can be accessed only while its activity is gated.
     NotGated,
-    /// The chip's activity is gated: it takes no events.
+    /// The chip's activity is gated, so it takes no events.
     Gated,
-    /// The chip did not answer after its gate was opened: reset it.
+    /// The chip did not answer after its gate was opened: reset it first.
     NotStarted,
-    /// Every neuron is at its threshold, at the end of its range, or learns: no time step would leave one as it is, so
-    /// that the start could not be verified. The chip is still gated, and nothing was changed.
+    /// The start could not be verified, as no neuron can take a time step without changing: each is at its threshold or
+    /// at the end of its range, or learns. The chip is still gated, and nothing was changed.
     NoProbe,
-    /// The chip's outputs do not end, so that it cannot be gated: see
-    /// [`open_loop`](super::Running::open_loop).
+    /// The chip's outputs do not end, so that it cannot be gated; see [`open_loop`](super::Running::open_loop).
     Busy,
-    /// Weights from one input or neuron have both signs, which this chip does not have.
+    /// Weights from one input or neuron have both signs, which this chip cannot hold.
     MixedSigns {
-        /// The neuron that they come from, or the input's row.
+        /// The presynaptic neuron, or the input's row.
         pre: u8,
     },
     /// A value is out of its range.
@@ -45,17 +44,17 @@ pub enum ChipError<B, P = Infallible> {
         what: &'static str,
         /// The value that was given.
         value: i64,
-        /// The smallest allowed.
+        /// Smallest value allowed.
         min: i64,
-        /// The largest allowed.
+        /// Largest value allowed.
         max: i64,
     },
-    /// A virtual event of weight 0, which would act as a full spike.
+    /// The weight of a virtual event is 0, which the chip would take for a full spike.
     ZeroWeight,
-    /// Memory reads back differently from what was written: write it again. If the chip has a reset, all its memory is
-    /// in doubt: reset it, and write all of it again.
+    /// Memory reads back differently from what was written: write it again. For a chip with a reset all memory is in
+    /// doubt: reset it, and write all of it again.
     ReadBack {
-        /// The address.
+        /// Address of the difference.
         address: u32,
         /// The value written.
         written: u32,
@@ -100,7 +99,7 @@ impl<B, P> From<AerError<P>> for ChipError<B, P> {
     }
 }
 
-/// Checks that `value` lies within `0..=max`.
+/// Returns an error unless `value` lies within `0..=max`.
 pub(super) fn at_most<B, P>(
     what: &'static str,
     value: u32,
@@ -109,7 +108,7 @@ pub(super) fn at_most<B, P>(
     in_range(what, value.into(), 0, max.into())
 }
 
-/// Checks that `value` lies within `min..=max`.
+/// Returns an error unless `value` lies within `min..=max`.
 pub(super) fn in_range<B, P>(
     what: &'static str,
     value: i64,

@@ -20,20 +20,20 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN, in 128 bits. Its Izhikevich neurons are not described here.
+/// A leaky integrate-and-fire neuron of ODIN, in 128 bits. The chip's Izhikevich neurons are not supported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinNeuron {
-    /// Bits 9-16: the potential at which the neuron fires and returns to 0, 1 to 255.
+    /// Bits 9-16: potential at which the neuron fires and returns to 0, 1 to 255.
     pub threshold: u8,
-    /// Bits 1-7, and bit 8 unless 0: how much the potential falls in a time step, 0 to 127.
+    /// Bits 1-7, and bit 8 unless 0: amount by which the potential falls in a time step, 0 to 127.
     pub leak: u8,
     /// Bits 70-77: the potential, which saturates at 0 and 255.
     pub potential: u8,
     /// Bits 17-39: how the synapses onto the neuron learn; `None` if they do not.
     pub learning: Option<OdinLearning>,
-    /// Bit 127: whether the neuron never fires. Its potential still changes.
+    /// Bit 127: whether the neuron is disabled and never fires. Its potential still changes.
     pub is_disabled: bool,
 }
 
@@ -45,18 +45,17 @@ impl OdinNeuron {
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
-/// How the synapses onto a neuron learn (SDSP): they grow while its potential is high and its calcium
-/// between the outer thresholds, and shrink while its potential is low and its calcium between the lower
-/// ones.
+/// How the synapses onto a neuron learn (SDSP). They grow while its potential is high and its calcium lies between the
+/// outer thresholds; they shrink while its potential is low and its calcium lies between the lower two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinLearning {
-    /// Bits 18-25: the potential from which on synapses grow.
+    /// Bits 18-25: potential from which synapses grow.
     pub potential: u8,
     /// Bits 26-34, 3 each: the thresholds of calcium, 0 to 7.
     pub calcium: [u8; 3],
-    /// Bits 35-39: calcium falls by 1 after this many time steps, 1 to 31; 0: never.
+    /// Bits 35-39: number of time steps after which calcium falls by 1, 1 to 31; 0 means never.
     pub calcium_leak: u8,
 }
 
@@ -65,9 +64,9 @@ pub struct OdinLearning {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinSynapse {
-    /// The weight, 0 to 7.
+    /// Weight, 0 to 7.
     pub weight: u8,
-    /// The mapping bit. A synapse without it does nothing, and does not learn, unless registers
+    /// Mapping bit. A synapse without it neither acts nor learns, unless registers
     /// [24](OdinRegisters::propagates_unmapped) and [23](OdinRegisters::updates_unmapped) say otherwise.
     pub is_mapped: bool,
 }
@@ -78,27 +77,27 @@ pub struct OdinSynapse {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(clippy::struct_excessive_bools, reason = "each is a register")]
 pub struct OdinRegisters {
-    /// Register 1: the neurons' spikes go to the output bus only, and not to other neurons.
+    /// Register 1: whether neurons' spikes go to the output bus only, and not to other neurons.
     pub is_open_loop: bool,
     /// Registers 2 to 17: bit `n % 16` of word `n / 16` is 1 if neuron `n` inhibits.
     pub inhibitory: [u16; 16],
-    /// Register 18: clocks of the interval in a burst, 20 bits; 0 without bursts.
+    /// Register 18: interval within a burst in clocks, 20 bits; 0 disables bursts.
     pub burst_clocks: u32,
-    /// Register 19: the source of the output bus.
+    /// Register 19: which spikes go to the output bus.
     pub output_source: OutputSource,
-    /// Registers 20 to 22: the neuron, and the presynaptic neuron of one of its synapses, whose states go to the output
+    /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses, whose states go to the output
     /// bus instead of spikes.
     pub monitored: Option<(u8, u8)>,
-    /// Register 23: synapses without the mapping bit learn.
+    /// Register 23: whether synapses without the mapping bit learn.
     pub updates_unmapped: bool,
-    /// Register 24: synapses without the mapping bit act.
+    /// Register 24: whether synapses without the mapping bit act.
     pub propagates_unmapped: bool,
-    /// Register 25: synapses learn from [`OdinInput::Synapse`] too.
+    /// Register 25: whether synapses learn from [`OdinInput::Synapse`] too.
     pub learns_from_synapse: bool,
 }
 
 impl OdinRegisters {
-    /// Open loop, all neurons excite, without bursts, monitoring and unmapped synapses.
+    /// Open loop, all neurons excitatory, without bursts, monitoring and unmapped synapses.
     pub const PLAIN: Self = Self {
         is_open_loop: true,
         inhibitory: [0; 16],
@@ -116,12 +115,12 @@ impl OdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OdinInput {
-    /// Neuron `pre` fired, for one synapse only. It acts if the synapse has the mapping bit, or with
+    /// Neuron `pre` fired, for one synapse only. The synapse acts if it has the mapping bit, or with
     /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped).
     Synapse {
         /// The neuron that fired.
         pre: u8,
-        /// The neuron onto which the synapse acts.
+        /// The postsynaptic neuron.
         post: u8,
     },
     /// Neuron `pre` fired: all its synapses act.
@@ -129,21 +128,21 @@ pub enum OdinInput {
         /// The neuron that fired.
         pre: u8,
     },
-    /// Acts on one neuron without a synapse.
+    /// An event that acts on one neuron without a synapse.
     Virtual {
         /// The neuron.
         neuron: u8,
-        /// The weight, 1 to 7.
+        /// Weight, 1 to 7.
         weight: u8,
-        /// Whether it inhibits.
+        /// Whether the event inhibits.
         is_inhibitory: bool,
     },
-    /// A time step for one neuron, in turn with virtual events and spikes.
+    /// A time step for one neuron, queued with virtual events and spikes.
     VirtualLeak {
         /// The neuron.
         neuron: u8,
     },
-    /// A time step for one neuron, at once.
+    /// A time step for one neuron, without queueing.
     Leak {
         /// The neuron.
         neuron: u8,
@@ -166,8 +165,8 @@ impl Input for OdinInput {
     const PROBED: u8 = 255;
     const NEURON_BYTES: u8 = 16;
     const PARAMETERS: [u8; 16] = 0xFFFF_FFFF_FFC0_003F_FFFF_FFFF_FFFF_FFFF_u128.to_le_bytes();
-    /// `BistabilityAll` takes 64 clocks a neuron, and waits for up to 33 spikes of 512 each. The others
-    /// take 1600 at most: `LeakAll` 512, after no more than two spikes.
+    /// `BistabilityAll` takes 64 clocks for each neuron, and waits for up to 33 spikes of 512 clocks each. The others
+    /// take 1600 at most: `LeakAll` takes 512, after at most two spikes.
     const MAX_CLOCKS: u32 = 34_000;
     const QUEUE: u32 = 32;
     const OPEN_LOOP: u16 = 1;
@@ -263,7 +262,7 @@ impl Input for OdinInput {
         Some(OdinNeuron { potential: before, ..*neuron })
     }
 
-    /// The mapping bit is set unless the weight is 0.
+    /// Encodes a weight; the mapping bit is set unless the weight is 0.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
         in_range("weight", weight.into(), -7, 7)?;
         Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })

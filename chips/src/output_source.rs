@@ -1,15 +1,15 @@
-//! The source of tinyODIN's and ODIN's outputs.
+//! The choice of spikes on tinyODIN's and ODIN's output bus.
 
 /// Which spikes go to the output bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OutputSource {
-    /// The spikes of neurons, when they fire.
+    /// Spikes of neurons, when they fire.
     #[default]
     Neurons,
-    /// The spikes of the chip's queue, when they have been processed: in closed loop those of neurons and inputs, in
-    /// open loop those of inputs alone. In ODIN only those at the monitored neuron.
+    /// Spikes of the chip's queue, when they have been processed. In closed loop they come from neurons and inputs, in
+    /// open loop from inputs alone. ODIN puts out only those that its monitored neuron gets.
     Queue,
 }
 

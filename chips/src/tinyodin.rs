@@ -27,14 +27,14 @@ pub type TinyOdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinNeuron {
-    /// The potential at which the neuron fires and returns to 0, 1 to 2047. (Memory that was never written may hold 0:
-    /// such a neuron fires at every event.)
+    /// Potential at which the neuron fires and returns to 0, 1 to 2047. (Memory that was never written may hold 0; such
+    /// a neuron fires at every event.)
     pub threshold: u16,
-    /// How much nearer to 0 the potential comes in a time step, 0 to 127.
+    /// Amount by which a time step moves the potential towards 0, 0 to 127.
     pub leak: u8,
     /// The potential, which saturates at -2048 and 2047.
     pub potential: i16,
-    /// Whether the neuron never fires. Its potential still changes.
+    /// Whether the neuron is disabled and never fires. Its potential still changes.
     pub is_disabled: bool,
 }
 
@@ -50,9 +50,9 @@ impl TinyOdinNeuron {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinRegisters {
-    /// Register 1: the neurons' spikes go to the output bus only, and not to other neurons.
+    /// Register 1: whether neurons' spikes go to the output bus only, and not to other neurons.
     pub is_open_loop: bool,
-    /// Register 2: the source of the output bus.
+    /// Register 2: which spikes go to the output bus.
     pub output_source: OutputSource,
     /// Register 3: the highest neuron in use. A spike takes 2 clocks for each neuron up to this one.
     pub last_neuron: u8,
@@ -68,16 +68,16 @@ pub enum TinyOdinInput {
         /// The neuron, 0 to 255.
         pre: u8,
     },
-    /// Acts on one neuron without a synapse.
+    /// An event that acts on one neuron without a synapse.
     Virtual {
         /// The neuron, 0 to 15.
         neuron: u8,
-        /// The weight, -8 to 7 but not 0, which would act as a full spike.
+        /// Weight, -8 to 7 except 0, which the chip would take for a full spike.
         weight: i8,
     },
     /// A time step for one neuron.
     Leak {
-        /// The neuron, 0 to 254: 255 stands for all.
+        /// The neuron, 0 to 254; 255 would stand for all.
         neuron: u8,
     },
     /// A time step for all neurons.
@@ -89,8 +89,8 @@ impl Input for TinyOdinInput {
     const PROBED: u8 = 254;
     const NEURON_BYTES: u8 = 4;
     const PARAMETERS: [u8; 16] = [0, 0xF0, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-    /// `LeakAll` takes 2 clocks for each neuron up to the highest in use, and waits for up to two spikes
-    /// that take as many.
+    /// `LeakAll` takes 2 clocks for each neuron up to the highest in use, and waits for up to two spikes that take as
+    /// many.
     const MAX_CLOCKS: u32 = 1_600;
     const QUEUE: u32 = 128;
     const OPEN_LOOP: u16 = 1;

@@ -2,9 +2,9 @@
 
 use super::ChipError;
 
-/// Access to the chip's registers, which the user supplies: the bytes on its bus are not public.
+/// Access to the chip's registers. The user implements it, as the bytes on the chip's bus are not public.
 pub trait Registers {
-    /// The error of the bus.
+    /// Error type of the bus.
     type Error;
 
     /// Writes a register.
@@ -54,22 +54,22 @@ pub enum InputBank {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct XyloMap {
-    /// The first register of the first input bank; the second bank begins two registers later.
+    /// First register of the first input bank; the second bank begins two registers later.
     pub input: u16,
-    /// The register that triggers a time step; write-only.
+    /// Register that triggers a time step; write-only.
     pub control: u16,
-    /// The only value to write to `control`; bit 0 would be the reset.
+    /// The only value that may be written to `control`; bit 0 is the reset.
     pub trigger: u32,
-    /// The register that shows whether the time step is done.
+    /// Register that shows whether the time step is done.
     pub status: u16,
-    /// The mask of the bit of `status` that shows it.
+    /// Mask of the bit in `status` that is set when the step is done.
     pub done: u32,
-    /// The register with the outputs that fired.
+    /// Register with the outputs that fired.
     pub outputs: u16,
-    /// The mask of the bits of `outputs` in use: bit `i` is output `i`.
+    /// Mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
-    /// The register that shows which input bank the next time step reads, and the mask of its bit: 1 for the second. `None`
-    /// where the public sources do not tell the bit.
+    /// Register that shows which input bank the next time step reads, and the mask of its bit, which is 1 for the
+    /// second. `None` if the public sources do not give the bit.
     pub next_bank: Option<(u16, u32)>,
 }
 
@@ -86,8 +86,8 @@ impl XyloMap {
         next_bank: Some((0x171, 1 << 16)),
     };
 
-    /// Xylo Audio A2: 8 outputs. The word that triggers a time step has to come from the vendor:
-    /// `rockpool` leaves that to `samna`, which is not open.
+    /// Xylo Audio A2: 8 outputs. The word that triggers a time step must come from the vendor: `rockpool` leaves it to
+    /// `samna`, which is not open.
     pub const fn a2(trigger: u32) -> Self {
         Self {
             input: 0x11,
@@ -102,19 +102,19 @@ impl XyloMap {
     }
 }
 
-/// Xylo Audio 3 and A2 in manual mode: set the counts, run a time step, get the outputs that fired.
+/// Xylo Audio 3 and A2 in manual mode: set the counts, run a time step, and get the outputs that fired.
 ///
 /// Count the events of a time step with [`Bins<16>`](spikewire::Bins), with a limit of 15 so that events beyond it are
 /// counted as saturated.
 ///
 /// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which.
-/// - **Order:** the counts, then the step. While a step is under way no counts are taken, and [`step`](Self::step) goes on
-///   waiting for that one, without a second trigger.
-/// - **Counts stay** in the chip: a step without new ones has those of the bank again, until they are
+/// - **Order:** set the counts, then run the step. While a step is being run no counts are accepted, and
+///   [`step`](Self::step) waits for it without a second trigger.
+/// - **Counts stay** in the chip. A step without new counts uses those in the bank again, unless they are
 ///   [cleared](Self::clear_input), as the vendor's programs do.
-/// - **Faults:** the chip confirms nothing that is written, and the public sources do not say which registers can be read
-///   back. So the [`Registers`] that you supply must report every write that fails: a lost write leaves the old counts,
-///   a lost trigger the outputs of the step before.
+/// - **Faults:** the chip confirms no write, and the public sources do not say which registers can be read back. Therefore
+///   the [`Registers`] that you supply must report every write that fails. A lost write leaves the old counts, and a lost
+///   trigger leaves the outputs of the step before.
 ///
 /// Checked against the vendor's sources alone, never against a chip.
 ///
@@ -128,16 +128,16 @@ pub struct Xylo<R> {
 }
 
 impl<R: Registers> Xylo<R> {
-    /// A chip with these registers. [`step`](Self::step) reads the status up to `polls` times.
+    /// Makes a driver on these registers. [`step`](Self::step) reads the status up to `polls` times.
     pub const fn new(registers: R, map: XyloMap, polls: u32) -> Self {
         Self { registers, map, polls, is_under_way: false }
     }
 
-    /// Sets the counts of a time step.
+    /// Sets the counts of a time step in one bank.
     ///
     /// # Errors
-    /// Returns an error if the bus failed: then set them again. Returns [`Unfinished`](ChipError::Unfinished) if a
-    /// step is under way: nothing was written.
+    /// Returns an error if the bus failed: then set them again. Returns [`Unfinished`](ChipError::Unfinished) if a step
+    /// is being run: then nothing was written.
     pub fn set_input(
         &mut self,
         bank: InputBank,
@@ -155,10 +155,10 @@ impl<R: Registers> Xylo<R> {
         self.registers.write(first.wrapping_add(1), high).map_err(ChipError::Bus)
     }
 
-    /// Reads from the chip which bank of counts the next time step reads; `None` if the map has no register for it.
+    /// Asks the chip which bank the next time step reads; returns `None` if the map has no register for it.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, and [`Unfinished`](ChipError::Unfinished) if a step is under way.
+    /// Returns an error if the bus failed, and [`Unfinished`](ChipError::Unfinished) if a step is being run.
     pub fn next_bank(&mut self) -> Result<Option<InputBank>, ChipError<R::Error>> {
         if self.is_under_way {
             return Err(ChipError::Unfinished);
@@ -168,7 +168,8 @@ impl<R: Registers> Xylo<R> {
         Ok(Some(if is_second { InputBank::Second } else { InputBank::First }))
     }
 
-    /// Sets the counts that the next time step reads: in the bank that it reads, or in both if the map does not tell which.
+    /// Sets the counts that the next time step reads: in the bank that it reads, or in both if the map has no register
+    /// for it.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -192,9 +193,9 @@ impl<R: Registers> Xylo<R> {
     /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
     ///
     /// # Errors
-    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet; call this again, which waits for
-    /// it. Returns another error if the bus failed: call this again. If it failed after the trigger, nothing is lost;
-    /// if it failed at the trigger, the step may have begun, and the next call triggers again.
+    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet; call this again, and it waits for
+    /// that step. Returns another error if the bus failed; call this again. If the bus failed after the trigger,
+    /// nothing is lost. If it failed at the trigger, the step may have begun, and the next call triggers again.
     pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
         let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
         if !self.is_under_way {
@@ -211,7 +212,7 @@ impl<R: Registers> Xylo<R> {
         Err(ChipError::Unfinished)
     }
 
-    /// Gives the registers back.
+    /// Returns the registers.
     pub fn release(self) -> R {
         self.registers
     }

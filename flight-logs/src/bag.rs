@@ -1,6 +1,6 @@
-//! ROS 1 bags, version 2.0: records of named fields and data, messages in chunks that may be compressed.
+//! Reads ROS 1 bags, version 2.0: records of named fields and data, with messages in chunks that may be compressed.
 //!
-//! The index is not needed, so bags that were never closed or indexed are read as any other.
+//! The index is not used, so bags that were never closed or indexed can be read too.
 
 use super::Entry;
 use super::bytes::{Bytes, take, u32_from, u64_from, unpack};
@@ -14,7 +14,7 @@ use std::path::Path;
 
 /// The first bytes of a bag of any version.
 pub(crate) const START: &[u8] = b"#ROSBAG V";
-/// The first bytes of a bag of the version that is read.
+/// First bytes of a bag of the version that can be read.
 const VERSION: &[u8] = b"#ROSBAG V2.0\n";
 
 /// Kinds of records.
@@ -30,7 +30,7 @@ mod op {
 /// A bag that is read from its start to its end.
 pub(crate) struct Bag {
     walk: Walk,
-    /// The topic of each connection.
+    /// Index of each connection's topic.
     connections: HashMap<u32, usize>,
     header: Vec<u8>,
     data: Vec<u8>,
@@ -68,7 +68,7 @@ impl<'a> Fields<'a> {
         Some(String::from_utf8_lossy(self.get(name)?).into_owned())
     }
 
-    /// Seconds and nanoseconds, in ns.
+    /// Reads a field with seconds and nanoseconds, in ns.
     fn time(&self, name: &str) -> Option<i64> {
         let mut field = self.get(name)?;
         let (seconds, nanoseconds) = (u32_from(&mut field)?, u32_from(&mut field)?);
@@ -114,7 +114,7 @@ impl Bag {
     }
 }
 
-/// Reads the header or the data of a record, behind its length.
+/// Reads the header or the data of a record, after its length.
 fn part(bytes: &mut Bytes, part: &mut Vec<u8>) -> Result<(), String> {
     const CUT: &str = "the bag ends within the record";
     let mut take = |count| match bytes.take(count, part) {
@@ -126,7 +126,7 @@ fn part(bytes: &mut Bytes, part: &mut Vec<u8>) -> Result<(), String> {
     take(length.into()).map(drop)
 }
 
-/// The number of a connection and its topic.
+/// Returns the number of a connection, and its topic.
 fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
     let own = Fields(data);
     let (id, name, kind) = (fields.u32("conn")?, fields.text("topic")?, own.text("type")?);
@@ -135,7 +135,7 @@ fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
 }
 
 impl Chunked for Bag {
-    /// The place of a record, which is in `header` and `data`.
+    /// The record's offset in the file; its content is in `header` and `data`.
     type Record = u64;
 
     fn walk(&self) -> &Walk {

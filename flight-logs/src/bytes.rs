@@ -1,4 +1,4 @@
-//! The bytes of a log from its start to its end, and the position among them.
+//! Reads the bytes of a log from start to end, and counts them.
 
 use crate::files::File;
 use crate::zstd::{Frames, ZSTD};
@@ -7,10 +7,10 @@ use flate2::read::MultiGzDecoder;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::Path;
 
-/// The first bytes of a file packed by gzip.
+/// First bytes of a file compressed by gzip.
 pub const GZIP: [u8; 2] = [0x1f, 0x8b];
 
-/// The bytes of a file, unpacked if it is packed as a whole.
+/// The bytes of a file, decompressed if the whole file is compressed.
 pub(crate) struct Bytes {
     input: Box<dyn Read>,
     at: u64,
@@ -28,21 +28,21 @@ impl Bytes {
     /// Copies all bytes.
     ///
     /// # Errors
-    /// Returns an error if the bytes cannot be unpacked or written.
+    /// Returns an error if the bytes cannot be decompressed or written.
     pub(crate) fn copy(mut self, output: &mut File) -> io::Result<u64> {
         io::copy(&mut self.input, output)
     }
 
-    /// The number of bytes taken so far.
+    /// Returns the number of bytes read so far.
     pub(crate) fn at(&self) -> u64 {
         self.at
     }
 
-    /// Takes this many bytes, or fewer at the end. A false length takes no memory, as bytes are read before room is
-    /// made.
+    /// Reads `count` bytes, or fewer at the end; returns whether the file had as many. A false length in the file takes
+    /// no memory, as memory grows only with the bytes that arrive.
     ///
     /// # Errors
-    /// Returns an error if the bytes cannot be read or unpacked.
+    /// Returns an error if the bytes cannot be read or decompressed.
     pub(crate) fn take(&mut self, count: u64, bytes: &mut Vec<u8>) -> io::Result<bool> {
         bytes.clear();
         let taken = self.input.by_ref().take(count).read_to_end(bytes)?;
@@ -50,10 +50,10 @@ impl Bytes {
         Ok(taken as u64 == count)
     }
 
-    /// Skips `count` bytes, and returns whether the file had as many.
+    /// Skips `count` bytes; returns whether the file had as many.
     ///
     /// # Errors
-    /// Returns an error if the bytes cannot be read or unpacked.
+    /// Returns an error if the bytes cannot be read or decompressed.
     pub(crate) fn pass(&mut self, count: u64) -> io::Result<bool> {
         let passed = io::copy(&mut self.input.by_ref().take(count), &mut io::sink())?;
         self.at += passed;
@@ -69,7 +69,7 @@ pub(crate) fn open(path: &Path) -> Result<File> {
     File::open(path).map_err(|error| Error::of(path, ErrorKind::Open(error)))
 }
 
-/// Whether a file is packed as a whole.
+/// Returns whether the whole file is compressed.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read.
@@ -80,7 +80,7 @@ pub(crate) fn is_packed(path: &Path) -> Result<bool> {
     Ok(start.starts_with(&GZIP) || start.starts_with(&ZSTD))
 }
 
-/// The content of a file, whether packed or not.
+/// Returns the content of a file, compressed or not.
 fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     const BUFFER: usize = 1 << 18;
     let mut head = Vec::new();
@@ -98,7 +98,7 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     })
 }
 
-/// Unpacks a compressed part of a log: all of it, or as much as can be unpacked and what is wrong.
+/// Decompresses a part of a log; returns as much as can be decompressed, and the fault if that is not all.
 pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
     let mut bytes = Vec::new();
     let mut limited =
@@ -124,28 +124,28 @@ pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<St
     (bytes, fault)
 }
 
-/// A number of two bytes from the front.
+/// Takes a 2-byte number from the front.
 pub(crate) fn u16_from(bytes: &mut &[u8]) -> Option<u16> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u16::from_le_bytes(*first))
 }
 
-/// A number of four bytes from the front.
+/// Takes a 4-byte number from the front.
 pub(crate) fn u32_from(bytes: &mut &[u8]) -> Option<u32> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u32::from_le_bytes(*first))
 }
 
-/// A number of eight bytes from the front.
+/// Takes an 8-byte number from the front.
 pub(crate) fn u64_from(bytes: &mut &[u8]) -> Option<u64> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u64::from_le_bytes(*first))
 }
 
-/// Takes this many bytes from the front.
+/// Takes `count` bytes from the front.
 pub(crate) fn take<'a>(bytes: &mut &'a [u8], count: u64) -> Option<&'a [u8]> {
     let (first, rest) = bytes.split_at_checked(usize::try_from(count).ok()?)?;
     *bytes = rest;

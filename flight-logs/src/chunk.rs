@@ -1,4 +1,4 @@
-//! Files whose messages lie in chunks, or outside of them.
+//! Reads files whose messages lie in chunks or between them.
 
 use super::bytes::Bytes;
 use super::faults::Faults;
@@ -7,22 +7,23 @@ use super::{Entry, Log};
 use crate::{Error, ErrorKind, Result};
 use std::path::Path;
 
-/// The chunk that is being read, unpacked.
+/// The current chunk, decompressed.
 #[derive(Default)]
 pub(crate) struct Chunk {
     bytes: Vec<u8>,
     taken: usize,
-    /// The chunk's place in the file.
+    /// Offset of the chunk in the file.
     at: u64,
-    /// Whether the chunk ends too early, which is counted already.
+    /// Whether the chunk ends early, which has been counted as a fault already.
     is_cut: bool,
 }
 
 impl Chunk {
-    /// Begins a chunk of `bytes`, and counts its fault unless the file ends within it, which is counted elsewhere.
+    /// Begins a chunk of `bytes`, and counts its fault. If the file ends within the chunk the fault is counted
+    /// elsewhere.
     ///
     /// # Errors
-    /// Returns an error if the chunk is damaged and that is not accepted.
+    /// Returns an error if the chunk is damaged and damage is refused.
     pub(crate) fn begin(
         &mut self,
         at: u64,
@@ -34,35 +35,35 @@ impl Chunk {
         fault.filter(|_| !is_last).map_or(Ok(()), |what| faults.skip(at, what))
     }
 
-    /// The bytes of the whole chunk.
+    /// Returns the bytes of the whole chunk.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// The bytes that are still to be read.
+    /// Returns the bytes that are not read yet.
     pub(crate) fn left(&self) -> &[u8] {
         &self.bytes[self.taken..]
     }
 
-    /// The number of bytes read so far.
+    /// Returns the number of bytes read so far.
     pub(crate) fn taken(&self) -> usize {
         self.taken
     }
 
-    /// The place of the chunk in the file.
+    /// Returns the offset of the chunk in the file.
     pub(crate) fn at(&self) -> u64 {
         self.at
     }
 
-    /// Reads on up to this byte.
+    /// Marks the bytes before `end` as read.
     pub(crate) fn take_to(&mut self, end: usize) {
         self.taken = end;
     }
 
-    /// Gives up the bytes that are left, which make no record, and counts them as damage.
+    /// Discards the remaining bytes, and counts them as damage: they form no record.
     ///
     /// # Errors
-    /// Damage was not accepted.
+    /// Returns an error if damage is refused.
     pub(crate) fn leave(&mut self, faults: &mut Faults) -> Result<()> {
         let what = format!("the chunk is damaged at its byte {}", self.taken);
         self.taken = self.bytes.len();
@@ -75,19 +76,19 @@ pub(crate) struct Walk {
     pub bytes: Bytes,
     pub faults: Faults,
     pub topics: Vec<Topic>,
-    /// The chunk that is being read.
+    /// The current chunk.
     pub chunk: Chunk,
-    /// The content of the message that came last.
+    /// The content of the last message.
     pub message: Vec<u8>,
-    /// Whether the last record outside of chunks was read.
+    /// Whether the last record outside chunks has been read.
     pub is_over: bool,
 }
 
 impl Walk {
-    /// Opens a log that starts with the bytes of its version.
+    /// Opens a log, which must start with the bytes of its version.
     ///
     /// # Errors
-    /// Returns an error if the log cannot be read, or says so if it is of another version.
+    /// Returns an error if the log cannot be read, or if it is of another version, with the text `other`.
     pub(crate) fn open(path: &Path, faults: Faults, version: &[u8], other: &str) -> Result<Self> {
         let (mut bytes, mut start) = (Bytes::open(path)?, Vec::new());
         let taken = bytes.take(version.len() as u64, &mut start);
@@ -108,28 +109,28 @@ impl Walk {
 
 /// A log of records, some of which are chunks of records.
 pub(crate) trait Chunked {
-    /// A record outside of chunks, once it is read.
+    /// A record outside chunks, as it is read.
     type Record;
 
-    /// The position in the log.
+    /// Returns the position in the log.
     fn walk(&self) -> &Walk;
 
-    /// The position in the log, to be changed.
+    /// Returns the position in the log, for changes.
     fn walk_mut(&mut self) -> &mut Walk;
 
-    /// Takes the next record of the chunk; gives the entry of a message.
+    /// Reads the next record of the chunk; returns the entry if it is a message.
     ///
     /// # Errors
-    /// Returns an error if the log is damaged and that is not accepted.
+    /// Returns an error if the log is damaged and damage is refused.
     fn of_chunk(&mut self) -> Result<Option<Entry>>;
 
-    /// Reads the next record outside of chunks; `None` at the end.
+    /// Reads the next record outside chunks; `None` at the end.
     ///
     /// # Errors
     /// See [`of_chunk`](Self::of_chunk).
     fn record(&mut self) -> Result<Option<Self::Record>>;
 
-    /// Takes a record outside of chunks; gives the entry of a message.
+    /// Processes a record outside chunks; returns the entry if it is a message.
     ///
     /// # Errors
     /// See [`of_chunk`](Self::of_chunk).

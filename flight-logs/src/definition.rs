@@ -1,58 +1,59 @@
-//! Definitions of messages: `type name` lines, and in ROS those of the messages within after `MSG: package/Type`.
+//! Definitions of messages: lines `type name`. In ROS, definitions of nested messages follow after lines `MSG:
+//! package/Type`.
 
 use super::known::known;
 use std::collections::HashMap;
 
-/// A message's layout, with those of the messages in it.
+/// The layout of a message and of the messages nested in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definition {
-    /// The message itself comes first.
+    /// The layout of the message itself, followed by those of nested messages.
     structs: Vec<Struct>,
 }
 
 /// The fields of a message in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Struct {
-    /// The fields, in the order of the bytes.
+    /// The fields, in the order of their bytes.
     pub fields: Vec<Field>,
 }
 
 /// A field of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// Its name.
+    /// Name of the field.
     pub name: String,
-    /// Its content.
+    /// Type of its content.
     pub kind: Kind,
-    /// Its shape: one, or an array.
+    /// Whether it is a single value or an array.
     pub shape: Shape,
 }
 
-/// The content of a field.
+/// The type of a field's content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
     Number(Number),
-    /// A number that no one asks for by name.
+    /// A number that cannot be asked for by name: PX4's time stamp, or padding.
     Hidden(Number),
     /// A text.
     Text,
-    /// A character of a text that has a length.
+    /// A character of a text of fixed length.
     Character,
-    /// Text of two or four bytes a character; the definition does not say which.
+    /// A text of two or four bytes for each character; the definition does not say which.
     WideText,
-    /// Another message, by its place in the definition.
+    /// A nested message; holds its index, for [`Definition::nested`].
     Nested(usize),
 }
 
 /// The types of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Number {
-    /// One byte, 0 or 1.
+    /// Boolean: one byte, 0 or 1.
     Bool,
-    /// A signed byte.
+    /// One byte, signed.
     I8,
-    /// An unsigned byte.
+    /// One byte, unsigned.
     U8,
     /// Two bytes, signed.
     I16,
@@ -73,7 +74,7 @@ pub enum Number {
 }
 
 impl Number {
-    /// Returns its size in bytes.
+    /// Returns the size in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::Bool | Self::I8 | Self::U8 => 1,
@@ -84,18 +85,18 @@ impl Number {
     }
 }
 
-/// The shape of a field.
+/// Whether a field is a single value or an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// One value.
+    /// A single value.
     One,
     /// An array of this length.
     Fixed(usize),
-    /// An array whose length is in the message.
+    /// An array whose length is stored in the message.
     Counted,
 }
 
-/// The dialect of a definition.
+/// The language in which a definition is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialect {
     /// Definitions of ROS 1.
@@ -106,50 +107,50 @@ pub enum Dialect {
     Px4,
 }
 
-/// The steps to a number within a message.
+/// The steps from a message to a number in it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Path(pub Vec<Step>);
 
-/// One step to a number.
+/// A step on the path to a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Into the field of this index.
+    /// To the field with this index.
     Field(usize),
-    /// Into the item of this index of an array.
+    /// To the item with this index, in an array.
     Item(usize),
 }
 
-/// The reason that a name leads to no number.
+/// The reason that a name does not identify a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoNumber {
     /// There is no field of this name.
     Missing,
-    /// A text, not a number.
+    /// The name is that of a text.
     Text,
-    /// A message or an array of numbers, not one number.
+    /// The name is that of a message or of an array.
     Several,
 }
 
-/// The places of the two numbers of a time: seconds and nanoseconds.
+/// The paths to the two numbers of a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stamp {
-    /// The place of the seconds.
+    /// Path to the seconds.
     pub seconds: Path,
-    /// The place of the nanoseconds.
+    /// Path to the nanoseconds.
     pub nanoseconds: Path,
 }
 
-/// The deepest nesting that is read: a definition that contains itself has no end.
+/// Maximum depth of nested messages; it stops definitions that contain themselves.
 const DEEPEST: usize = 16;
-/// The longest array of a fixed length that is believed.
+/// Maximum length of an array of fixed length; a longer one is taken as a fault.
 const LONGEST: usize = 1 << 28;
-/// The field with the time at which PX4 logged a message.
+/// Name of the field with the time at which PX4 logged a message.
 const TIME: &str = "timestamp";
-/// The start of the names of PX4's padding.
+/// Prefix of the names of PX4's padding.
 const PADDING: &str = "_padding";
 
 impl Definition {
-    /// Reads the text in a log, for a message of this type, such as `sensor_msgs/Imu`.
+    /// Parses the text of a definition in a log; `name` is the message's type, such as `sensor_msgs/Imu`.
     ///
     /// # Errors
     /// Returns an error that names what cannot be understood.
@@ -177,7 +178,8 @@ impl Definition {
         Parser::parse(&name, &|name| texts.get(name).cloned(), dialect)
     }
 
-    /// Finds a message of ROS 2, whose definition and those of the messages in it are looked up by `package/Type`.
+    /// Makes the definition of a ROS 2 message. `look_up` returns the text for a type `package/Type`, for this message
+    /// and those nested in it.
     ///
     /// # Errors
     /// Returns an error that names what cannot be understood.
@@ -185,7 +187,7 @@ impl Definition {
         Parser::parse(&short(name), look_up, Dialect::Ros2)
     }
 
-    /// Finds a message among the definitions of a PX4 log.
+    /// Makes the definition of a message from those in a PX4 log.
     ///
     /// # Errors
     /// Returns an error that names what cannot be understood.
@@ -193,7 +195,12 @@ impl Definition {
         Parser::parse(name, &|name| texts.get(name).cloned(), Dialect::Px4)
     }
 
-    /// Finds the time at which PX4 logged a message.
+    /// A message of these fields, none of which holds another message.
+    pub(crate) fn of_fields(fields: Vec<Field>) -> Self {
+        Self { structs: vec![Struct { fields }] }
+    }
+
+    /// Returns the path to the time at which PX4 logged a message.
     pub fn time(&self) -> Option<Path> {
         let is_time = |field: &Field| {
             let is_one = (field.kind, field.shape) == (Kind::Hidden(Number::U64), Shape::One);
@@ -203,7 +210,7 @@ impl Definition {
         Some(Path(vec![Step::Field(place)]))
     }
 
-    /// Returns how many bytes of padding end a message of PX4.
+    /// Returns the number of bytes of padding at the end of a PX4 message.
     pub fn padding(&self) -> usize {
         let fields = self.root().fields.iter().rev();
         let padding = fields.take_while(|field| field.name.starts_with(PADDING));
@@ -215,20 +222,20 @@ impl Definition {
         padding.map(size).sum()
     }
 
-    /// Returns the message itself.
+    /// Returns the layout of the message itself.
     pub fn root(&self) -> &Struct {
         self.structs.first().unwrap_or(const { &Struct { fields: Vec::new() } })
     }
 
-    /// Returns the message of this place within it; [`Kind::Nested`] has the place.
+    /// Returns the layout of a nested message, by the index in [`Kind::Nested`].
     pub fn nested(&self, place: usize) -> &Struct {
         self.structs.get(place).unwrap_or(const { &Struct { fields: Vec::new() } })
     }
 
-    /// Finds the number of this name, such as `angular_velocity.x` or `ranges[5]`.
+    /// Returns the path to a number, such as `angular_velocity.x` or `ranges[5]`.
     ///
     /// # Errors
-    /// Returns the reason if the name leads to no number.
+    /// Returns the reason if the name does not identify a number.
     pub fn number(&self, asked: &str) -> Result<Path, NoNumber> {
         match self.find(asked)? {
             (path, Kind::Number(_)) => Ok(path),
@@ -238,12 +245,12 @@ impl Definition {
         }
     }
 
-    /// Finds the text of this name.
+    /// Returns the path to a text.
     pub fn text(&self, asked: &str) -> Option<Path> {
         self.find(asked).ok().filter(|(_, kind)| *kind == Kind::Text).map(|(path, _)| path)
     }
 
-    /// Finds the time of this name, such as `header.stamp`.
+    /// Returns the paths to a time, such as `header.stamp`.
     pub fn stamp(&self, asked: &str) -> Option<Stamp> {
         let Ok((path, Kind::Nested(place))) = self.find(asked) else { return None };
         let [seconds, nanoseconds] = &self.nested(place).fields[..] else { return None };
@@ -286,7 +293,7 @@ impl Definition {
         Err(NoNumber::Missing)
     }
 
-    /// Returns the names of all numbers and of all texts, arrays as `name[0..9]` or, of any length, `name[]`.
+    /// Returns the names of all numbers and of all texts. An array is `name[0..9]`, or `name[]` if its length varies.
     pub fn names(&self) -> (Vec<String>, Vec<String>) {
         let (mut numbers, mut texts) = (Vec::new(), Vec::new());
         self.add_names(self.root(), "", &mut numbers, &mut texts);
@@ -319,12 +326,12 @@ impl Definition {
     }
 }
 
-/// `package/Type`, also of `package/msg/Type`.
+/// Shortens `package/msg/Type` to `package/Type`.
 pub(crate) fn short(name: &str) -> String {
     name.replacen("/msg/", "/", 1)
 }
 
-/// The definition of a message by its name, if there is one.
+/// Returns the definition of a message by its name, if it is known.
 type LookUp<'a> = dyn Fn(&str) -> Option<String> + 'a;
 
 struct Parser<'a> {
@@ -341,7 +348,7 @@ impl<'a> Parser<'a> {
         Ok(Definition { structs: parser.structs })
     }
 
-    /// The place of a message, whose definition is read unless it was read before.
+    /// Returns the index of a message; parses its definition the first time.
     fn add(&mut self, name: &str, depth: usize) -> Result<usize, String> {
         if depth > DEEPEST {
             return Err(format!("{name} is nested too deeply, perhaps within itself"));
@@ -431,7 +438,7 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// The type and name of a line that declares a field; `None` for a constant or a comment.
+/// Returns type and name in a line that declares a field; `None` for a constant or a comment.
 pub(crate) fn declared(line: &str) -> Option<(&str, &str)> {
     let line = line.split('#').next().unwrap_or(line).trim();
     let (kind, rest) = line.split_once(char::is_whitespace)?;
@@ -442,7 +449,7 @@ pub(crate) fn declared(line: &str) -> Option<(&str, &str)> {
     (!name.is_empty() && !behind.starts_with('=')).then_some((kind, name))
 }
 
-/// The definition of a type that logs leave out, as every ROS has it.
+/// Returns the definition of a type that every ROS has, and that logs leave out.
 fn built_in(name: &str, dialect: Dialect) -> Option<&'static str> {
     Some(match (name, dialect) {
         ("time", Dialect::Ros1) => "uint32 secs\nuint32 nsecs",

@@ -1,4 +1,4 @@
-//! Errors, as values that a program can act on.
+//! Errors as values, on which a program can act.
 
 use crate::wire;
 use std::path::Path;
@@ -9,17 +9,17 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// The error of a log that cannot be read, or is damaged.
 ///
-/// Its text names the file and, where there is one, the byte. It gives no advice: [`ErrorKind::rest`] says whether
+/// Its text names the file and, if possible, the byte. It gives no advice; [`ErrorKind::rest`] says whether
 /// [`Damage::Skip`](crate::Damage::Skip) would read more.
 #[derive(Debug)]
 pub struct Error {
-    /// The file's path, as it was given.
+    /// Path of the file, as it was given.
     pub file: String,
-    /// The reason.
+    /// The reason, with its details.
     pub kind: ErrorKind,
 }
 
-/// The reason that a log is refused.
+/// The reason that a log cannot be read.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -27,44 +27,44 @@ pub enum ErrorKind {
     Open(io::Error),
     /// The file cannot be read.
     Read(io::Error),
-    /// The file cannot be unpacked.
+    /// The file cannot be decompressed.
     Unpack(io::Error),
-    /// The file ends within its head.
+    /// The file ends within its header.
     ShortHead(io::Error),
-    /// The file has no bytes.
+    /// The file is empty.
     Empty,
-    /// The file is not a log of the kind that its name or its first bytes promise. The text says what is missing.
+    /// The file is not a log, although its name or its first bytes suggest one. The text says what is missing.
     NotALog(String),
-    /// Something within the log cannot be read.
+    /// A part of the log cannot be read.
     Fault {
-        /// The place in the file, in bytes.
+        /// Offset of the fault in the file, in bytes.
         at: u64,
-        /// The fault, in words.
+        /// Description of the fault.
         what: String,
         /// The part of the log that can still be read.
         rest: Rest,
     },
-    /// A stretch of bytes makes no sense.
+    /// A range of bytes makes no sense.
     Damaged {
-        /// The first damaged byte.
+        /// Offset of the first damaged byte.
         at: u64,
-        /// The length of the file in bytes.
+        /// Length of the file, in bytes.
         length: u64,
-        /// The byte at which messages go on.
+        /// Offset of the next message.
         next: u64,
     },
     /// The file ends within a message.
     Cut {
-        /// The first byte of that message.
+        /// Offset of that message's first byte.
         at: u64,
-        /// The length of the file in bytes.
+        /// Length of the file, in bytes.
         length: u64,
     },
-    /// A message does not hold what was asked of it.
+    /// A message does not contain what was asked for.
     Message {
-        /// The place of the message, in bytes.
+        /// Offset of the message, in bytes.
         at: u64,
-        /// Its topic.
+        /// Topic of the message.
         topic: String,
         /// The reason.
         fault: MessageFault,
@@ -80,11 +80,11 @@ pub enum Rest {
     Behind,
     /// The messages before the damage, and those from this byte on.
     From(u64),
-    /// The messages before the damage alone.
+    /// Only the messages before the damage.
     Before,
 }
 
-/// The reason that a message does not hold what was asked of it.
+/// The reason that a message does not contain what was asked for.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MessageFault {
@@ -111,7 +111,8 @@ impl Error {
 }
 
 impl ErrorKind {
-    /// Returns what [`Damage::Skip`](crate::Damage::Skip) would still read, if the log is damaged.
+    /// Returns which part of a damaged log [`Damage::Skip`](crate::Damage::Skip) would still read; `None` if it would
+    /// not help.
     pub fn rest(&self) -> Option<Rest> {
         match *self {
             Self::Fault { rest, .. } => Some(rest),

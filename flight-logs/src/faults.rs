@@ -1,15 +1,15 @@
-//! The faults of a log, and the notes on them.
+//! Collects the faults of a log, and notes on them.
 
 use crate::{Damage, Error, ErrorKind, Rest, Result};
 use std::fmt::Display;
 
-/// The damaged places of a log: refused, or counted and noted.
+/// The faults of a log. Damage is returned as an error, or counted and noted, as [`Damage`] says.
 #[derive(Debug)]
 pub struct Faults {
     file: String,
     damage: Damage,
     skipped: u64,
-    /// Messages that are longer than their definition, and where the first is.
+    /// Number of messages that are longer than their definition; `first_long` is the offset of the first.
     long: u64,
     first_long: u64,
     notes: Vec<String>,
@@ -31,7 +31,7 @@ impl Faults {
         &self.file
     }
 
-    /// The treatment of damaged places.
+    /// Returns how damage is treated.
     pub(crate) fn damage(&self) -> Damage {
         self.damage
     }
@@ -48,7 +48,7 @@ impl Faults {
         }
     }
 
-    /// Counts a fault at a byte behind which reading goes on.
+    /// Counts a fault at a byte after which the log can be read on.
     ///
     /// # Errors
     /// Returns an error if damage is refused.
@@ -61,7 +61,7 @@ impl Faults {
         Ok(())
     }
 
-    /// Notes a fault at a byte behind which nothing can be read.
+    /// Notes a fault at a byte after which nothing can be read.
     ///
     /// # Errors
     /// Returns an error if damage is refused.

@@ -1,8 +1,8 @@
-//! Definitions of ROS 2's common messages: its bags of databases have none of their own before Iron.
+//! Definitions of common ROS 2 messages: `SQLite` bags written before ROS 2 Iron contain none.
 
 use super::definition::short;
 
-/// The fields of a message of this type.
+/// Returns the definition of a message type.
 pub(crate) fn known(name: &str) -> Option<String> {
     let name = short(name);
     let (package, own) = name.split_once('/')?;

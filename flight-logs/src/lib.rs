@@ -1,11 +1,14 @@
-//! Flight logs, message by message: PX4's `ULog`, bags of ROS 1 and ROS 2, MCAP files, Betaflight's blackbox.
+//! Flight logs, message by message: PX4's `ULog`, `ArduPilot`'s `DataFlash`, `MAVLink` telemetry, bags of ROS 1 and ROS 2, MCAP
+//! files, Betaflight's blackbox.
 //!
-//! All formats read alike: [`Kind::of`] recognises a log by its first bytes, [`Reading`] gives its messages in the order
-//! of the file, and a message gives its numbers by the name of their field. Memory does not grow with the log, but for
-//! `ULog`, which is read whole. Logs packed by gzip or Zstandard are unpacked on the way.
+//! All formats are read in the same way. [`Kind::of`] recognises a log by its first bytes, [`Reading`] returns its messages
+//! in the order of the file, and reads the numbers of a message by the names of their fields. Memory use does not grow with
+//! the length of the log, except for `ULog`, which is read as a whole. Logs compressed by gzip or Zstandard are
+//! decompressed while they are read.
 //!
-//! **Damage.** An [`Error`] names the byte at which a log is damaged. With [`Damage::Skip`] reading goes on behind it, and
-//! [`Reading::notes`] says what was left out. No log makes a reader panic: a thousand damaged logs of each kind are a test.
+//! **Damage.** An [`Error`] names the byte at which a log is damaged. With [`Damage::Skip`] reading continues after the
+//! damage, and [`Reading::notes`] lists what was left out. No log makes a reader panic; the tests read a thousand damaged
+//! logs of each kind.
 //!
 //! ```no_run
 //! use flight_logs::{Damage, Kind, Reading};
@@ -22,15 +25,17 @@
 //! # Ok::<(), flight_logs::Error>(())
 //! ```
 //!
-//! The readers are written here and not taken from other crates, because each names the byte of a fault and can go on
-//! behind it. Compared in November 2026: `mcap` 0.26 takes a damaged chunk without a word unless it is asked to look at
-//! checksums, and ends there if it is; `blackbox-log` 0.4.3 refuses a log whose head names no firmware that it knows;
-//! `yule_log` 0.4 is what the tests of this repository compare with; `SQLite` itself needs a C compiler.
+//! The readers are not taken from other crates, because they must name the byte of a fault and be able to continue after
+//! it. As of November 2026, `mcap` 0.26 accepts a damaged chunk silently, or stops at it if checksums are turned on;
+//! `blackbox-log` 0.4.3 refuses a log whose header names a firmware that it does not know; `ardupilot-binlog` 0.2 passes
+//! over damage silently, and stops after 256 damaged places; `SQLite` itself needs a C compiler. `yule_log` 0.4 serves the
+//! tests of this repository as an independent reader of `ULog`.
 
 mod bag;
 mod blackbox;
 mod bytes;
 mod chunk;
+mod dataflash;
 pub mod definition;
 mod error;
 mod faults;
@@ -39,6 +44,7 @@ mod known;
 #[cfg(any(test, feature = "made"))]
 #[doc(hidden)]
 pub mod made;
+mod mavlink;
 mod mcap;
 #[cfg(test)]
 mod mutated;
@@ -47,6 +53,7 @@ mod rosbag2;
 mod sqlite;
 mod topic;
 mod ulog;
+mod window;
 mod wire;
 pub mod zstd;
 
@@ -60,20 +67,20 @@ pub use wire::{Fault, Wire};
 use bytes::Bytes;
 use std::path::Path;
 
-/// The place and time of one message of a log.
+/// Time and position of a message in a log.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// The index of its topic among [`Log::topics`].
+    /// Index of its topic in [`Log::topics`].
     pub topic: usize,
-    /// The time at which it was recorded, in ns.
+    /// Time at which it was recorded, in ns.
     pub time: i64,
-    /// Its place in the file in bytes, or that of its chunk.
+    /// Offset of the message, or of its chunk, in the file, in bytes.
     pub at: u64,
     /// Its number on its topic, if the log counts messages.
     pub sequence: Option<u32>,
 }
 
-/// A log that is read from its start to its end.
+/// A log that is read from start to end.
 pub trait Log {
     /// Goes to the next message.
     ///
@@ -84,20 +91,20 @@ pub trait Log {
     /// Returns the topics found so far; [`Entry::topic`] is an index into them.
     fn topics(&self) -> &[Topic];
 
-    /// Returns the bytes of the message that came last.
+    /// Returns the bytes of the last message.
     fn message(&self) -> &[u8];
 
-    /// Returns the faults found so far, to add to and to report; complete at the end of the log.
+    /// Returns the faults found so far, for adding to them and for reports; they are complete at the end of the log.
     fn faults(&mut self) -> &mut Faults;
 }
 
-/// The treatment of damaged places.
+/// How damage is treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Damage {
-    /// A damaged log is an error.
+    /// Damage is an error.
     #[default]
     Refuse,
-    /// Damaged places are left out, counted and noted.
+    /// Damaged parts are left out, counted and noted.
     Skip,
 }
 
@@ -108,24 +115,29 @@ pub enum Kind {
     Bag,
     /// An MCAP file.
     Mcap,
-    /// A ROS 2 bag of one file.
+    /// A ROS 2 bag that is a single `SQLite` file.
     Sqlite,
-    /// A ROS 2 bag of several files.
+    /// A ROS 2 bag that is a directory of files.
     Directory,
     /// A Betaflight blackbox log.
     Blackbox,
     /// A PX4 log.
     Ulog,
+    /// An `ArduPilot` log, `.bin`.
+    ArduPilot,
+    /// An `ArduPilot` log as text, `.log`.
+    ArduPilotText,
+    /// A telemetry log of a ground station, `.tlog`.
+    Mavlink,
 }
 
 impl Kind {
-    /// Finds a log's kind from its first bytes, packed or not; `None` if the file is no log.
+    /// Recognises the kind of a log by its first bytes, compressed or not; `None` if the file is not a log.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be opened or read, or promises a log by its name and is none: a directory
-    /// without `metadata.yaml`, or a file `.ulg` with other bytes.
+    /// Returns an error if the file cannot be opened or read, or if it should be a log by its name and is not: a
+    /// directory without `metadata.yaml`, or a file `.ulg` with other first bytes.
     pub fn of(path: &Path) -> Result<Option<Self>> {
-        const START: u64 = 32;
         if path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
             return Ok(Some(Self::Directory));
         }
@@ -142,7 +154,7 @@ impl Kind {
             return Ok(None);
         }
         let mut start = Vec::new();
-        let read = Bytes::open(path)?.take(START, &mut start);
+        let read = Bytes::open(path)?.take(dataflash::LOOKED_AT, &mut start);
         let is_named = path.extension().is_some_and(|own| own == "ulg");
         match (read, of_start(&start)) {
             (Err(error), _) if is_named => Err(Error::of(path, ErrorKind::Unpack(error))),
@@ -156,19 +168,26 @@ impl Kind {
         }
     }
 
-    /// Returns the topic that is meant unless another is named.
+    /// Returns the topic to read if the user names none.
     pub fn usual_topic(self) -> Option<&'static str> {
         match self {
             Self::Blackbox => Some(blackbox::MAIN),
-            Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory | Self::Ulog => None,
+            Self::Bag
+            | Self::Mcap
+            | Self::Sqlite
+            | Self::Directory
+            | Self::Ulog
+            | Self::ArduPilot
+            | Self::ArduPilotText
+            | Self::Mavlink => None,
         }
     }
 }
 
-/// The error of a directory that is no log.
+/// Error text for a directory that is not a log.
 const NO_BAG: &str = "a directory, and no bag of ROS 2, which has a file metadata.yaml";
 
-/// The kind of a log that starts with these bytes.
+/// Recognises the kind of a log by its first bytes.
 fn of_start(start: &[u8]) -> Option<Kind> {
     let kinds = [
         (bag::START, Kind::Bag),
@@ -177,10 +196,21 @@ fn of_start(start: &[u8]) -> Option<Kind> {
         (blackbox::START, Kind::Blackbox),
         (ulog::START, Kind::Ulog),
     ];
-    kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
+    let kind = kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind);
+    let looked_into = || {
+        let is_begun = |window: &[u8]| window == dataflash::START;
+        if start.windows(dataflash::START.len()).any(is_begun) {
+            Some(Kind::ArduPilot)
+        } else if dataflash::is_text(start) {
+            Some(Kind::ArduPilotText)
+        } else {
+            mavlink::is_log(start).then_some(Kind::Mavlink)
+        }
+    };
+    kind.or_else(looked_into)
 }
 
-/// The code of the README, for doctests alone.
+/// Compiles the code of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;
@@ -188,7 +218,7 @@ pub struct Readme;
 /// Opens a log.
 ///
 /// # Errors
-/// Returns an error if the log cannot be opened, or its start is damaged.
+/// Returns an error if the log cannot be opened, or if its start is damaged.
 pub fn open(path: &Path, kind: Kind, damage: Damage) -> Result<Box<dyn Log>> {
     let faults = Faults::new(&path.display().to_string(), damage);
     Ok(match kind {
@@ -197,6 +227,9 @@ pub fn open(path: &Path, kind: Kind, damage: Damage) -> Result<Box<dyn Log>> {
         Kind::Sqlite => Box::new(rosbag2::Sqlite::open(path, faults)?),
         Kind::Blackbox => Box::new(blackbox::Blackbox::open(path, faults)?),
         Kind::Ulog => Box::new(ulog::Ulog::open(path, faults)?),
+        Kind::ArduPilot => Box::new(dataflash::Binary::open(path, faults)?),
+        Kind::ArduPilotText => Box::new(dataflash::Text::open(path, faults)?),
+        Kind::Mavlink => Box::new(mavlink::Mavlink::open(path, faults)?),
         Kind::Directory => Box::new(rosbag2::Directory::open(path, faults)?),
     })
 }

@@ -1,9 +1,12 @@
-//! Bags of ROS 1 and 2 and MCAP files, made byte by byte.
+//! Makes logs of every kind byte by byte, for tests.
 #![allow(dead_code, unreachable_pub)]
 
+mod ardupilot;
+
+pub use ardupilot::*;
 use std::io::Write;
 
-/// The kind of a log to make: one topic `/imu` with a counted header, an array and a text.
+/// The kind of a log to make. It has one topic `/imu`, with a counted header, an array and a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Bag,
@@ -22,7 +25,7 @@ const ROS2: &str = "std_msgs/Header header\nfloat64 rate\nfloat32[] few\n\
     ====\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n\
     ====\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 
-/// The value of a sample of the wave; samples are 5 ms apart.
+/// Returns sample number `sample` of the wave; samples are 5 ms apart.
 pub fn wave(sample: u32) -> f64 {
     (f64::from(sample) * 0.1).sin()
 }
@@ -50,7 +53,8 @@ impl Kind {
         }
     }
 
-    /// A message; its own stamp is a second before it was recorded. Every second has an array of one, others of none.
+    /// Returns a message. Its own time stamp is a second before the time of recording. The array has one item in odd
+    /// messages, and none in even ones.
     pub fn message(self, sample: u32) -> Vec<u8> {
         let stamp = seconds(time(sample) - 1_000_000_000).concat();
         let few: Vec<u8> = (0..sample % 2).flat_map(|_| (sample as f32).to_le_bytes()).collect();
@@ -65,7 +69,7 @@ impl Kind {
         }
     }
 
-    /// A log of these samples in one chunk.
+    /// Returns a log of these samples in one chunk.
     pub fn of(self, samples: impl Iterator<Item = u32>) -> Vec<u8> {
         let records: Vec<u8> = samples.flat_map(|sample| self.record(sample)).collect();
         [self.start(), self.chunk("none", &records), self.end()].concat()
@@ -118,7 +122,7 @@ impl Kind {
         }
     }
 
-    /// A chunk, packed or not.
+    /// Returns a chunk, compressed as `how` says.
     pub fn chunk(self, how: &str, content: &[u8]) -> Vec<u8> {
         let packed = match how {
             "bz2" => {
@@ -166,7 +170,7 @@ impl Kind {
         }
     }
 
-    /// A log of 100 messages in chunks of ten.
+    /// Returns a log of 100 messages in chunks of ten.
     pub fn log(self, how: &str) -> Vec<u8> {
         if self == Self::Db3 {
             let bag = database(&(0..100).map(|sample| self.record(sample)).collect::<Vec<_>>());
@@ -187,7 +191,7 @@ impl Kind {
         log
     }
 
-    /// How logs of this kind are packed.
+    /// Returns the compressions that logs of this kind may have.
     pub fn packings(self) -> &'static [&'static str] {
         match self {
             Self::Bag => &["none", "bz2", "lz4"],
@@ -210,7 +214,7 @@ pub fn entry(kind: u8, content: &[u8]) -> Vec<u8> {
     [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat()
 }
 
-/// Bytes of a page of a database.
+/// Size of a database's page, in bytes.
 pub const PAGE: usize = 1024;
 
 /// A value of a row.
@@ -253,7 +257,7 @@ pub fn row(cells: &[Cell<'_>]) -> Vec<u8> {
     [varint(kinds.len() as u64 + 1), kinds, content].concat()
 }
 
-/// A page of cells, behind the head of the file on the first.
+/// Returns a page of cells; on the first page `head` precedes them.
 pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     let mut page = head.to_vec();
     page.extend([kind, 0, 0]);
@@ -273,7 +277,7 @@ pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The cell of a row, and the pages behind it that hold what is too long for it; pages are numbered from the next on.
+/// Returns the cell of a row, and the pages with what is too long for it; `next` is the number of the first of these.
 pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
     let head = [varint(row.len() as u64), varint(number)].concat();
     let (most, least) = (PAGE - 35, (PAGE - 12) * 32 / 255 - 23);
@@ -293,7 +297,8 @@ pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
     ([head, here.to_vec(), next.to_be_bytes().to_vec()].concat(), pages.collect())
 }
 
-/// A bag of ROS 2 with a topic `/imu`: tables on pages of leaves, that of the messages below an inner page.
+/// Returns a ROS 2 bag with a topic `/imu`. Its tables are leaf pages, except that of the messages, which has an inner
+/// page.
 pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
     let sql = |name: &str, columns: &str, root: u64| {
         let statement = format!("CREATE TABLE {name}({columns})");
@@ -347,7 +352,7 @@ pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
     pages.concat()
 }
 
-/// The rate of a sample in a blackbox log.
+/// Returns the angular rate at a sample of a blackbox log.
 pub fn gyro(sample: u32) -> i64 {
     (wave(sample) * 1000.0).round() as i64
 }
@@ -367,7 +372,7 @@ fn signed(number: i64) -> Vec<u8> {
     packed(((number << 1) ^ (number >> 31)) as u32)
 }
 
-/// A frame of a blackbox log: of all numbers every 32nd time, else of what changed.
+/// Returns a frame of a blackbox log: every 32nd one is a full frame, the others hold differences.
 pub fn frame(sample: u32) -> Vec<u8> {
     let time = 1000 + sample * 250;
     if sample.is_multiple_of(32) {
@@ -381,7 +386,7 @@ pub fn frame(sample: u32) -> Vec<u8> {
     [b"P".to_vec(), signed(step), vec![0b1100_0001, low, high, 0, 0]].concat()
 }
 
-/// A blackbox log of 200 frames.
+/// Returns a blackbox log of 200 frames.
 pub fn blackbox() -> Vec<u8> {
     let mut log = b"H Product:Blackbox flight data recorder by Nicholas Sherlock
 H Data version:2

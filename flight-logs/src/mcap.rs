@@ -1,6 +1,6 @@
-//! MCAP files: records of a kind and a length, messages alone or in chunks that may be compressed.
+//! Reads MCAP files: records with a kind and a length; messages lie in chunks, which may be compressed, or alone.
 //!
-//! The index is not needed, so files that were never closed are read as any other.
+//! The index is not used, so files that were never closed can be read too.
 
 use super::Entry;
 use super::bytes::{take, u16_from, u32_from, u64_from, unpack};
@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// The first bytes of a file of any version.
 pub(crate) const START: &[u8] = b"\x89MCAP";
-/// The first bytes of a file of the version that is read.
+/// First bytes of a file of the version that can be read.
 const VERSION: &[u8] = b"\x89MCAP0\r\n";
 
 /// Kinds of records.
@@ -29,15 +29,16 @@ mod op {
     pub(crate) const DATA_END: u8 = 15;
 }
 
-/// The largest message, in bytes. A recorder of ROS 2 may pack messages one by one; none unpacks to more.
+/// Maximum size of a message in bytes. Recorders of ROS 2 may compress messages one by one; a larger one is not
+/// decompressed.
 pub(crate) const LARGEST_MESSAGE: u64 = 1 << 30;
 
-/// A file that is read from its start to its end.
+/// A file that is being read.
 pub(crate) struct Mcap {
     walk: Walk,
-    /// The schemas by number: name, encoding and text.
+    /// The schemas by number, each with its name, encoding and text.
     schemas: HashMap<u16, (String, String, String)>,
-    /// The topic of each channel.
+    /// Index of each channel's topic.
     channels: HashMap<u16, usize>,
     data: Vec<u8>,
 }
@@ -73,7 +74,7 @@ impl Mcap {
         self.walk.chunk.begin(at, (chunk, fault), self.walk.is_over, &mut self.walk.faults)
     }
 
-    /// The entry of a message, and the length of its content; `None` if its channel is unknown.
+    /// Returns the entry of a message, and the length of its content; `None` if its channel is unknown.
     fn entry(&self, mut record: &[u8], at: u64) -> Option<(Entry, usize)> {
         let channel = u16_from(&mut record)?;
         let sequence = u32_from(&mut record)?;
@@ -89,7 +90,7 @@ impl Mcap {
         self.walk.faults.skip(at, "a message without a channel that is known").map(|()| None)
     }
 
-    /// Takes a schema or a channel, and leaves others.
+    /// Reads a schema or a channel; ignores other records.
     fn define(&mut self, kind: u8, mut data: &[u8], at: u64) -> Result<()> {
         let left = &mut data;
         let is_good = match kind {
@@ -135,7 +136,7 @@ impl Mcap {
 }
 
 impl Chunked for Mcap {
-    /// The kind and place of a record, which is in `data`.
+    /// Kind and offset of a record; its content is in `data`.
     type Record = (u8, u64);
 
     fn walk(&self) -> &Walk {
@@ -235,7 +236,8 @@ impl Chunked for Mcap {
     }
 }
 
-/// Takes a message, unpacked if it starts with the bytes of Zstandard, with which no message of ROS 2 starts.
+/// Stores a message's content, decompressed if it starts with the bytes of Zstandard. No message of ROS 2 starts with
+/// these.
 fn take_content(content: &[u8], message: &mut Vec<u8>) {
     if content.starts_with(&ZSTD) {
         *message = unpack("zstd", content, LARGEST_MESSAGE).0;
@@ -244,7 +246,7 @@ fn take_content(content: &[u8], message: &mut Vec<u8>) {
     }
 }
 
-/// A text, or bytes, behind their length.
+/// Takes a text, after its length, from the front.
 fn text(left: &mut &[u8]) -> Option<String> {
     let length = u32_from(left)?;
     Some(String::from_utf8_lossy(take(left, length.into())?).into_owned())

@@ -1,9 +1,9 @@
-//! A log message by message, with fields by name.
+//! Reads a log message by message, and its fields by name.
 
 use super::{Damage, Entry, Error, ErrorKind, Kind, Log, MessageFault, Result, Topic, open};
 use std::path::Path;
 
-/// A log that is read from its start to its end, and the message that came last.
+/// A log that is being read, and its current message.
 pub struct Reading {
     log: Box<dyn Log>,
     file: String,
@@ -34,21 +34,21 @@ impl Reading {
         &self.file
     }
 
-    /// Returns the topic of the present message, without a slash before it.
+    /// Returns the topic of the current message, without a leading slash.
     pub fn topic(&self) -> &str {
         self.own().map_or("", |topic| topic.name.trim_start_matches('/'))
     }
 
-    /// Returns the type of the present message.
+    /// Returns the type of the current message.
     pub fn kind(&self) -> &str {
         self.own().map_or("", |topic| topic.kind.as_str())
     }
 
-    /// Reads a number of the present message, such as `angular_velocity.x` or `gyro_rad[0]`; `None` where an array is
-    /// shorter.
+    /// Reads a number of the current message, such as `angular_velocity.x` or `gyro_rad[0]`; `None` if it lies beyond
+    /// the end of an array.
     ///
     /// # Errors
-    /// Returns an error if there is no such field, or the message is not as its definition says.
+    /// Returns an error if there is no such field, or if the message does not match its definition.
     pub fn number(&self, field: &str) -> Result<Option<f64>> {
         let topic = self.own().ok_or_else(|| Error::new(&self.file, ErrorKind::NoMessage))?;
         let definition = topic
@@ -62,15 +62,15 @@ impl Reading {
         number.map_err(|fault| self.fault(MessageFault::Bytes(fault)))
     }
 
-    /// Reads a text of the present message; `None` if it has no text of this name.
+    /// Reads a text of the current message; `None` if there is none of this name.
     pub fn text(&self, field: &str) -> Option<String> {
         self.own()?.text(field, self.log.message())
     }
 
-    /// Returns the time that the present message says, or else when it was recorded, in µs.
+    /// Returns the time of the current message in µs: the one that it contains, or else that at which it was recorded.
     ///
     /// # Errors
-    /// Returns an error if the message is shorter than that.
+    /// Returns an error if the message ends before its time.
     pub fn time(&self) -> Result<i64> {
         let (topic, entry) = self
             .own()
@@ -86,18 +86,18 @@ impl Reading {
         Ok(microseconds(told.unwrap_or(entry.time)))
     }
 
-    /// Returns the place of the present message in words, for an error: file, byte, topic.
+    /// Describes the place of the current message for an error: file, byte, topic.
     pub fn place(&self) -> String {
         let at = self.entry.map_or(0, |entry| entry.at);
         format!("{}: byte {at}, a message of topic {}", self.file, self.topic())
     }
 
-    /// Returns the notes on the log, complete at its end.
+    /// Returns notes on the log; they are complete at its end.
     pub fn notes(&mut self) -> Vec<String> {
         self.log.faults().notes()
     }
 
-    /// Returns whether the present message has a number of this name.
+    /// Returns whether the current message has a number of this name.
     pub fn has_number(&self, field: &str) -> bool {
         let definition = self.own().and_then(|topic| topic.definition.as_ref().ok());
         definition.is_some_and(|own| own.number(field).is_ok())
@@ -114,7 +114,7 @@ impl Reading {
     }
 }
 
-/// Rounds a time to whole µs.
+/// Rounds a time in ns to whole µs.
 pub fn microseconds(nanoseconds: i64) -> i64 {
     nanoseconds.saturating_add(500).div_euclid(1000)
 }

@@ -1,4 +1,4 @@
-//! Bags of ROS 2: databases of `SQLite`, and directories of these or of MCAP files.
+//! Reads ROS 2 bags: `SQLite` databases, and directories of these or of MCAP files.
 
 use super::bytes::unpack;
 use super::definition::Dialect;
@@ -12,10 +12,10 @@ use super::{Entry, Error, ErrorKind, Kind, Log, Result, files, open};
 use std::collections::{HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 
-/// The file that a bag's directory holds.
+/// Name of the file that a bag's directory contains.
 pub(crate) const METADATA: &str = "metadata.yaml";
 
-/// The reason that messages without a known definition cannot be read.
+/// Reason that messages without a known definition cannot be read.
 const UNDEFINED: &str = "the bag has no definition of its messages, as those written before ROS 2 Iron; \
     `ros2 bag convert` to MCAP adds it";
 
@@ -24,10 +24,10 @@ pub(crate) struct Sqlite {
     database: Database,
     faults: Faults,
     topics: Vec<Topic>,
-    /// The topics, by number.
+    /// Index of each topic, by its number in the database.
     places: HashMap<i64, usize>,
     rows: Rows,
-    /// The columns of the topic, the time and the message.
+    /// Columns of the topic, the time and the message.
     columns: [usize; 3],
     message: Vec<u8>,
 }
@@ -132,18 +132,18 @@ impl Log for Sqlite {
     }
 }
 
-/// A directory of files, one after the other.
+/// A directory whose files are read one after the other.
 pub(crate) struct Directory {
     files: VecDeque<PathBuf>,
     current: Option<Box<dyn Log>>,
-    /// For each topic of the present file, its index among the topics of all files.
+    /// For each topic of the current file, its index among the topics of all files.
     places: Vec<usize>,
     topics: Vec<Topic>,
     faults: Faults,
 }
 
 impl Directory {
-    /// Opens a directory, or the file `metadata.yaml` in it.
+    /// Opens a directory, given by its path or by that of its `metadata.yaml`.
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
         let metadata = if files::is_dir(path) { path.join(METADATA) } else { path.to_owned() };
         let text = files::read_to_string(&metadata)
@@ -157,7 +157,7 @@ impl Directory {
     }
 }
 
-/// The names under `relative_file_paths:`.
+/// Returns the file names under `relative_file_paths:`.
 fn files(text: &str) -> impl Iterator<Item = &str> {
     let mut lines = text.lines().map(str::trim);
     lines.by_ref().find(|line| *line == "relative_file_paths:");

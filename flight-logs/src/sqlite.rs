@@ -1,4 +1,4 @@
-//! Tables of an `SQLite` file, read row by row. See <https://www.sqlite.org/fileformat.html>.
+//! Reads tables of an `SQLite` file row by row. See <https://www.sqlite.org/fileformat.html>.
 
 use super::bytes::{self, Bytes, is_packed};
 use super::faults::Faults;
@@ -10,29 +10,29 @@ use std::path::Path;
 /// The first bytes of a database.
 pub(crate) const START: &[u8] = b"SQLite format 3\0";
 
-/// A file that is open.
+/// An open database file.
 pub(crate) struct Database {
     file: File,
-    /// The bytes of a page; `used` leaves out those that are reserved.
+    /// Size of a page in bytes; `used` is the size without the reserved bytes at its end.
     page: u64,
     used: u64,
-    /// The number of pages in the file.
+    /// Number of pages in the file.
     pages: u64,
 }
 
-/// A table: its columns, and the page that all others are found from.
+/// A table: its columns, and its root page.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     pub columns: Vec<String>,
     root: u64,
 }
 
-/// The rows of a table from the first on.
+/// The rows of a table, read in order.
 #[derive(Debug)]
 pub(crate) struct Rows {
-    /// The pages from the root down to a leaf, and the next cell of each.
+    /// The pages from the root down to a leaf, each with the index of its next cell.
     stack: Vec<(Page, usize)>,
-    /// The number of pages visited: more than the file has means that they go in circles.
+    /// Number of pages visited. If there are more than the file has, they form a circle.
     visited: u64,
     root: Option<u64>,
 }
@@ -43,10 +43,10 @@ struct Page {
     bytes: Vec<u8>,
 }
 
-/// A row: the values of its columns.
+/// A row, with the values of its columns.
 #[derive(Debug)]
 pub(crate) struct Row {
-    /// The place of its page in the file.
+    /// Offset of its page in the file.
     pub at: u64,
     values: Vec<Value>,
 }
@@ -56,7 +56,7 @@ pub(crate) enum Value {
     Null,
     Integer(i64),
     Real(f64),
-    /// Bytes, or the bytes of a text.
+    /// Bytes; also the bytes of a text.
     Blob(Vec<u8>),
 }
 
@@ -88,7 +88,7 @@ impl Database {
         Ok(Self { file, page, used, pages: length.div_ceil(page) })
     }
 
-    /// The table of this name.
+    /// Finds a table by its name.
     pub(crate) fn table(&mut self, name: &str, faults: &mut Faults) -> Result<Option<Table>> {
         let mut rows = Rows::of(1);
         while let Some(row) = rows.next(self, faults)? {
@@ -118,7 +118,7 @@ impl Database {
         Ok(Page { number, bytes })
     }
 
-    /// The content of a cell, with the part that lies on further pages.
+    /// Returns the content of a cell, including the part on overflow pages.
     fn payload(&mut self, cell: &[u8], length: u64) -> Result<Vec<u8>, String> {
         if length > self.pages * self.page {
             return Err(format!("a row of {length} bytes is larger than the file"));
@@ -153,7 +153,7 @@ impl Table {
         Rows::of(self.root)
     }
 
-    /// The place of a column.
+    /// Returns the index of a column.
     pub(crate) fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|own| own == name)
     }
@@ -164,7 +164,7 @@ impl Rows {
         Self { stack: Vec::new(), visited: 0, root: Some(root) }
     }
 
-    /// The next row. Pages that are damaged are passed over where that was accepted.
+    /// Reads the next row; skips damaged pages if damage is accepted.
     pub(crate) fn next(
         &mut self,
         database: &mut Database,
@@ -240,7 +240,7 @@ enum Cell {
 }
 
 impl Page {
-    /// A cell of a table's page: a row, or on an inner page the number of another page.
+    /// Reads a cell of a page: a row or, on an inner page, the number of another page.
     fn cell(&self, place: usize) -> Result<Cell, &'static str> {
         const SHORT: &str = "a cell is outside of it";
         // The first page has the head of the file before it.
@@ -288,7 +288,7 @@ impl Row {
         }
     }
 
-    /// The bytes of a column, taken out of the row.
+    /// Takes the bytes of a column out of the row.
     pub(crate) fn take_bytes(&mut self, column: usize) -> Option<Vec<u8>> {
         match self.values.get_mut(column)? {
             Value::Blob(bytes) => Some(std::mem::take(bytes)),
@@ -297,7 +297,7 @@ impl Row {
     }
 }
 
-/// The values of a row. A column that stands for the row's number is not stored, and gets `id`.
+/// Parses the values of a row. A column that is an alias of the row's number is not stored, and gets `id`.
 fn values(content: &[u8], id: i64) -> Option<Vec<Value>> {
     let mut head = content;
     let length = usize::try_from(varint(&mut head)?).ok()?;
@@ -327,13 +327,13 @@ fn values(content: &[u8], id: i64) -> Option<Vec<Value>> {
     Some(values)
 }
 
-/// A number with a sign, its high byte first.
+/// Parses a signed number, high byte first.
 fn integer(bytes: &[u8]) -> i64 {
     let start = if bytes.first().is_some_and(|first| first & 0x80 != 0) { -1 } else { 0 };
     bytes.iter().fold(start, |number, byte| (number << 8) | i64::from(*byte))
 }
 
-/// A number of seven bits a byte, its high bits first, of nine bytes at most.
+/// Takes a variable-length number from the front: seven bits in each byte, high bits first, nine bytes at most.
 fn varint(bytes: &mut &[u8]) -> Option<u64> {
     let mut number = 0_u64;
     for place in 0..9 {
@@ -350,7 +350,7 @@ fn varint(bytes: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// The names of columns in `CREATE TABLE name(column type, column type)`.
+/// Parses the names of columns in `CREATE TABLE name(column type, column type)`.
 fn columns(statement: &str) -> Vec<String> {
     let inside = statement.split_once('(').map_or("", |(_, inside)| inside);
     let names = inside.split(',').filter_map(|column| column.split_whitespace().next());

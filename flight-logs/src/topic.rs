@@ -1,23 +1,23 @@
-//! Topics of a log, and numbers and texts out of their messages.
+//! Topics of a log, and access to numbers and texts in their messages.
 
 use super::definition::{Definition, Dialect, Path, Stamp};
 use super::wire::{self, Fault, Wire};
 
-/// A topic: its name, and the definition by which its messages are read.
+/// A topic: its name, and the definition of its messages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topic {
-    /// Its name, as in the log.
+    /// Name, as in the log.
     pub name: String,
-    /// The type of its messages.
+    /// Type of its messages.
     pub kind: String,
-    /// The encoding of its messages.
+    /// Encoding of its messages.
     pub wire: Wire,
-    /// The definition of its messages, or the reason that they cannot be read.
+    /// Definition of its messages, or the reason that they cannot be read.
     pub definition: Result<Definition, String>,
 }
 
 impl Topic {
-    /// A topic whose messages have a definition in this dialect.
+    /// Makes a topic from the text of a definition.
     pub(crate) fn new(name: String, kind: String, dialect: Dialect, text: &str) -> Self {
         let wire = match dialect {
             Dialect::Ros1 | Dialect::Px4 => Wire::Ros1,
@@ -27,12 +27,12 @@ impl Topic {
         Self { name, kind, wire, definition }
     }
 
-    /// A topic whose messages cannot be read, and why.
+    /// Makes a topic whose messages cannot be read; `why` is the reason.
     pub(crate) fn unread(name: String, kind: String, why: String) -> Self {
         Self { name, kind, wire: Wire::Ros1, definition: Err(why) }
     }
 
-    /// The index of the topic in `topics`, to which it is added if it is new.
+    /// Returns the index of the topic in `topics`; adds it if it is new.
     pub(crate) fn place_in(self, topics: &mut Vec<Self>) -> usize {
         let known = topics.iter().position(|own| *own == self);
         known.unwrap_or_else(|| {
@@ -41,10 +41,10 @@ impl Topic {
         })
     }
 
-    /// Reads a number of a message; `None` where an array is shorter than that.
+    /// Reads a number of a message; `None` if it lies beyond the end of an array.
     ///
     /// # Errors
-    /// Returns an error if the message is not as its definition says.
+    /// Returns an error if the message does not match its definition.
     pub fn number(&self, path: &Path, message: &[u8]) -> Result<Option<f64>, Fault> {
         match &self.definition {
             Ok(definition) => wire::number(self.wire, definition, path, message),
@@ -63,10 +63,10 @@ impl Topic {
         wire::text(self.wire, definition, &definition.text(field)?, message)
     }
 
-    /// Reads a time in a message, in ns.
+    /// Reads a time in a message, in ns; `None` if it lies beyond the end of an array.
     ///
     /// # Errors
-    /// Returns an error if the message is not as its definition says.
+    /// Returns an error if the message does not match its definition.
     pub fn stamp(&self, stamp: &Stamp, message: &[u8]) -> Result<Option<i64>, Fault> {
         let read = |path| self.number(path, message);
         let parts = read(&stamp.seconds)?.zip(read(&stamp.nanoseconds)?);

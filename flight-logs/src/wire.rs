@@ -1,4 +1,4 @@
-//! Messages as bytes: ROS 1's serialization, and CDR as ROS 2 has it.
+//! Decodes messages: the serialization of ROS 1, and CDR as used by ROS 2.
 
 use super::definition::{Definition, Kind, Number, Path, Shape, Step, Struct};
 use std::fmt;
@@ -6,20 +6,20 @@ use std::fmt;
 /// The encoding of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
-    /// ROS 1: one field after the other, without gaps.
+    /// ROS 1: the fields one after the other, without gaps.
     Ros1,
-    /// CDR of ROS 2: four bytes that tell the byte order, then aligned fields.
+    /// CDR of ROS 2: a prefix of four bytes that gives the byte order, then aligned fields.
     Cdr,
 }
 
-/// The fault of a message.
+/// The reason that a message cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The message ends within its fields.
     Short,
     /// The message is not plain CDR.
     Encapsulation(u16),
-    /// Wide text comes before the field: its length depends on the writer.
+    /// A wide text precedes the field; its length depends on the writer.
     WideText,
 }
 
@@ -33,7 +33,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The number at a place; `None` if an array is too short to hold it.
+/// Reads the number at a path; `None` if it lies beyond the end of an array.
 pub(crate) fn number(
     wire: Wire,
     definition: &Definition,
@@ -47,20 +47,20 @@ pub(crate) fn number(
     }
 }
 
-/// Whether a message is longer than its definition; CDR may pad it by up to three bytes.
+/// Returns whether a message is longer than its definition. CDR may pad it by up to three bytes.
 pub(crate) fn is_longer(wire: Wire, definition: &Definition, message: &[u8]) -> bool {
     let filling = if wire == Wire::Cdr { 3 } else { 0 };
     length(wire, definition, message).is_ok_and(|length| length + filling < message.len())
 }
 
-/// The length of a message by its definition.
+/// Returns the length that a message should have by its definition.
 pub(crate) fn length(wire: Wire, definition: &Definition, message: &[u8]) -> Result<usize, Fault> {
     let mut input = Input::new(wire, message)?;
     input.skip_struct(definition, definition.root())?;
     Ok(message.len() - input.bytes.len() + input.at)
 }
 
-/// The text at a place.
+/// Reads the text at a path.
 pub(crate) fn text(
     wire: Wire,
     definition: &Definition,
@@ -79,7 +79,7 @@ pub(crate) fn text(
     Some(text.trim_end_matches('\0').to_owned())
 }
 
-/// The rest of a message.
+/// The bytes of a message, and the index of the next one to read.
 struct Input<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -99,7 +99,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Goes to a place, and returns the kind of field there; `None` if an array is too short.
+    /// Moves to the field at a path, and returns its type; `None` if it lies beyond the end of an array.
     fn go(&mut self, definition: &Definition, path: &Path) -> Result<Option<Kind>, Fault> {
         let mut within = definition.root();
         let mut steps = path.0.iter().peekable();
@@ -240,7 +240,7 @@ mod tests {
     const TEXT: &str = "uint8 a\nfloat64 b\nstring word\nint16[] list\nInner[2] two\n\
         ====\nMSG: t/Inner\nint8 small\nint32 large\n";
 
-    /// The same message both ways: 7, 1.5, "ab", [1, -2], (3, 4), (5, 6).
+    /// The same message in both encodings: 7, 1.5, "ab", [1, -2], (3, 4), (5, 6).
     #[test]
     fn both_ways_give_the_same_numbers() {
         let one = Definition::parse("t/T", TEXT, Dialect::Ros1).unwrap();

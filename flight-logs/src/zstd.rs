@@ -1,12 +1,12 @@
-//! Files packed by Zstandard, of one frame or several.
+//! Reads files compressed by Zstandard, which may have several frames.
 
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use std::io::{self, Cursor, ErrorKind, Read};
 
-/// The first bytes of files packed by Zstandard.
+/// First bytes of a file compressed by Zstandard.
 pub const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// The content of all frames of a file, one after the other: packers that run on several cores write one for each piece.
+/// The content of all frames of a file: packers that run on several cores write one frame for each piece.
 pub struct Frames<R> {
     input: R,
     decoder: FrameDecoder,
@@ -14,12 +14,12 @@ pub struct Frames<R> {
 }
 
 impl<R: Read> Frames<R> {
-    /// Unpacks what this input gives.
+    /// Decompresses an input.
     pub fn new(input: R) -> Self {
         Self { input, decoder: FrameDecoder::new(), is_within: false }
     }
 
-    /// Begins the next frame, if there is one; frames that hold no content are passed over.
+    /// Begins the next frame that has content; returns false at the end.
     fn begin(&mut self) -> io::Result<bool> {
         let mut start = Vec::new();
         while self.input.by_ref().take(4).read_to_end(&mut start)? > 0 {
@@ -40,7 +40,7 @@ impl<R: Read> Frames<R> {
         Ok(false)
     }
 
-    /// Compares the frame's checksum, if it has one.
+    /// Compares the frame's checksum, if it has one, with its content.
     fn check(&self) -> io::Result<()> {
         let own = self.decoder.get_calculated_checksum();
         match self.decoder.get_checksum_from_data() {

@@ -1,23 +1,23 @@
-//! Networks: layers one behind the other.
+//! Networks: chains of layers.
 
 use core::fmt::Debug;
 use spikewire::{Event, Tick};
 
-/// A network: a layer, or layers one behind the other. Its parameters are references to data in flash.
+/// A network: a layer, or a chain of layers. Its parameters are references to data in flash.
 pub trait Network: Copy {
-    /// What it takes in a step: the numbers of the inputs that fired, `[u16]`, or a value for each input.
+    /// Type of the input of a step: `[u16]`, the numbers of the inputs that fired, or a value for each input.
     type Input: ?Sized;
-    /// What it keeps from step to step.
+    /// Type of the state between steps.
     type State: State;
     /// Number of inputs.
     const INPUTS: usize;
-    /// Number of neurons of the last layer.
+    /// Number of neurons in the last layer.
     const OUTPUTS: usize;
 
     /// Returns a state at rest: all potentials and currents 0, and nothing fired.
     fn state(&self) -> Self::State;
 
-    /// Takes a step through all layers, and returns the neurons of the last layer that fired, by rising number. Inputs
+    /// Runs a step through all layers, and returns the neurons of the last layer that fired, in rising order. Inputs
     /// that the network does not have, and values that are not finite, are left out and [counted](State::rejected).
     fn step<'s>(&self, state: &'s mut Self::State, input: &Self::Input) -> &'s [u16];
 }
@@ -27,38 +27,39 @@ pub trait State: Copy + Debug {
     /// The type of potentials.
     type Value;
 
-    /// Returns the neurons of the last layer that fired in the last step, by rising number.
+    /// Returns the neurons of the last layer that fired in the last step, in rising order.
     fn spikes(&self) -> &[u16];
 
     /// Returns the potentials of the last layer, in the units of its weights.
     fn values(&self) -> &[Self::Value];
 
-    /// Number of inputs that were left out: spikes of inputs that do not exist, values that are not finite or above ±10¹⁵.
+    /// Returns the number of inputs that were left out: spikes of inputs that do not exist, and values that are not
+    /// finite or above ±10¹⁵.
     fn rejected(&self) -> u32;
 
-    /// Number of potentials and currents that left the range of their integers, and were set to its end.
+    /// Returns how often a potential or current left the range of its integer type, and was clamped.
     fn saturated(&self) -> u32;
 
-    /// Returns the spikes of the last step as events, the first neuron's address being `first_address`: for a queue, a
-    /// link, a chip or a [`Readout`](spikewire::Readout). Leaves out addresses above 65 535.
+    /// Returns the spikes of the last step as events for a queue, a link, a chip or a [`Readout`](spikewire::Readout).
+    /// The first neuron has the address `first_address`. Addresses above 65 535 are left out.
     fn events(&self, tick: Tick, first_address: u16) -> impl Iterator<Item = Event> {
         crate::spikes::events(self.spikes(), tick, first_address)
     }
 }
 
-/// A network, and behind it another that takes its spikes in the same step.
+/// A network followed by another, which takes its spikes in the same step.
 #[derive(Clone, Copy, Debug)]
 pub struct Then<A, B> {
     first: A,
     next: B,
 }
 
-/// The state of two networks, one behind the other.
+/// The state of a network followed by another.
 #[derive(Clone, Copy, Debug)]
 pub struct ThenState<A, B> {
-    /// The state of the first one.
+    /// State of the first network.
     pub first: A,
-    /// The state of the one behind it.
+    /// State of the network that follows.
     pub next: B,
 }
 
@@ -68,7 +69,7 @@ impl<A: Network, B: Network<Input = [u16]>> Then<A, B> {
         Self { first, next }
     }
 
-    /// A network of these layers and, behind them, another.
+    /// Returns a network of these layers, followed by another network.
     pub const fn then<C: Network<Input = [u16]>>(self, next: C) -> Then<Self, C> {
         Then::new(self, next)
     }

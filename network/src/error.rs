@@ -1,4 +1,4 @@
-//! The error of a bad parameter.
+//! The error of an invalid parameter.
 
 use core::fmt;
 
@@ -7,7 +7,7 @@ use core::fmt;
 pub struct ParameterError {
     /// The name of the parameter.
     pub parameter: &'static str,
-    /// The row and column of a weight; 0 and 0 for a neuron's parameter.
+    /// Row and column of a weight; 0 and 0 for a parameter of a neuron.
     pub place: (usize, usize),
     /// The parameter's value.
     pub value: f32,
@@ -26,7 +26,7 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Returns the value, or fails the build where a constant is bad.
+/// Returns the value; fails the build if a constant is invalid.
 pub(crate) const fn unwrap<T: Copy>(result: Result<T, ParameterError>) -> T {
     match result {
         Ok(value) => value,

@@ -1,4 +1,4 @@
-//! What a layer takes: spikes or values.
+//! The inputs of a layer: spikes or values.
 
 use crate::number::Number;
 use crate::sealed::Sealed;
@@ -6,11 +6,11 @@ use crate::weights::Weights;
 use core::{fmt::Debug, hint::black_box};
 use heapless::Vec;
 
-/// What a layer takes in a step.
+/// The kind of a layer's inputs.
 pub trait Input<V: Number>: Copy + Debug + Sealed + 'static {
     /// The input of a step.
     type Of<const IN: usize>: ?Sized;
-    /// The same, checked: by default nothing, to be filled in place.
+    /// The input of a step after it was checked. It is created empty, and filled in place.
     #[doc(hidden)]
     type Checked<'a, const IN: usize, const OUT: usize>: Default;
 
@@ -22,13 +22,13 @@ pub trait Input<V: Number>: Copy + Debug + Sealed + 'static {
         rejected: &mut u32,
     );
 
-    /// The rows of inputs that fired, and further spikes, which are added behind them.
+    /// Returns the weights' rows of the inputs that fired, and further spikes, which are added after them.
     #[doc(hidden)]
     fn fired<'c, const IN: usize, const OUT: usize>(
         checked: &'c Self::Checked<'_, IN, OUT>,
     ) -> (&'c [&'c V::Row<OUT>], &'c [u16]);
 
-    /// Adds the weights times the values to the sums of neurons from `first` on.
+    /// Adds weights times values to the sums of neurons, starting at neuron `first`.
     #[doc(hidden)]
     fn add_values<const IN: usize, const OUT: usize>(
         weights: &Weights<V, IN, OUT>,
@@ -38,22 +38,23 @@ pub trait Input<V: Number>: Copy + Debug + Sealed + 'static {
     );
 }
 
-/// Spikes: the numbers of the inputs that fired. An input that is named twice counts twice.
+/// Spikes: the numbers of the inputs that fired. An input that occurs twice counts twice.
 #[derive(Clone, Copy, Debug)]
 pub struct Spiking;
 
-/// Values, a number for each input: a first layer that takes measurements as they are. All weights are multiplied.
+/// Values, one for each input, for a first layer that takes measurements directly. Every weight is multiplied in each
+/// step.
 #[derive(Clone, Copy, Debug)]
 pub struct Values;
 
 impl Sealed for Spiking {}
 impl Sealed for Values {}
 
-/// The rows of weights of the inputs that fired: looked up once a step, and not once for each block of neurons.
+/// The rows of weights of the inputs that fired, looked up once in a step rather than for each block of neurons.
 #[derive(Debug)]
 pub struct Fired<'a, V: Number, const IN: usize, const OUT: usize> {
     rows: Vec<&'a V::Row<OUT>, IN>,
-    /// Spikes beyond as many as there are inputs, some of which are named several times.
+    /// Spikes beyond the number of inputs; some inputs must have fired several times.
     rest: &'a [u16],
 }
 
@@ -65,7 +66,7 @@ impl<V: Number, const IN: usize, const OUT: usize> Default for Fired<'_, V, IN, 
 }
 
 impl<'a, V: Number, const IN: usize, const OUT: usize> Fired<'a, V, IN, OUT> {
-    /// Looks up the row of an input, and returns 1 if it has none.
+    /// Looks up the row of an input; returns 1 if it has none, or else 0.
     #[inline(always)]
     pub(crate) fn push(&mut self, weights: &'a Weights<V, IN, OUT>, spike: u16) -> u32 {
         let row = weights.rows.get(usize::from(spike));
@@ -125,7 +126,7 @@ impl<V: Number> Input<V> for Spiking {
     }
 }
 
-/// Values of which those that are not accepted are 0.
+/// The values of a step, with 0 in place of each that is not accepted.
 #[derive(Debug)]
 pub struct Accepted<T, const IN: usize>([T; IN]);
 

@@ -1,24 +1,25 @@
-//! Potentials in whole numbers, with weights of 8 bits.
+//! Integer potentials, with weights of 8 bits.
 
 use crate::number::{IS_SMALL, Number, OUTSIDE, block};
 use crate::sealed::Sealed;
 use core::hint::black_box;
 
-/// The largest bias, threshold and value to reset to.
+/// Largest bias, threshold and reset value.
 pub(crate) const LARGEST: i32 = 1 << 27;
 
-/// The decay that stands for 1.
+/// The integer that represents a decay of 1.
 pub(crate) const ONE: u32 = 1 << 16;
 
-/// The largest shift of sums of weights.
+/// Largest shift of sums of weights.
 pub(crate) const MOST_SHIFT: u32 = 10;
 
-/// A potential or current lies in `-RANGE..RANGE`. A step's sum stays below 2³¹ from there: the potential and the
-/// current, both scaled by 1 at most, 4096 spikes of 128 shifted by 10 and, up to 2²⁷ each, two biases and a threshold.
+/// Bound of potentials and currents, which lie in `-RANGE..RANGE`. A step's sum then stays below 2³¹. It adds the
+/// potential and the current, both scaled by at most 1; 4096 spikes of weight 128, shifted by 10; and two biases and a
+/// threshold of up to 2²⁷ each.
 const RANGE: i32 = 1 << 29;
 
-/// Weights of one input, as bytes that begin at a word: a weight `w` is stored as `w + 128`, so that four of them are
-/// added in two registers.
+/// The weights of one input, as word-aligned bytes. A weight `w` is stored as `w + 128`, so that four of them are added
+/// in two registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(4))]
 pub struct Packed<const OUT: usize>([u8; OUT]);
@@ -42,8 +43,9 @@ impl<const OUT: usize> Packed<OUT> {
     }
 }
 
-/// Sums of bytes over two lists of rows, of four of them each: `odd` has the second and fourth in 16 bits, and `all` these
-/// times 256 and the others. A function of its own, so that nothing else takes the registers in which they are kept.
+/// Sums the bytes of two lists of rows, four bytes in each word. `odd` holds the sums of the second and fourth byte in
+/// 16 bits each; `all` holds 256 times these plus the sums of the other two. It is a separate function so that nothing
+/// else takes the registers of the sums.
 #[inline(always)]
 fn lanes<const W: usize, const OUT: usize>(
     lists: [&[&Packed<OUT>]; 2],
@@ -72,11 +74,12 @@ impl Number for i32 {
     type Row<const OUT: usize> = Packed<OUT>;
     type Scale = i32;
     const BLOCK: usize = if IS_SMALL { 1 } else { 2 };
-    /// The weights of so many, as unsigned bytes, fit in 16 bits together.
+    /// Largest number of weights, as unsigned bytes, whose sum fits in 16 bits.
     const MOST_ROWS: usize = 257;
     const MOST_SPIKES: usize = 4096;
 
-    /// The product divided by 65 536 and rounded down, exactly: without a product of 64 bits where the core has none.
+    /// Returns the product divided by 65 536 and rounded down, exactly; without a 64-bit product on cores that have
+    /// none.
     #[inline(always)]
     fn scaled(self, factor: u32) -> Self {
         if !IS_SMALL {

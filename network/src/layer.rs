@@ -1,4 +1,4 @@
-//! A layer: weights, neurons, and what leads back.
+//! Layers: weights, neurons and recurrence.
 
 use crate::chain::{Network, State, Then};
 use crate::input::{Input, Spiking, Values};
@@ -9,15 +9,15 @@ use crate::spikes::Spikes;
 use crate::weights::Weights;
 use core::{fmt::Debug, hint::black_box, slice};
 
-/// `OUT` neurons and the weights that lead to them from `IN` inputs: references to data in flash.
+/// `OUT` neurons and the weights that lead to them from `IN` inputs, as references to data in flash.
 ///
-/// - **Order of additions:** a neuron's bias, then the weights of the inputs in the order of the list (or of values in
-///   the order of the inputs), then those of the neurons of the layer that fired in the step before, by rising number. Each
-///   addition and product is rounded by itself.
-/// - **Work:** a step adds a row for each spike, up to 16 neurons at a time, and visits each neuron once. Spikes beyond as
-///   many as there are inputs, of which some fire several times, take about twice as long.
-/// - **Memory:** potentials, currents, and two bytes a neuron for a list of spikes; on the stack four bytes an input, and
-///   four a neuron if spikes lead back.
+/// - **Order of additions:** first a neuron's bias; then the weights of the inputs, in the order of the list (or of
+///   values, in the order of the inputs); then the weights of the neurons of this layer that fired in the step before, in
+///   rising order. Each addition and product is rounded by itself.
+/// - **Work:** a step adds a row for each spike, for up to 16 neurons at a time, and visits each neuron once. If there are
+///   more spikes than inputs, as some inputs fire several times, the additional ones take about twice as long.
+/// - **Memory:** potentials, currents, and two bytes for each neuron in a list of spikes. On the stack: four bytes for each
+///   input, and four for each neuron if the layer is recurrent.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a, N: Neuron, const IN: usize, const OUT: usize, I = Spiking, R = Forward> {
     weights: &'a Weights<N::Value, IN, OUT>,
@@ -26,7 +26,7 @@ pub struct Layer<'a, N: Neuron, const IN: usize, const OUT: usize, I = Spiking, 
     input: I,
 }
 
-/// The state of a layer: what it keeps from step to step.
+/// The state of a layer between steps.
 #[derive(Clone, Copy, Debug)]
 pub struct LayerState<V, C, const OUT: usize> {
     potentials: [V; OUT],
@@ -37,13 +37,13 @@ pub struct LayerState<V, C, const OUT: usize> {
 }
 
 impl<'a, N: Neuron, const IN: usize, const OUT: usize> Layer<'a, N, IN, OUT> {
-    /// A layer that takes spikes.
+    /// Makes a layer whose inputs are spikes.
     pub const fn new(weights: &'a Weights<N::Value, IN, OUT>, neurons: &'a [N; OUT]) -> Self {
         const { assert!(OUT >= 1 && OUT <= 1 << 16, "numbers of neurons have 16 bits") };
         Self { weights, neurons, recurrence: Forward, input: Spiking }
     }
 
-    /// Makes the layer take values: a number for each input, and not spikes.
+    /// Makes the layer take a value for each input, instead of spikes.
     pub const fn of_values(self) -> Layer<'a, N, IN, OUT, Values> {
         let Self { weights, neurons, .. } = self;
         Layer { weights, neurons, recurrence: Forward, input: Values }
@@ -51,7 +51,8 @@ impl<'a, N: Neuron, const IN: usize, const OUT: usize> Layer<'a, N, IN, OUT> {
 }
 
 impl<'a, N: Neuron, const IN: usize, const OUT: usize, I: Copy> Layer<'a, N, IN, OUT, I> {
-    /// Leads the layer's spikes back to it, a step later: [`Full`](crate::Full) or [`OneToOne`](crate::OneToOne).
+    /// Makes the layer recurrent: its spikes act on it in the next step, by [`Full`](crate::Full) or
+    /// [`OneToOne`](crate::OneToOne) weights.
     pub const fn recurrent<R: Copy>(self, recurrence: R) -> Layer<'a, N, IN, OUT, I, R> {
         let Self { weights, neurons, input, .. } = self;
         Layer { weights, neurons, recurrence, input }
@@ -62,7 +63,7 @@ impl<N: Neuron, const IN: usize, const OUT: usize, I, R> Layer<'_, N, IN, OUT, I
 where
     Self: Network,
 {
-    /// A network of this layer and, behind it, another.
+    /// Returns a network of this layer, followed by another network.
     pub const fn then<B: Network<Input = [u16]>>(self, next: B) -> Then<Self, B> {
         Then::new(self, next)
     }
@@ -118,14 +119,14 @@ where
 /// Potentials, currents and neurons.
 type Parts<'p, N> = (&'p mut [<N as Neuron>::Value], &'p mut [<N as Neuron>::Current], &'p [N]);
 
-/// A step of a layer.
+/// A step that a layer is running.
 struct Step<'s, L, I, B, const OUT: usize> {
     layer: L,
     checked: &'s I,
     before: &'s B,
     spikes: &'s mut Spikes<OUT>,
     saturated: &'s mut u32,
-    /// Fours of neurons that are done.
+    /// Number of groups of four neurons that are done.
     done: usize,
 }
 
@@ -136,7 +137,7 @@ where
     I: Input<N::Value>,
     R: Recurrence<N::Value, OUT>,
 {
-    /// Steps as many blocks of `W` fours of neurons as there are, and returns the neurons that are left.
+    /// Runs as many blocks of `W` groups of four neurons as there are, and returns the neurons that are left.
     #[inline(always)]
     fn blocks<'p, const W: usize>(
         &mut self,
@@ -212,8 +213,8 @@ where
         (last_potentials, last_currents, last_neurons)
     }
 
-    /// Adds to sums what is too much at once: inputs that fired several times, and many of them, or scaled otherwise than
-    /// what leads back.
+    /// Adds to the sums when the rows cannot be added at once: inputs fired several times, or there are too many rows,
+    /// or the recurrent weights have another scale.
     #[cold]
     #[inline(never)]
     fn sums_of_many<const W: usize>(
@@ -244,7 +245,7 @@ where
         sums
     }
 
-    /// Steps one neuron.
+    /// Runs a step of one neuron.
     #[inline(always)]
     fn one(&mut self, number: usize, v: &mut N::Value, current: &mut N::Current, neuron: &N) {
         let mut sum = neuron.bias();
@@ -266,7 +267,7 @@ where
     }
 }
 
-/// Brings potentials and currents into their range, and returns how many were outside.
+/// Clamps potentials and currents to their range; returns how many were outside.
 #[cold]
 fn clamp<N: Neuron>(potentials: &mut [N::Value], currents: &mut [N::Current]) -> u32 {
     let potentials = potentials.iter_mut().map(Number::clamp);
@@ -294,7 +295,7 @@ impl<V: Number, C: Copy + Debug, const OUT: usize> State for LayerState<V, C, OU
 }
 
 impl<V, C, const OUT: usize> LayerState<V, C, OUT> {
-    /// Returns the neurons' currents; of neurons without, nothing.
+    /// Returns the neurons' currents, which are empty for neurons without.
     pub fn currents(&self) -> &[C; OUT] {
         &self.currents
     }

@@ -1,8 +1,9 @@
 //! Spiking networks on the microcontroller itself.
 //!
-//! A trained network of up to a few hundred neurons, stepped in memory of fixed size: no heap, no panic, no unsafe code,
-//! and the same bits on every core. Weights stay in flash; only potentials, currents and the lists of spikes lie in RAM.
-//! A layer adds the row of weights of each input that fired, and multiplies nothing that did not.
+//! The crate runs a trained network of up to a few hundred neurons in memory of fixed size: no heap, no panic, no
+//! unsafe code, and the same bits on every core. Weights stay in flash; only potentials, currents and lists of spikes
+//! are in RAM. For each input that fired a layer adds its row of weights; it multiplies nothing for inputs that did not
+//! fire.
 #![doc = include_str!("../README.md")]
 #![no_std]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -38,7 +39,7 @@ pub use reset::{
 pub use spikes::Spikes;
 pub use weights::Weights;
 
-/// Closes the crate's traits: their bounds on sums hold for the types here alone.
+/// Closes the crate's traits, as the bounds on sums hold only for its own types.
 mod sealed {
     pub trait Sealed {}
 }

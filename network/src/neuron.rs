@@ -1,8 +1,9 @@
-//! Neurons: one form for all of them.
+//! Neurons of all kinds, in one form.
 //!
-//! `I = a I + (x + bias)` with a current only, then `u = b v + (I + bias)` or `u = b v + (x + bias)`, then the
-//! [rule](crate::Reset) by which `u` fires. `x` is the sum of the weights of what came in. Gains (`R dt / tau`, `w_in`)
-//! belong in the weights and biases, a leak to another value than 0 (`v_leak dt / tau`) in the bias.
+//! With a current: `I = a I + (x + bias)`, then `u = b v + (I + bias)`. Without: `u = b v + (x + bias)`. Then the
+//! [rule](crate::Reset) decides whether `u` fires. `x` is the sum of the weights of the inputs that fired, `v` the
+//! potential before, `a` and `b` are the decays. Gains (`R dt / tau`, `w_in`) must be multiplied into weights and
+//! biases; a leak towards another value than 0 (`v_leak dt / tau`) must be added to the bias.
 
 use crate::error::{ParameterError, unwrap};
 use crate::integer;
@@ -13,29 +14,29 @@ use core::{fmt::Debug, marker::PhantomData};
 
 /// A neuron's parameters, which may lie in flash.
 pub trait Neuron: Copy + Debug + Sealed + 'static {
-    /// The type of its potential.
+    /// The type of the potential.
     type Value: Number;
-    /// Its current: nothing, unless inputs last longer than a step.
+    /// The type of the current; empty for neurons whose inputs act for one step.
     type Current: Copy + Default + Debug;
 
-    /// Whether it ever fires.
+    /// Whether the neuron ever fires.
     #[doc(hidden)]
     const FIRES: bool;
-    /// What is added to its inputs in every step.
+    /// Returns the constant that is added to the inputs in every step.
     #[doc(hidden)]
     fn bias(&self) -> Self::Value;
-    /// Takes a step with the sum of its inputs and bias, and tells if it fires.
+    /// Runs a step, given the sum of inputs and bias; returns whether the neuron fires.
     #[doc(hidden)]
     fn step(&self, v: &mut Self::Value, current: &mut Self::Current, input: Self::Value) -> bool;
-    /// A number above [`number::OUTSIDE`] if the current has left its range.
+    /// Returns a number above [`number::OUTSIDE`] if the current has left its range.
     #[doc(hidden)]
     fn outside(current: &Self::Current) -> u32;
-    /// Brings the current into its range, and returns 1 if it was outside.
+    /// Clamps the current to its range; returns 1 if it was outside, or else 0.
     #[doc(hidden)]
     fn clamp(current: &mut Self::Current) -> u32;
 }
 
-/// A leaky neuron that fires (LIF); with a decay of 1 a perfect integrator (IF).
+/// A leaky neuron that fires (LIF). With a decay of 1 it is a perfect integrator (IF).
 #[derive(Clone, Copy, Debug)]
 pub struct Lif<V: Number, R> {
     decay: V::Factor,
@@ -45,16 +46,16 @@ pub struct Lif<V: Number, R> {
     rule: PhantomData<R>,
 }
 
-/// A leaky integrator that never fires (LI), whose potential is read; with a decay of 1 a sum over all steps (I), with 0
-/// the sum of this step.
+/// A leaky integrator that never fires (LI) and whose potential is read. With a decay of 1 it sums over all steps (I),
+/// with a decay of 0 over one step only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Li<V: Number> {
     decay: V::Factor,
     bias: V,
 }
 
-/// A neuron whose inputs are a current that decays by itself: `CubaLIF` with [`Lif`], `CubaLI` with [`Li`]. `OLD` ones
-/// take the current of the step before.
+/// A neuron whose inputs form a current that decays by itself: `CubaLIF` with [`Lif`], `CubaLI` with [`Li`]. If `OLD`
+/// is set, the potential takes the current of the step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuba<V: Number, N, const OLD: bool = false> {
     decay: V::Factor,
@@ -194,7 +195,7 @@ const fn whole(parameter: &'static str, value: i32) -> Result<i32, ParameterErro
     }
 }
 
-/// Checks a decay in parts of 65 536.
+/// Checks a decay, in units of 1/65 536.
 const fn part(value: u32) -> Result<u32, ParameterError> {
     if value <= integer::ONE {
         Ok(value)
@@ -204,17 +205,17 @@ const fn part(value: u32) -> Result<u32, ParameterError> {
     }
 }
 
-/// The largest number below.
+/// Returns the next smaller number.
 const fn float_below(value: f32) -> f32 {
     value.next_down()
 }
 
-/// The largest number below.
+/// Returns the next smaller number.
 const fn whole_below(value: i32) -> i32 {
     value.saturating_sub(1)
 }
 
-/// Constructors, which are `const` and so cannot be generic over the number.
+/// Writes the constructors, which are `const` and therefore cannot be generic over the number type.
 macro_rules! constructors {
     (@returning $number:ty, $reset:ty, $help:literal) => {
         impl Lif<$number, $reset> {
@@ -230,7 +231,7 @@ macro_rules! constructors {
     };
     ($new:ident, $try_new:ident, $number:ty, $factor:ty, $share:ident, $check:ident, $below:ident, $zero:expr) => {
         impl<R: Reset> Lif<$number, R> {
-            /// A neuron that fires above `threshold` and keeps the share `decay` of its potential in a step.
+            /// Makes a neuron that fires above `threshold`, and whose potential is multiplied by `decay` in each step.
             ///
             /// # Panics
             /// Panics if a parameter is out of its range; at compile time where it initialises a constant.
@@ -238,7 +239,7 @@ macro_rules! constructors {
                 unwrap(Self::$try_new(decay, threshold))
             }
 
-            /// A neuron that fires above `threshold` and keeps the share `decay` of its potential in a step.
+            /// Makes a neuron that fires above `threshold`, and whose potential is multiplied by `decay` in each step.
             ///
             /// # Errors
             /// Returns an error if a parameter is out of its range.
@@ -253,14 +254,14 @@ macro_rules! constructors {
                 }
             }
 
-            /// Makes it fire at the threshold already (`>=`), as in `SpikingJelly`.
+            /// Makes the neuron fire at the threshold too (`>=`), as in `SpikingJelly`.
             #[must_use]
             pub const fn at_threshold(mut self) -> Self {
                 self.threshold = $below(self.threshold);
                 self
             }
 
-            /// Sets what is added to the inputs in every step, 0 by default.
+            /// Sets the bias, a constant that is added to the inputs in every step; 0 by default.
             ///
             /// # Errors
             /// Returns an error if it is out of its range.
@@ -272,7 +273,7 @@ macro_rules! constructors {
                 Ok(self)
             }
 
-            /// Sets what is added to the inputs in every step, 0 by default.
+            /// Sets the bias, a constant that is added to the inputs in every step; 0 by default.
             ///
             /// # Panics
             /// Panics if it is out of its range; at compile time where it initialises a constant.
@@ -292,7 +293,7 @@ macro_rules! constructors {
         constructors!(@returning $number, ToValueHeld, "Sets the potential at which it is held after it has fired, 0 by default.");
 
         impl Li<$number> {
-            /// An integrator that keeps the share `decay` of its potential in a step.
+            /// Makes an integrator whose potential is multiplied by `decay` in each step.
             ///
             /// # Panics
             /// Panics if it is out of its range; at compile time where it initialises a constant.
@@ -300,7 +301,7 @@ macro_rules! constructors {
                 unwrap(Self::$try_new(decay))
             }
 
-            /// An integrator that keeps the share `decay` of its potential in a step.
+            /// Makes an integrator whose potential is multiplied by `decay` in each step.
             ///
             /// # Errors
             /// Returns an error if it is out of its range.
@@ -311,7 +312,7 @@ macro_rules! constructors {
                 }
             }
 
-            /// Sets what is added to the inputs in every step, 0 by default.
+            /// Sets the bias, a constant that is added to the inputs in every step; 0 by default.
             ///
             /// # Panics
             /// Panics if it is out of its range; at compile time where it initialises a constant.
@@ -323,8 +324,8 @@ macro_rules! constructors {
         }
 
         impl<N: Neuron<Value = $number>> Cuba<$number, N> {
-            /// A neuron behind a current that keeps the share `decay` of itself in a step. The neuron's own bias is added
-            /// behind the current.
+            /// Puts a current before a neuron; the current is multiplied by `decay` in each step. The neuron's own bias
+            /// is added after the current.
             ///
             /// # Panics
             /// Panics if it is out of its range; at compile time where it initialises a constant.
@@ -332,7 +333,7 @@ macro_rules! constructors {
                 unwrap(Self::$try_new(decay, neuron))
             }
 
-            /// A neuron behind a current that keeps the share `decay` of itself in a step.
+            /// Puts a current before a neuron; the current is multiplied by `decay` in each step.
             ///
             /// # Errors
             /// Returns an error if it is out of its range.
@@ -343,7 +344,7 @@ macro_rules! constructors {
                 }
             }
 
-            /// Sets what is added to the current in every step, 0 by default.
+            /// Sets a constant that is added to the current in every step; 0 by default.
             ///
             /// # Panics
             /// Panics if it is out of its range; at compile time where it initialises a constant.

@@ -1,4 +1,4 @@
-//! The numbers in which potentials and currents are kept.
+//! The number types of potentials and currents.
 
 use crate::sealed::Sealed;
 use core::{fmt::Debug, hint::black_box};
@@ -19,17 +19,17 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     type Value: Copy + Default + Debug;
     /// The weights of one input onto `OUT` neurons.
     type Row<const OUT: usize>: Copy + Debug + 'static;
-    /// What sums of weights are multiplied by: a power of two, or nothing.
+    /// The type of the factor by which sums of weights are multiplied: a power of two, or none.
     type Scale: Copy + Debug + Default + PartialEq;
 
-    /// Fours of neurons that are summed at once over all spikes of a step, as many as the core has registers for. No bit
-    /// depends on it.
+    /// Number of groups of four neurons that are summed at once over all spikes of a step; as many as the core has
+    /// registers for. It does not affect results.
     #[doc(hidden)]
     const BLOCK: usize;
-    /// The most rows that are added at once.
+    /// Maximum number of rows that are added at once.
     #[doc(hidden)]
     const MOST_ROWS: usize;
-    /// The most spikes that a step takes from outside.
+    /// Maximum number of spikes that a step takes from outside.
     #[doc(hidden)]
     const MOST_SPIKES: usize;
 
@@ -42,17 +42,18 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     #[doc(hidden)]
     #[must_use]
     fn minus(self, other: Self) -> Self;
-    /// A number above [`OUTSIDE`] if the potential or current has left its range.
+    /// Returns a number above [`OUTSIDE`] if the potential or current has left its range.
     #[doc(hidden)]
     fn outside(self) -> u32;
-    /// Brings the number into its range, and returns 1 if it was outside.
+    /// Clamps the number to its range; returns 1 if it was outside, or else 0.
     #[doc(hidden)]
     fn clamp(&mut self) -> u32;
-    /// The value, unless it is not finite or out of range.
+    /// Returns the value, or `None` if it is not finite or out of range.
     #[doc(hidden)]
     fn accept(value: Self::Value) -> Option<Self::Value>;
-    /// Adds the weights of two lists of rows, in the order of the lists, to what the sums of the `W` times 4 neurons from the
-    /// `first` four on start from. Both are scaled alike, and have [`MOST_ROWS`](Self::MOST_ROWS) together at most.
+    /// Adds the weights of two lists of rows, in the order of the lists, to the sums of `W` groups of four neurons;
+    /// `first` is the first group. The sums start from `start`. The lists have the same scale, and together at most
+    /// [`MOST_ROWS`](Self::MOST_ROWS) rows.
     #[doc(hidden)]
     fn sums<const W: usize, const OUT: usize>(
         start: impl FnOnce() -> [[Self; 4]; W],
@@ -60,7 +61,7 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
         scale: Self::Scale,
         first: usize,
     ) -> [[Self; 4]; W];
-    /// The same for a list and one neuron.
+    /// Adds the weights of a list of rows to the sum of one neuron.
     #[doc(hidden)]
     fn add_rows_to_one<const OUT: usize>(
         rows: &[&Self::Row<OUT>],
@@ -68,7 +69,8 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
         neuron: usize,
         sum: &mut Self,
     );
-    /// Adds to the sums of the neurons from `first` on the weight of every input times its value, in the order of the inputs.
+    /// Adds, to the sums of the neurons from `first` on, every input's weight times its value, in the order of the
+    /// inputs.
     #[doc(hidden)]
     fn add_values<const OUT: usize>(
         rows: &[Self::Row<OUT>],
@@ -79,15 +81,15 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     );
 }
 
-/// A Cortex-M0, with few registers and without long products; it is known by its lack of a compare-and-swap. No bit
-/// depends on it.
+/// Whether the core is a Cortex-M0, with few registers and no long products; it is recognised by its lack of a
+/// compare-and-swap. It does not affect results.
 pub(crate) const IS_SMALL: bool = !cfg!(target_has_atomic = "ptr");
 
-/// The largest result of [`Number::outside`] for a number in its range.
+/// Largest result of [`Number::outside`] for a number in its range.
 pub(crate) const OUTSIDE: u32 = (1 << 30) - 1;
 
-/// The largest weight, bias, threshold, value to reset to, and value of an input in `f32`: sums and products of these
-/// stay finite, so that no potential is ever infinite or NaN.
+/// Largest weight, bias, threshold, reset value and input value in `f32`. Sums and products of these stay finite, so
+/// that no potential is ever infinite or NaN.
 pub(crate) const LARGEST: f32 = 1e15;
 
 impl Sealed for f32 {}
@@ -180,7 +182,7 @@ impl Number for f32 {
     }
 }
 
-/// `W` fours of a row, from the `first` on.
+/// Returns `W` groups of four numbers of a row, starting at group `first`.
 #[inline(always)]
 pub(crate) fn block<T, const W: usize>(row: &[T], first: usize) -> Option<&[[T; 4]; W]> {
     row.as_chunks().0.get(first..)?.first_chunk()

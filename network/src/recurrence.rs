@@ -1,4 +1,4 @@
-//! What leads a layer's spikes back to it, a step later.
+//! The recurrence of a layer: how its spikes act on it in the next step.
 
 use crate::input::Fired;
 use crate::number::Number;
@@ -7,9 +7,9 @@ use crate::spikes::Spikes;
 use crate::weights::Weights;
 use core::fmt::Debug;
 
-/// What a layer's spikes of the step before add to its neurons.
+/// The weights by which a layer's spikes act on its neurons in the next step.
 pub trait Recurrence<V: Number, const OUT: usize>: Copy + Debug + Sealed {
-    /// What is known of the step before: by default nothing, to be filled in place.
+    /// The spikes of the step before. It is created empty, and filled in place.
     #[doc(hidden)]
     type Before<'a>: Default
     where
@@ -18,29 +18,29 @@ pub trait Recurrence<V: Number, const OUT: usize>: Copy + Debug + Sealed {
     #[doc(hidden)]
     fn begin<'a>(&'a self, fired: &Spikes<OUT>, before: &mut Self::Before<'a>);
 
-    /// The rows of weights of the neurons that fired.
+    /// Returns the weights' rows of the neurons that fired, and their scale.
     #[doc(hidden)]
     fn fired<'c>(&'c self, before: &'c Self::Before<'_>) -> (&'c [&'c V::Row<OUT>], V::Scale);
 
-    /// Adds to the sum of a neuron what it leads back to itself.
+    /// Adds to a neuron's sum the weight that leads from it to itself, if it fired.
     #[doc(hidden)]
     #[inline(always)]
     fn add_own(&self, _before: &Self::Before<'_>, _neuron: usize, _sum: &mut V) {}
 
-    /// Whether `add_own` does anything.
+    /// Whether `add_own` has an effect.
     #[doc(hidden)]
     const HAS_OWN: bool = false;
 }
 
-/// Nothing leads back.
+/// No recurrence.
 #[derive(Clone, Copy, Debug)]
 pub struct Forward;
 
-/// Every neuron leads back to every neuron.
+/// Weights from every neuron to every neuron.
 #[derive(Clone, Copy, Debug)]
 pub struct Full<'a, V: Number, const OUT: usize>(pub &'a Weights<V, OUT, OUT>);
 
-/// Every neuron leads back to itself alone, with this weight.
+/// A weight from every neuron to itself only.
 #[derive(Clone, Copy, Debug)]
 pub struct OneToOne<'a, V: Number, const OUT: usize>(pub &'a Weights<V, 1, OUT>);
 

@@ -1,26 +1,27 @@
-//! What a spike does to its neuron.
+//! What a spike does to its neuron's potential.
 
 use crate::number::Number;
 use crate::sealed::Sealed;
 use core::fmt::Debug;
 
-/// The rule by which a neuron fires and returns. A file of a network does not tell it: take that of the framework in
-/// which the network was trained.
+/// The rule by which a neuron fires and is reset. The file of a network does not contain it: choose that of the
+/// framework in which the network was trained.
 ///
-/// | rule | of |
+/// | rule | framework |
 /// |---|---|
 /// | [`ToValue`] | Norse, `SpikingJelly`, snnTorch's reader of NIR |
 /// | [`ToValueLate`] | snnTorch's `Leaky` with `reset_mechanism="zero"` |
-/// | [`ToValueHeld`] | its `RLeaky`, `Synaptic` and `RSynaptic` with that |
+/// | [`ToValueHeld`] | snnTorch's `RLeaky`, `Synaptic` and `RSynaptic` with `reset_mechanism="zero"` |
 /// | [`Subtract`] | Sinabs, Rockpool, `SpikingJelly` with a soft reset |
 /// | [`SubtractLate`] | snnTorch |
 /// | [`SubtractNoDelay`] | snnTorch with `reset_delay=False` |
 pub trait Reset: Copy + Debug + Sealed + 'static {
-    /// Whether a spike subtracts the threshold, rather than set the potential.
+    /// Whether a spike subtracts the threshold, rather than setting the potential.
     #[doc(hidden)]
     const SUBTRACTS: bool;
 
-    /// Integrates the potential of the step before, tells if the neuron fires, and leaves what the next step goes on from.
+    /// Integrates the potential of the step before, and returns whether the neuron fires. Leaves the potential from
+    /// which the next step continues.
     #[doc(hidden)]
     fn fire<V: Number>(
         potential: &mut V,
@@ -30,28 +31,29 @@ pub trait Reset: Copy + Debug + Sealed + 'static {
     ) -> bool;
 }
 
-/// A neuron that fires returns to a value, 0 unless told, in the same step.
+/// Sets a neuron that fires to a value, by default 0, in the same step.
 #[derive(Clone, Copy, Debug)]
 pub struct ToValue;
 
-/// A neuron that fires keeps its potential, and begins the next step from a value, 0 unless told.
+/// Lets a neuron that fires keep its potential, and starts the next step from a value, by default 0.
 #[derive(Clone, Copy, Debug)]
 pub struct ToValueLate;
 
-/// A neuron that fires keeps its potential, and is at a value, 0 unless told, through the next step, whatever comes in.
+/// Lets a neuron that fires keep its potential, and holds it at a value, by default 0, through the next step, whatever
+/// its inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct ToValueHeld;
 
-/// A neuron that fires subtracts its threshold, in the same step.
+/// Subtracts the threshold of a neuron that fires, in the same step.
 #[derive(Clone, Copy, Debug)]
 pub struct Subtract;
 
-/// A neuron that fires keeps its potential, and the next step subtracts the threshold after decay and input.
+/// Lets a neuron that fires keep its potential, and subtracts the threshold in the next step, after decay and input.
 #[derive(Clone, Copy, Debug)]
 pub struct SubtractLate;
 
-/// snnTorch's subtraction with `reset_delay=False`: a neuron whose last potential is above the threshold fires only if it
-/// would still be above it less the threshold. One that fires subtracts its threshold in the same step.
+/// Subtracts the threshold in the same step, as snnTorch does with `reset_delay=False`. A neuron whose last potential
+/// was above the threshold fires again only if its new potential minus the threshold is above the threshold.
 #[derive(Clone, Copy, Debug)]
 pub struct SubtractNoDelay;
 

@@ -28,13 +28,13 @@ pub struct Spikes<const MOST: usize> {
 }
 
 impl<const MOST: usize> Spikes<MOST> {
-    /// An empty list.
+    /// Makes an empty list.
     pub const fn new() -> Self {
         const { assert!(MOST <= 1 << 16, "numbers of neurons have 16 bits") };
         Self { list: [0; MOST], count: 0, lost: 0 }
     }
 
-    /// Appends an input's number; one that finds no room is lost and counted.
+    /// Appends an input's number; if the list is full, the input is lost and counted.
     #[inline]
     pub fn push(&mut self, input: u16) {
         if !self.append(input) {
@@ -42,14 +42,14 @@ impl<const MOST: usize> Spikes<MOST> {
         }
     }
 
-    /// Appends an event's address, whatever its direction.
+    /// Appends an event's address; ignores its direction.
     #[inline]
     pub fn push_event(&mut self, event: Event) {
         self.push(event.address);
     }
 
-    /// Appends twice an event's address, and one more if it goes down: for codes with a direction, whose channels have an
-    /// input for each.
+    /// Appends twice an event's address, plus 1 if it goes down. Use it for codes with a direction, whose channels have
+    /// an input for each direction.
     #[inline]
     pub fn push_signed(&mut self, event: Event) {
         let falls = u16::from(event.polarity == Polarity::Down);
@@ -70,25 +70,25 @@ impl<const MOST: usize> Spikes<MOST> {
         is_free
     }
 
-    /// Empties the list; the number of lost ones stays.
+    /// Empties the list; the count of lost inputs stays.
     #[inline(always)]
     pub fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// Returns the numbers, in the order in which they came.
+    /// Returns the numbers, in the order in which they were appended.
     #[inline(always)]
     pub fn as_slice(&self) -> &[u16] {
         self.list.get(..self.count).unwrap_or_default()
     }
 
-    /// Number of inputs that found no room.
+    /// Returns the number of inputs that were lost because the list was full.
     pub const fn lost(&self) -> u32 {
         self.lost
     }
 
-    /// Returns the spikes as events, the first neuron's address being `first_address`: for a queue, a link or a
-    /// [`Readout`](spikewire::Readout). Leaves out addresses above 65 535.
+    /// Returns the spikes as events for a queue, a link or a [`Readout`](spikewire::Readout). The first neuron has the
+    /// address `first_address`. Addresses above 65 535 are left out.
     pub fn events(&self, tick: Tick, first_address: u16) -> impl Iterator<Item = Event> {
         events(self.as_slice(), tick, first_address)
     }

@@ -1,12 +1,14 @@
-//! Weights, in flash.
+//! Weights in flash.
 
 use crate::error::{ParameterError, unwrap};
 use crate::integer::{self, Packed};
 use crate::number::{LARGEST, Number};
 
-/// The weights from `IN` inputs onto `OUT` neurons, a row an input: `static` data, which is read where it lies.
+/// The weights from `IN` inputs to `OUT` neurons, with a row for each input. Put them in a `static`: they are read from
+/// where they are stored.
 ///
-/// `Weights<f32, …>` takes 4 bytes a weight, `Weights<i32, …>` one: weights of 8 bits onto potentials of 32.
+/// `Weights<f32, …>` takes 4 bytes for each weight, `Weights<i32, …>` one: its weights have 8 bits, and its potentials
+/// 32.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights<V: Number, const IN: usize, const OUT: usize> {
     pub(crate) rows: [V::Row<OUT>; IN],
@@ -14,7 +16,7 @@ pub struct Weights<V: Number, const IN: usize, const OUT: usize> {
 }
 
 impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
-    /// Weights by input, then neuron: the transpose of a NIR file's.
+    /// Makes weights from rows by input. (A NIR file has rows by neuron: transpose them.)
     ///
     /// # Panics
     /// Panics if a weight is not finite or beyond ±10¹⁵; at compile time where it initialises a constant.
@@ -22,7 +24,7 @@ impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
         unwrap(Self::try_new(rows))
     }
 
-    /// Weights by input, then neuron.
+    /// Makes weights from rows by input.
     ///
     /// # Errors
     /// Returns an error if a weight is not finite or beyond ±10¹⁵.
@@ -47,8 +49,9 @@ impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
 }
 
 impl<const IN: usize, const OUT: usize> Weights<i32, IN, OUT> {
-    /// Weights by input, then neuron. A sum of weights is multiplied by 2 to the power of `shift`, 0 to 10, before it is
-    /// added to a potential, so that potentials are finer than weights; a sum of weights times values is divided by it.
+    /// Makes 8-bit weights from rows by input. A sum of weights is multiplied by 2 to the power of `shift`, 0 to 10,
+    /// before it is added to a potential, so that potentials are finer than weights. A sum of weights times values is
+    /// divided by it instead.
     ///
     /// # Panics
     /// Panics if the shift is above 10; at compile time where it initialises a constant.

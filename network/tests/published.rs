@@ -1,5 +1,5 @@
-//! The same sixteen inputs through one neuron of every kind, against what the frameworks give: decay 1/2, gain 1,
-//! threshold 4, from rest. All numbers are exact in binary.
+//! Runs the same sixteen inputs through one neuron of every kind, and compares it with the frameworks: decay 1/2, gain
+//! 1, threshold 4, from rest. All numbers are exact in binary.
 
 #![expect(clippy::indexing_slicing, reason = "a test may panic")]
 
@@ -14,7 +14,7 @@ const INPUT: [f32; 16] =
 static ONE: Weights<f32, 1, 1> = Weights::new(&[[1.0]]);
 static BACK: Weights<f32, 1, 1> = Weights::new(&[[-3.0]]);
 
-/// The spikes of all steps, and the potentials.
+/// Returns the spikes of all steps, and the potentials.
 fn run<N: Neuron<Value = f32>, R: Recurrence<f32, 1>>(
     neuron: N,
     recurrence: R,
@@ -30,7 +30,7 @@ fn run<N: Neuron<Value = f32>, R: Recurrence<f32, 1>>(
     input.iter().map(step).unzip()
 }
 
-/// Expects these spikes, and potentials that begin so.
+/// Asserts these spikes, and these first potentials.
 fn expect(
     (spikes, potentials): (String, Vec<f32>),
     spikes_expected: &str,
@@ -129,8 +129,8 @@ fn the_current_of_a_neuron_is_read() {
     assert_eq!(currents, [3., 4.5, 2.25, 5.125, 3.5625, 6.78125]);
 }
 
-/// Norse's `LIFCell` adds the input to a current that decays behind the potential: the form's current, not yet decayed.
-/// Its potential takes half of it, which is in the weight.
+/// Norse's `LIFCell` adds the input to a current that decays after the potential has used it, so that it is the form's
+/// current before its decay. The potential takes half of it, which is included in the weight.
 #[test]
 fn norse_lif_cell() {
     static HALF: Weights<f32, 1, 1> = Weights::new(&[[0.5]]);
@@ -151,7 +151,7 @@ fn norse_lif_cell() {
     assert_eq!(potentials[..6], [1.5, 3., 2.625, 3.875, 3.71875, 0.]);
 }
 
-/// NIR's own reference takes the current of the step before: the same as an input a step later.
+/// NIR's reference program uses the current of the step before, which equals an input that is a step late.
 #[test]
 fn nirs_reference() {
     let late: Vec<f32> = [0.0].into_iter().chain(INPUT).take(16).collect();
@@ -161,7 +161,7 @@ fn nirs_reference() {
     expect(run(old, Forward, &INPUT), "0010111110111011", &expected);
 }
 
-/// The types are spelled out, as a module that is written by a program has to.
+/// The types are written out, as a program that generates a module has to do.
 #[test]
 fn types_say_what_a_layer_is() {
     static NEURONS: [CubaLif<f32, Subtract>; 1] =

@@ -1,5 +1,5 @@
-//! Random networks of two layers, the first recurrent, against a transcription without blocks or lists of spikes: every
-//! bit of every potential. It shares no code with the crate.
+//! Random networks of two layers, the first recurrent, are compared with a plain transcription, which has neither
+//! blocks nor lists of spikes and shares no code with the crate: every bit of every potential must agree.
 
 #![expect(
     clippy::indexing_slicing,
@@ -14,7 +14,7 @@ use spikewire_network::{
     ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
-/// A generator of random bits, as arrays of thousands of weights are too much for strategies.
+/// A generator of random bits: arrays of thousands of weights are too large for proptest's strategies.
 struct Bits(u32);
 
 impl Bits {
@@ -25,7 +25,7 @@ impl Bits {
         self.0
     }
 
-    /// A number in -1..1 of few digits or of many.
+    /// Draws a number in -1..1, with few or with many binary digits.
     fn float(&mut self) -> f32 {
         (self.next() >> 8) as f32 / 8_388_608.0 - 1.0
     }
@@ -42,7 +42,7 @@ enum Rule {
     SubtractNoDelay,
 }
 
-/// A number with the operations of the form, each rounded.
+/// A number type with the operations of a neuron, each rounded.
 trait Kind: Copy + PartialOrd + Default + std::fmt::Debug {
     type Decay: Copy;
     fn times(self, decay: Self::Decay) -> Self;
@@ -63,7 +63,7 @@ impl Kind for f32 {
     }
 }
 
-/// Whole numbers wide enough for anything; every test but one stays in the range of the crate's.
+/// Integers with room for any sum; all tests but one stay within the crate's range.
 impl Kind for i64 {
     type Decay = i64;
     fn times(self, decay: i64) -> i64 {
@@ -77,14 +77,14 @@ impl Kind for i64 {
     }
 }
 
-/// A neuron by the page of rules.
+/// A neuron as the documentation of the rules defines it.
 #[derive(Clone, Copy, Debug)]
 struct Plain<K: Kind> {
     current_decay: Option<K::Decay>,
     decay: K::Decay,
     bias: K,
     inner_bias: K,
-    /// Threshold, whether it fires at it, and where it returns.
+    /// Threshold; `at_threshold` is whether it fires at it, and `reset` the value to which it returns.
     threshold: K,
     at_threshold: bool,
     reset: K,
@@ -130,7 +130,7 @@ impl<K: Kind> Plain<K> {
     }
 }
 
-/// Steps a layer: `weights` and `own` by input, then neuron.
+/// Runs a step of a layer; `weights` and `own` have rows by input.
 fn plain_layer<K: Kind>(
     rule: Rule,
     neurons: &[Plain<K>],
@@ -158,7 +158,7 @@ fn plain_layer<K: Kind>(
     fired
 }
 
-/// Inputs of a step: some twice, and some that do not exist.
+/// Draws the inputs of a step, some of them twice, and some that do not exist.
 fn inputs(bits: &mut Bits, all: usize) -> Vec<u16> {
     (0..bits.next() % 9).map(|_| (bits.next() as usize % (all + 1)) as u16).collect()
 }
@@ -313,7 +313,7 @@ fn integers<R: Reset, const HIDDEN: usize>(rule: Rule, seed: u32, at_threshold: 
     assert_eq!(state.saturated(), 0);
 }
 
-/// Runs a function under every rule.
+/// Runs a function with every rule.
 macro_rules! every_rule {
     ($run:ident, $hidden:literal, $($arguments:expr),*) => {
         $run::<ToValue, $hidden>(Rule::ToValue, $($arguments),*);
@@ -328,7 +328,7 @@ macro_rules! every_rule {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Blocks of 16, fours and single neurons.
+    /// The sizes cover blocks of 16 neurons, groups of four and single neurons.
     #[test]
     fn floats_have_the_references_bits(seed: u32, at: bool, current: bool) {
         every_rule!(floats, 1, seed, at, current);
@@ -343,7 +343,7 @@ proptest! {
         every_rule!(integers, 39, seed, at, shift);
     }
 
-    /// Whatever comes in, potentials stay finite, and what is not taken is counted.
+    /// Potentials stay finite with any input, and inputs that are not accepted are counted.
     #[test]
     fn values_that_are_not_finite_are_counted(values in prop::collection::vec(any::<f32>(), 3)) {
         let weights = Weights::<f32, 3, 5>::new(&[[1e15; 5], [-1e15; 5], [0.5; 5]]);

@@ -1,4 +1,5 @@
-//! What `.github` says of the repository is so: the least Rust, and every lock file that is to be kept up to date.
+//! Tests that the files in `.github` agree with the repository: the oldest Rust, and every lock file that is to be kept
+//! up to date.
 
 use crate::common::paths;
 use std::{fs, path::Path};
@@ -8,7 +9,7 @@ fn read(path: impl AsRef<Path>) -> String {
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The directories with a file whose name is asked for, from the root, in the form `/a/b`.
+/// Returns the directories with a file whose name is accepted, in the form `/a/b`.
 fn with(is_wanted: fn(&str) -> bool) -> Vec<String> {
     let (root, mut found) = (paths::root(), Vec::new());
     let mut waiting = vec![root.clone()];
@@ -31,7 +32,7 @@ fn with(is_wanted: fn(&str) -> bool) -> Vec<String> {
     found
 }
 
-/// The directories that an ecosystem's entry of `dependabot.yml` names.
+/// Returns the directories that `dependabot.yml` lists for an ecosystem.
 fn kept(ecosystem: &str) -> Vec<String> {
     let text = read(".github/dependabot.yml");
     let start = format!("package-ecosystem: {ecosystem}\n");

@@ -1,8 +1,8 @@
-//! Set-up and checks. `cargo xtask` lists the commands.
+//! Set-up and checks; `cargo xtask` lists the commands.
 //!
-//! Each room uses those before it: `common`, `setup` (what a machine needs), `programs` (built for the host and for
-//! emulated boards, and run), `figures` (tables and pictures of the pages), `products` (what others take from here) and
-//! `checks`. `verify` lists the checks, `write` what is generated.
+//! Each module uses only those before it: `common`, `setup` (what a machine needs), `programs` (built for the host and
+//! for emulated boards, and run), `figures` (tables and pictures of the documentation), `products` (what others use of
+//! this repository) and `checks`. `verify` lists the checks, and `write` what is generated.
 
 mod checks;
 mod common;

@@ -1,4 +1,4 @@
-//! `cargo xtask release`: all that stands before an upload, which it leaves to the owner; and the check of licences.
+//! `cargo xtask release`: does everything before an upload, which is left to the owner; also checks licences.
 
 use crate::checks::package;
 use crate::common::{cargo, command, output, paths, run};
@@ -8,13 +8,13 @@ use anyhow::{Context, Result, bail, ensure};
 use serde_json::json;
 use std::{fs, path::PathBuf};
 
-/// What crates.io and docs.rs show, and only an owner can say.
+/// Fields shown by crates.io and docs.rs that only an owner can fill in.
 const OWNERS: [&str; 2] = ["repository", "authors"];
 
-/// Every workspace, each with a lock file of its own.
+/// All workspaces, each with a lock file of its own.
 const WORKSPACES: [&str; 5] = [".", "bindings/c", "bindings/ros/node", "examples", "laptop/page"];
 
-/// Does everything but the upload, and says what the owner still has to fill in.
+/// Does everything except the upload, and lists what the owner still has to fill in.
 pub fn release() -> Result<()> {
     let version = published::version()?;
     let changes = fs::read_to_string(paths::root().join("CHANGELOG.md"))?;
@@ -47,7 +47,7 @@ pub fn release() -> Result<()> {
     Ok(())
 }
 
-/// Licences, sources and banned crates of every workspace; and known vulnerabilities, where their list can be had.
+/// Checks licences, sources and banned crates of every workspace, and known vulnerabilities if their list is available.
 pub fn deny() -> Result<()> {
     let tools = paths::target().join("tools");
     let deny = tools.join("bin/cargo-deny");
@@ -82,7 +82,7 @@ pub fn deny() -> Result<()> {
     Ok(())
 }
 
-/// Writes what the published crate is built of, with all features, as `CycloneDX` has it.
+/// Writes what the published crate is built from, with all features, as `CycloneDX`.
 fn bill_of_materials(version: &str) -> Result<PathBuf> {
     let mut tree = cargo(
         "tree --package spikewire --all-features --edges normal --prefix none --no-dedupe --format",
@@ -117,7 +117,7 @@ fn bill_of_materials(version: &str) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Packs the Python package's source and has twine look at its metadata, which a wheel of it has too.
+/// Packs the Python package's source, and lets twine check its metadata, which are also those of a wheel.
 fn python_package() -> Result<()> {
     let packed = paths::target().join("release/packed");
     let python = python::environment("release")?;

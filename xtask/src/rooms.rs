@@ -1,5 +1,6 @@
-//! The rooms of the crate stand in the order of the data's way, and none names one that stands above its own. Those of
-//! this program need no order, but no two name each other, directly or through others; nor do two files of a room.
+//! Tests the order of the crate's modules: data flows through them, and none may name one above its own. The modules of
+//! this program need no order, but no two may name each other, directly or through others; nor may two files of a
+//! module.
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use std::{
@@ -9,7 +10,7 @@ use std::{
 };
 use syn::{Item, UseTree};
 
-/// The crate's rooms from the lowest to the highest. Those of one line stand side by side, and none names the other.
+/// The crate's modules from the lowest to the highest. Those on one line are equal, and none may name the other.
 const ORDER: [&[&str]; 8] = [
     &["serial"], // what serde does not derive
     &["error"],
@@ -24,8 +25,8 @@ const ORDER: [&[&str]; 8] = [
 /// A path from the crate's root, and its line.
 type Named = (Vec<String>, usize);
 
-/// All paths of a text that begin at the root: of `crate::a::b`, of each branch of `crate::{a, b::c}`, and of `super::a`
-/// in a module below. `module` is the text's own path from the root.
+/// Returns all paths in a text that begin at the root: `crate::a::b`, each branch of `crate::{a, b::c}`, and `super::a`
+/// in a nested module. `module` is the text's own path from the root.
 fn paths(source: &str, module: &[String]) -> Vec<Named> {
     let mut found = Vec::new();
     walk(source.parse().unwrap(), module, &mut found);
@@ -57,7 +58,7 @@ fn walk(tokens: TokenStream, module: &[String], found: &mut Vec<Named>) {
     }
 }
 
-/// Reads a path, or the branches of a tree of paths, behind what is before it; returns where it ends.
+/// Parses a path or a tree of paths after its prefix; returns where it ends.
 fn branch(
     tokens: &[TokenTree],
     at: usize,
@@ -99,7 +100,7 @@ fn is_word(tokens: &[TokenTree], at: usize, wanted: &str) -> bool {
     matches!(tokens.get(at), Some(TokenTree::Ident(word)) if word == wanted)
 }
 
-/// The rooms that a root declares, and the room of each name that it takes out of one.
+/// Returns the modules that a root declares, and the module of each name that it re-exports.
 fn roots(lib: &str) -> BTreeMap<String, String> {
     let items = syn::parse_file(lib).unwrap().items;
     let rooms = items.iter().filter_map(|item| match item {
@@ -128,7 +129,7 @@ fn leaves(tree: &UseTree, room: &str, roots: &mut BTreeMap<String, String>) {
     }
 }
 
-/// What a text of this module may not name, or names and nobody knows: one line each.
+/// Lists the names in a module's text that are forbidden or unknown, one on each line.
 fn offences(source: &str, module: &[String], roots: &BTreeMap<String, String>) -> Vec<String> {
     let height = |room: &str| {
         let place = ORDER.iter().position(|rooms| rooms.contains(&room));
@@ -144,7 +145,7 @@ fn offences(source: &str, module: &[String], roots: &BTreeMap<String, String>) -
     paths(source, module).into_iter().filter_map(offence).collect()
 }
 
-/// All files of Rust below a directory, each with its module's path.
+/// Returns all Rust files below a directory, each with its module's path.
 fn files(top: &Path) -> Vec<(PathBuf, Vec<String>)> {
     let (mut found, mut waiting) = (Vec::new(), vec![top.to_path_buf()]);
     while let Some(path) = waiting.pop() {
@@ -210,7 +211,7 @@ fn module(path: &str) -> Vec<String> {
     path.split("::").map(str::to_owned).collect()
 }
 
-/// The test fails where it should, and says where.
+/// Shows that the test fails where it should, and names the place.
 #[test]
 fn what_is_refused() {
     let house = roots(

@@ -1,4 +1,4 @@
-//! `cargo xtask write`: all that is generated, written again.
+//! `cargo xtask write`: generates all that is generated.
 
 use crate::checks::{firmware, interface, network_flies, ros, simulated_drone, video};
 use crate::common::usage;
@@ -7,10 +7,10 @@ use crate::products::{c_library, page, python_package};
 use anyhow::{Context, Result};
 use std::collections::HashSet;
 
-/// Something generated.
+/// A part of what is generated.
 struct Part {
     name: &'static str,
-    /// Where it is kept.
+    /// The committed files.
     files: &'static str,
     write: fn() -> Result<()>,
 }
@@ -19,7 +19,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
     Part { name, files, write }
 }
 
-/// From the catalogue first, then what measures or draws.
+/// The parts: those from the catalogue first, then those that are measured or drawn.
 const PARTS: [Part; 19] = [
     part("interface", "interface.txt of each published crate", interface::write),
     part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),

@@ -1,9 +1,9 @@
-//! Compares the model of `ReckOn` with the chip's register-transfer code, clock by clock:
-//! `reckon_rtl SIMULATION [CLOCKS [SEED]]`.
+//! Compares the model of `ReckOn` with the chip's register-transfer code, clock by clock: `reckon_rtl SIMULATION
+//! [CLOCKS [SEED]]`.
 //!
-//! SIMULATION is Verilator's program of the code, driven by `rtl/reckon.cpp`. Random programs, networks, samples and
-//! faults go to both; after each clock and each edge of a pin the pins and all registers must be equal, after each
-//! session the memories.
+//! SIMULATION is the program that Verilator makes of that code, driven by `rtl/reckon.cpp`. Both get the same random
+//! programs, networks, samples and faults. The pins and all registers must be equal after each clock and each edge of a
+//! pin, and the memories after each session.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
@@ -15,7 +15,7 @@ use silicon::reckon::{Inputs, State};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
-/// The record that asks for the memories.
+/// Code of the record that asks for the memories.
 const MEMORIES: u8 = 255;
 
 struct Both {
@@ -26,7 +26,7 @@ struct Both {
     expected: Vec<[u64; 2]>,
     random: Pcg32,
     clocks: u64,
-    /// How often each fault was tried.
+    /// How often each kind of fault was tried.
     faults: [(&'static str, u64); 10],
     states: [u64; 8],
 }
@@ -138,7 +138,7 @@ impl Both {
         self.spi(register, &[value], 1, false);
     }
 
-    /// Registers, as a network may have them and as none should.
+    /// Writes registers: some with values that networks use, some with values that no network should have.
     fn configure(&mut self) {
         let inputs = [1, 7, 15, 23, 40][self.below(5) as usize] + self.below(2);
         let neurons = [1, 3, 15, 17, 31][self.below(5) as usize] + u32::from(self.one_in(4));
@@ -296,7 +296,7 @@ impl Both {
         }
     }
 
-    /// Serves what the chip asks for, until its step is done.
+    /// Serves the chip's requests until its step is done.
     fn step(&mut self) {
         self.tick();
         let mut configured = 0;

@@ -1,7 +1,8 @@
-//! A chip on a board: the SPI device and the port of a driver, which share it, and the port of tinyODIN and ODIN.
+//! A board with a chip: the SPI device and the port of a driver, which share the chip, and the port of tinyODIN and
+//! ODIN.
 //!
-//! Time goes on with what the driver does: an SPI clock takes `ratio` clocks of the chip, every call of
-//! the port a number of its own.
+//! The chip's time advances with the driver's calls: by `ratio` clocks for each SPI clock, and by `call_clocks` for
+//! each call of the port.
 
 use alloc::collections::VecDeque;
 use alloc::rc::Rc;
@@ -13,63 +14,63 @@ use spikewire_chips::AerPort;
 
 use super::chip::{Chip, Kind};
 
-/// A chip's model: its clock and the pins of its SPI.
+/// A chip's model: its clock, and the pins of its SPI.
 pub trait Model: Default {
-    /// So many clocks.
+    /// Runs the chip for this many clocks.
     fn run(&mut self, clocks: u32);
 
-    /// The line to the master.
+    /// Returns the level of MISO.
     fn miso(&self) -> bool;
 
-    /// SCK rises.
+    /// Raises SCK, with MOSI at `bit`.
     fn rise(&mut self, bit: bool);
 
-    /// SCK falls.
+    /// Lowers SCK.
     fn fall(&mut self);
 }
 
-/// What befalls an SPI clock.
+/// A fault of an SPI clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClockFault {
-    /// The chip does not see it.
+    /// The chip does not see the clock.
     Lost,
-    /// The chip sees two.
+    /// The chip sees two clocks.
     Doubled,
 }
 
-/// What a call of the port does instead of what it should.
+/// A fault of a call of the port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CallFault {
-    /// It fails before it does anything.
+    /// The call fails before it has any effect.
     Before,
-    /// It acts, and says that it failed.
+    /// The call takes effect, and returns an error.
     After,
 }
 
-/// Chip and wires.
+/// The chip, the wires and their faults.
 #[derive(Debug)]
 pub struct Pins<C> {
     /// The chip.
     pub chip: C,
-    /// Clocks of the chip to one of SCK, 1 and above; 2 and above for `ReckOn`.
+    /// Number of the chip's clocks for one SPI clock: 1 or more; 2 or more for `ReckOn`.
     pub ratio: u32,
-    /// Clocks of the chip to a call of the port.
+    /// Number of the chip's clocks for one call of the port.
     pub call_clocks: u32,
-    /// Clocks of the chip from an output's look to its ACK, on top: taken in turn.
+    /// Extra clocks of the chip between the read of an output and its ACK, one entry for each output in turn.
     pub output_delays: VecDeque<u32>,
-    /// SPI clocks so far.
+    /// Number of SPI clocks so far.
     pub spi_clocks: u64,
-    /// What befalls them, in order.
+    /// Faults of SPI clocks, each with the clock's number, in order.
     pub clock_faults: VecDeque<(u64, ClockFault)>,
-    /// Calls of the port so far.
+    /// Number of calls of the port so far.
     pub calls: u64,
-    /// What befalls them, in order.
+    /// Faults of calls of the port, each with the call's number, in order.
     pub call_faults: VecDeque<(u64, CallFault)>,
-    /// Whether the board leads `SCHED_FULL` to the microcontroller.
+    /// Whether `SCHED_FULL` is wired to the microcontroller.
     pub has_full_pin: bool,
 }
 
-/// Where a driver and a test meet.
+/// A board, shared between a driver and a test.
 #[derive(Debug)]
 pub struct Board<C>(Rc<RefCell<Pins<C>>>);
 
@@ -80,7 +81,8 @@ impl<C> Clone for Board<C> {
 }
 
 impl<C: Model> Board<C> {
-    /// A chip as after power-up, `ratio` clocks to one of SCK and `call_clocks` to a call of the port.
+    /// Makes a board with a chip just powered up, `ratio` of its clocks for one SPI clock and `call_clocks` for a call
+    /// of the port.
     pub fn new(ratio: u32, call_clocks: u32) -> Self {
         Self(Rc::new(RefCell::new(Pins {
             chip: C::default(),
@@ -95,25 +97,25 @@ impl<C: Model> Board<C> {
         })))
     }
 
-    /// Chip and wires.
+    /// Borrows the chip and the wires.
     ///
     /// # Panics
-    /// They are in use.
+    /// Panics if they are borrowed already.
     pub fn pins(&self) -> RefMut<'_, Pins<C>> {
         self.0.borrow_mut()
     }
 
-    /// The SPI device.
+    /// Returns the SPI device.
     pub fn spi(&self) -> Spi<C> {
         Spi(self.clone())
     }
 
-    /// The port.
+    /// Returns the port.
     pub fn port(&self) -> Port<C> {
         Port(self.clone())
     }
 
-    /// Time passes.
+    /// Lets the chip run for this many clocks.
     pub fn run(&self, clocks: u32) {
         self.pins().chip.run(clocks);
     }
@@ -157,7 +159,7 @@ impl<C: Model> SpiDevice for Spi<C> {
     }
 }
 
-/// The bytes of a transaction, the highest bit first.
+/// Transfers bytes, the highest bit first.
 fn transact(
     operations: &mut [Operation<'_, u8>],
     mut exchange: impl FnMut(bool) -> bool,
@@ -181,7 +183,7 @@ fn transact(
     Ok(())
 }
 
-/// The fault that is due now.
+/// Takes the fault that is due now, if there is one.
 fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
     let &(at, fault) = faults.front()?;
     (at == now).then(|| {
@@ -195,7 +197,7 @@ fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
 pub struct Port<C>(Board<C>);
 
 impl<C: Model> Port<C> {
-    /// Time passes, then `act` does what the call is for. The error is the call's number.
+    /// Advances the chip's time, then acts. The error is the number of the call.
     pub(crate) fn call<T>(&mut self, act: impl FnOnce(&mut Pins<C>) -> T) -> Result<T, u64> {
         let mut pins = self.0.pins();
         let call = pins.calls;
@@ -247,14 +249,14 @@ impl<K: Kind> AerPort for Port<Chip<K>> {
         self.call(|pins| pins.chip.set_reset(is_high))
     }
 
-    /// Read with the other pins: takes no time of its own.
+    /// Reads the pin together with the others, which takes no extra time.
     fn queue_full(&mut self) -> Result<Option<bool>, u64> {
         let pins = self.0.pins();
         Ok(pins.has_full_pin.then(|| pins.chip.is_full()))
     }
 }
 
-/// Delays are of the chip's clock, taken as 10 MHz.
+/// Delays run the chip's clock, which is taken to be 10 MHz.
 impl<C: Model> DelayNs for Board<C> {
     fn delay_ns(&mut self, ns: u32) {
         self.run(ns.div_ceil(100));

@@ -1,4 +1,4 @@
-//! The controller, its queue and its memories.
+//! The controller of tinyODIN and ODIN, its queue and its memories.
 
 use alloc::collections::VecDeque;
 use alloc::vec;
@@ -10,67 +10,68 @@ use super::board::{self, Model};
 use super::output::Output;
 use super::spi::SpiSlave;
 
-/// What the two chips do differently.
+/// The properties in which tinyODIN and ODIN differ.
 pub trait Kind: Clone + Copy + Debug + Default + 'static {
-    /// Bytes of a neuron.
+    /// Number of bytes in a neuron.
     const NEURON_BYTES: u16;
-    /// Spikes and virtual events that wait.
+    /// Number of spikes and virtual events that fit the queue.
     const QUEUE: usize;
     /// Whether a spike stays in the queue, after its sweep, until the output bus is free.
     const POPS_AFTER_OUTPUT: bool;
     /// Whether the gate waits for the controller.
     const GATE_WAITS: bool;
 
-    /// What a word on the input bus asks for.
+    /// Decodes a word on the input bus.
     fn decode(word: u32) -> Input;
-    /// The last neuron of a sweep.
+    /// Returns the last neuron of a sweep.
     fn last_neuron(registers: &Registers) -> u8;
-    /// Where spikes on the output bus come from: `true` if from the queue.
+    /// Returns whether the output bus carries the spikes of the queue, rather than those of neurons.
     fn outputs_are_popped(registers: &Registers) -> bool;
-    /// A neuron's next state, and whether it fires. Not whether it is disabled.
+    /// Returns a neuron's next state, and whether it fires. Ignores that it may be disabled.
     fn update(neuron: u128, drive: Drive, registers: &Registers) -> (u128, bool);
-    /// Whether a neuron never fires.
+    /// Returns whether a neuron never fires.
     fn is_disabled(neuron: u128) -> bool;
-    /// Whether bistability moves a synapse.
+    /// Returns whether a bistability event moves a synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Whether the spike of the sweep goes to the output bus at this neuron's write, if spikes are popped.
+    /// Returns whether a queued spike goes to the output bus when its sweep writes this neuron; only for spikes of the
+    /// queue.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 
-/// A word on the input bus.
+/// The meaning of a word on the input bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// A time step of one neuron, or of all.
+    /// A time step of one neuron, or of all if `None`.
     Leak(Option<u8>),
-    /// Bistability of the synapses from one neuron, or of all.
+    /// A bistability event for the synapses from one neuron, or from all if `None`.
     Bistability(Option<u8>),
-    /// One synapse.
+    /// A spike on one synapse: presynaptic and postsynaptic neuron.
     Synapse(u8, u8),
-    /// A spike (0) or a virtual event, for the queue.
+    /// A spike, if the second value is 0, or a virtual event, for the queue.
     Queued(u8, u8),
 }
 
-/// What acts on a neuron.
+/// The event that acts on a neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Drive {
-    /// Not in a write over SPI.
+    /// Whether there is an event; false for a write over SPI.
     pub is_event: bool,
-    /// A time step of the controller's.
+    /// Whether the event is a time step of the controller.
     pub is_leak: bool,
-    /// A virtual event's bits.
+    /// The bits of a virtual event.
     pub virtual_bits: u8,
-    /// The synapse's 4 bits.
+    /// The 4 bits of the synapse.
     pub synapse: u8,
-    /// Where the synapse comes from.
+    /// The presynaptic neuron.
     pub pre: u8,
 }
 
-/// Configuration registers. They have no reset value.
+/// The configuration registers. They have no reset value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Registers(pub [u32; 26]);
 
 impl Registers {
-    /// The bit of a register of one bit.
+    /// Returns the value of a one-bit register.
     pub const fn bit(&self, register: usize) -> bool {
         self.0[register] & 1 == 1
     }
@@ -95,7 +96,7 @@ enum State {
     WaitRequest,
 }
 
-/// What reset clears, by the chip's clock.
+/// The registers that are reset by, and change with, the chip's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Clocked {
     request: [bool; 2],
@@ -109,7 +110,7 @@ struct Clocked {
     output: Output,
 }
 
-/// What the controller asks of the memories in this clock.
+/// What the controller requests of the memories in this clock.
 #[derive(Clone, Copy, Debug, Default)]
 struct Control {
     neuron: Option<(u8, bool)>,
@@ -123,16 +124,16 @@ struct Control {
     is_bistability: bool,
 }
 
-/// A chip.
+/// tinyODIN or ODIN.
 #[derive(Clone, Debug)]
 pub struct Chip<K> {
-    /// The pin RST.
+    /// Level of the pin RST.
     pub reset: bool,
-    /// The input bus's word.
+    /// Word on the input bus.
     pub word: u32,
-    /// The input bus's REQ.
+    /// Level of the input bus's REQ.
     pub request: bool,
-    /// The output bus's ACK.
+    /// Level of the output bus's ACK.
     pub output_acknowledge: bool,
     spi: SpiSlave,
     /// The configuration registers.
@@ -142,24 +143,24 @@ pub struct Chip<K> {
     neuron_read: u128,
     synapses_read: u32,
     queue: VecDeque<(u8, u8)>,
-    /// The neurons' memory.
+    /// The memory of neurons.
     pub neurons: Vec<u128>,
-    /// The synapses' memory: eight in a word.
+    /// The memory of synapses, eight in each word.
     pub synapses: Vec<u32>,
     is_still: bool,
-    /// How many clocks there were.
+    /// Number of clocks so far.
     pub clocks: u64,
-    /// The words that were acknowledged.
+    /// Words that the chip has acknowledged.
     pub taken: Vec<u32>,
-    /// The spikes that went to the output bus.
+    /// Neurons whose spikes went to the output bus.
     pub fired: Vec<u8>,
-    /// The spikes for which the queue had no room.
+    /// Number of spikes for which the queue had no room.
     pub overflows: u32,
     kind: PhantomData<K>,
 }
 
 impl<K: Kind> Default for Chip<K> {
-    /// As after power-up at its worst: it runs, in closed loop, and all memories are 0.
+    /// The worst state after power-up: the chip runs, in closed loop, and all memories are 0.
     fn default() -> Self {
         Self {
             reset: false,
@@ -185,10 +186,10 @@ impl<K: Kind> Default for Chip<K> {
     }
 }
 
-/// Chip and wires.
+/// The chip, the wires and their faults.
 pub type Pins<K> = board::Pins<Chip<K>>;
 
-/// Where a driver and a test meet.
+/// A board, shared between a driver and a test.
 pub type Board<K> = board::Board<Chip<K>>;
 
 /// The chip's SPI pins.
@@ -224,37 +225,37 @@ impl<K: Kind> Model for Chip<K> {
 }
 
 impl<K: Kind> Chip<K> {
-    /// The input bus's ACK.
+    /// Returns the level of the input bus's ACK.
     pub fn acknowledge(&self) -> bool {
         self.clocked.state == State::WaitRequest
     }
 
-    /// The output bus.
+    /// Returns the state of the output bus.
     pub fn output(&self) -> Output {
         self.clocked.output
     }
 
-    /// The pin `SCHED_FULL`.
+    /// Returns the level of the pin `SCHED_FULL`.
     pub fn is_full(&self) -> bool {
         self.queue.len() == K::QUEUE
     }
 
-    /// Spikes and virtual events that wait.
+    /// Returns the number of spikes and virtual events in the queue.
     pub fn waiting(&self) -> usize {
         self.queue.len()
     }
 
-    /// Whether the gate is shut, as the controller sees it.
+    /// Returns whether the controller sees the gate shut.
     pub fn is_gated(&self) -> bool {
         self.clocked.gate[1]
     }
 
-    /// Whether there is nothing to do.
+    /// Returns whether the chip has nothing to do.
     pub fn is_idle(&self) -> bool {
         self.queue.is_empty() && self.clocked.state == State::Wait && !self.clocked.output.is_busy
     }
 
-    /// The 4 bits of a synapse.
+    /// Returns the 4 bits of a synapse.
     pub fn synapse(&self, pre: u8, post: u8) -> u8 {
         let word = self.synapses[usize::from(pre) << 5 | usize::from(post) >> 3];
         (word >> (4 * (post & 7)) & 0xF) as u8
@@ -287,7 +288,7 @@ impl<K: Kind> Chip<K> {
         self.word = word;
     }
 
-    /// So many clocks. Stops to count where nothing can change any more.
+    /// Runs the chip for this many clocks; stops early, without counting them, once nothing can change any more.
     pub fn run(&mut self, clocks: u32) {
         self.clocks += u64::from(clocks);
         for _ in 0..clocks {
@@ -496,7 +497,7 @@ impl<K: Kind> Chip<K> {
         }
     }
 
-    /// What an idle controller turns to.
+    /// Returns the next state of an idle controller.
     fn choose(&self, head: Option<(u8, u8)>, is_full: bool) -> State {
         let Clocked { request, gate, reading, writing, output, .. } = self.clocked;
         let pop = |(bits, _)| if bits == 0 { State::Spike } else { State::Virtual };
@@ -527,7 +528,7 @@ impl<K: Kind> Chip<K> {
         }
     }
 
-    /// Reads or writes the neurons' memory. Returns the neuron that fires.
+    /// Reads or writes the memory of neurons; returns the neuron that fires.
     fn neuron_memory(
         &mut self,
         control: &Control,
@@ -589,7 +590,7 @@ impl<K: Kind> Chip<K> {
         };
     }
 
-    /// A synapse after a bistability event: a step towards 7 or 0, from 4 and from 3.
+    /// Returns a synapse after a bistability event: it moves by one, down to 0 from 3 or less, up to 7 from 4 or more.
     fn settle(&self, synapse: u8) -> u8 {
         match synapse & 7 {
             _ if !K::is_plastic(synapse, &self.registers) => synapse,

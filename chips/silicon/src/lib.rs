@@ -1,13 +1,13 @@
-//! tinyODIN, ODIN and [`ReckOn`], clock by clock, written from the chips' public register-transfer code: no code of
-//! theirs is in here.
+//! Models of tinyODIN, ODIN and [`ReckOn`], clock by clock. They were written from the chips' public register-transfer
+//! code, of which nothing is copied.
 //!
-//! `ReckOn` is a room of its own, [`reckon`]. One file each for what the others share: the [SPI slave](spi), the [output bus](output), the
-//! [pins](board) that a driver holds; and one for the [controller](chip). What the two do differently is a
-//! [`Kind`]: [`TinyOdin`], [`Odin`].
+//! `ReckOn` has a module of its own, [`reckon`]. The models of the other two share one file each for the [SPI
+//! slave](spi), the [output bus](output), the [pins](board) that a driver holds, and the [controller](chip). They
+//! differ in a [`Kind`]: [`TinyOdin`], [`Odin`].
 //!
-//! Exact, in clocks, are: the synchronisers, the controller, the scheduler's queue, the order of a sweep,
-//! the neurons, the gate, the write-back over SPI. Left out are ODIN's learning (`ca_en` is taken as 0),
-//! its Izhikevich neurons, its bursts, and the output bus's monitoring.
+//! Exact to the clock are the synchronisers, the controller, the scheduler's queue, the order of a sweep, the neurons,
+//! the gate and the write-back over SPI. Not modelled are ODIN's learning (`ca_en` is taken as 0), its Izhikevich
+//! neurons, its bursts, and the monitoring on the output bus.
 
 #![no_std]
 #![allow(

@@ -1,9 +1,9 @@
-//! ODIN: 256 neurons of 8 bits, weights of 3 bits whose sign is that of the neuron they come from.
+//! ODIN: 256 neurons of 8 bits, and weights of 3 bits whose sign is that of the presynaptic neuron.
 
 use super::chip::{Drive, Input, Kind, Registers};
 
-/// ODIN. Registers: 0 gate, 1 open loop, 2-17 signs, 19 source of outputs, 21 monitored neuron, 23
-/// updates of unmapped synapses, 24 their propagation.
+/// The properties of ODIN. Registers: 0 gate, 1 open loop, 2-17 signs, 19 source of outputs, 21 monitored neuron, 23
+/// updates of unmapped synapses, 24 propagation by unmapped synapses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Odin;
 

@@ -1,19 +1,20 @@
-//! The output bus: REQ up, the receiver's ACK up, REQ down, ACK down. The chip stands still meanwhile.
+//! The output bus: the chip raises REQ, the receiver raises ACK, REQ falls, ACK falls. The chip does nothing else
+//! meanwhile.
 
-/// What the bus holds.
+/// The state of the output bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Output {
     acknowledge: [bool; 3],
     /// The neuron that fired.
     pub address: u8,
-    /// REQ.
+    /// Level of REQ.
     pub request: bool,
-    /// Holds the controller.
+    /// Whether the controller must wait.
     pub is_busy: bool,
 }
 
 impl Output {
-    /// A clock, with ACK and the spike that comes now.
+    /// Advances by a clock, with the level of ACK and a new spike, if there is one.
     pub fn clock(&mut self, acknowledge: bool, spike: Option<u8>) {
         let [first, now, before] = self.acknowledge;
         match spike {

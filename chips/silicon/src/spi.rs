@@ -1,45 +1,45 @@
-//! The SPI slave: 40 clocks a frame, counted from reset, without a chip select.
+//! The SPI slave of tinyODIN and ODIN: frames of 40 clocks, counted from reset, without a chip select.
 
-/// What the slave holds. It runs on SCK alone.
+/// The state of the slave, which only SCK advances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SpiSlave {
     count: u8,
     address: u32,
     shift_in: u32,
     shift_out: u32,
-    /// Asks the controller to read a memory.
+    /// Whether the controller is asked to read a memory.
     pub is_reading: bool,
-    /// Asks the controller to write a memory.
+    /// Whether the controller is asked to write a memory.
     pub is_writing: bool,
-    /// Of the memory access told last.
+    /// Address of the last access to a memory.
     pub memory_address: u16,
-    /// Which memory: 1 neurons, 2 synapses.
+    /// Number of the memory: 1 neurons, 2 synapses.
     pub memory: u8,
-    /// The byte to write, and above it the mask of the bits to keep.
+    /// The byte to write in the low half, and the mask of the bits to keep in the high half.
     pub data: u16,
 }
 
-/// A configuration register was clocked in.
+/// A write to a configuration register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Which.
+    /// Number of the register.
     pub register: u16,
-    /// The last 20 bits that came in.
+    /// Value: the last 20 bits of the frame.
     pub value: u32,
 }
 
 impl SpiSlave {
-    /// What reset clears. The bits shifted in stay.
+    /// Resets the slave, except for the bits that were shifted in.
     pub fn reset(&mut self) {
         *self = Self { shift_in: self.shift_in, ..Self::default() };
     }
 
-    /// The line to the master.
+    /// Returns the level of MISO.
     pub const fn output(&self) -> bool {
         self.shift_out >> 19 & 1 == 1
     }
 
-    /// SCK rises.
+    /// Raises SCK, with MOSI at `bit`; returns a write to a register if it is complete.
     pub fn rise(&mut self, bit: bool) -> Option<Written> {
         let before = self.shift_in;
         self.shift_in = (before << 1 | u32::from(bit)) & 0xF_FFFF;
@@ -47,7 +47,7 @@ impl SpiSlave {
         is_register.then_some(Written { register: self.address as u16, value: self.shift_in })
     }
 
-    /// SCK falls. `neuron` and `synapses` are the words that the memories read last.
+    /// Lowers SCK; `neuron` and `synapses` are the last words that the memories read.
     pub fn fall(&mut self, neuron: u128, synapses: u32) {
         let shifted = self.shift_out << 1 & 0xF_FFFF;
         match self.count {
@@ -94,7 +94,8 @@ impl SpiSlave {
         self.count = if self.count == 39 { 0 } else { (self.count + 1) & 63 };
     }
 
-    /// A byte as the memories write it back: `old` where the mask is 1.
+    /// Returns the byte to write back to memory: the bits of `old` where the mask is 1, and those of the data
+    /// elsewhere.
     pub const fn merge(&self, old: u8) -> u8 {
         let (keep, byte) = ((self.data >> 8) as u8, self.data as u8);
         byte & !keep | old & keep

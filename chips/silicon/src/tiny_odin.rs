@@ -1,12 +1,12 @@
-//! tinyODIN: 256 neurons of 12 bits, signed weights of 4 bits.
+//! tinyODIN: 256 neurons of 12 bits, and signed weights of 4 bits.
 
 use super::chip::{Drive, Input, Kind, Registers};
 
-/// tinyODIN. Registers: 0 gate, 1 open loop, 2 source of outputs, 3 last neuron.
+/// The properties of tinyODIN. Registers: 0 gate, 1 open loop, 2 source of outputs, 3 last neuron.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TinyOdin;
 
-/// The potential's sign.
+/// The sign bit of a potential.
 const NEGATIVE: u16 = 0x800;
 
 impl Kind for TinyOdin {
@@ -60,7 +60,7 @@ impl Kind for TinyOdin {
     }
 }
 
-/// A potential nearer to 0.
+/// Returns a potential after a leak, which moves it towards 0.
 fn leaked(potential: u16, leak: u16) -> u16 {
     if potential & NEGATIVE == 0 {
         potential.saturating_sub(leak)
@@ -70,7 +70,7 @@ fn leaked(potential: u16, leak: u16) -> u16 {
     }
 }
 
-/// A potential with a signed weight of 4 bits, within 12 bits.
+/// Adds a signed 4-bit weight to a potential, saturating at 12 bits.
 fn driven(potential: u16, weight: u8) -> u16 {
     let signed = i32::from((potential << 4) as i16 >> 4);
     let weight = i32::from((weight << 4) as i8 >> 4);

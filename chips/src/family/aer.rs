@@ -1,4 +1,4 @@
-//! Address events over parallel wires, with the 4-phase handshake.
+//! Sends and receives address events over parallel wires, with the 4-phase handshake.
 
 use core::num::NonZeroU32;
 
@@ -10,16 +10,16 @@ use spikewire::Event;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
-    /// ACK is still high, or the previous word is still under way. This word was not sent.
+    /// ACK is still high, or the previous word is not finished. This word was not sent.
     Idle,
-    /// ACK has not risen after REQ. The word is under way: it stays on the bus, with REQ high, until the chip takes it or
+    /// ACK did not rise after REQ. The word is pending: it stays on the bus, with REQ high, until the chip takes it or
     /// is reset.
     Acknowledge,
-    /// ACK has not fallen after REQ fell. The chip has taken the word.
+    /// ACK did not fall after REQ fell. The chip has taken the word.
     Release,
 }
 
-/// Why a handshake did not end.
+/// The reason that a handshake did not end.
 #[derive(Debug)]
 pub(crate) enum AerError<E> {
     Port(E),
@@ -32,12 +32,12 @@ impl<E> From<E> for AerError<E> {
     }
 }
 
-/// The kind of the word under way.
+/// The kind of the pending word.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Carries {
     /// A word from [`Running::send`](super::Running::send).
     Word,
-    /// A probe, which a chip answers if it runs.
+    /// A probe, which a chip answers only if it runs.
     Probe,
     /// A time step.
     Step,
@@ -45,34 +45,35 @@ pub(super) enum Carries {
     Event(Event),
 }
 
-/// The state of our ACK on the output bus. A call on the port that fails may still have changed the pin.
+/// The state of our ACK on the output bus. It is uncertain after a call on the port that failed, which may have changed
+/// the pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
-    /// Low: the next REQ is a new output.
+    /// Low; the next REQ is a new output.
     Idle,
-    /// The output was passed to the caller; ACK may be high or low.
+    /// Being raised: the output was passed to the caller, and ACK may be high or low.
     Raising,
     /// High.
     High,
-    /// REQ has fallen; ACK may be high or low.
+    /// Being lowered: REQ has fallen, and ACK may be high or low.
     Lowering,
 }
 
-/// The microcontroller's side of both buses.
+/// The microcontroller's side of the input bus and the output bus.
 ///
-/// The chip reads the word for as long as it works on it, and then acknowledges any REQ that it finds. So a word stays
-/// on the bus until it is acknowledged, over as many calls as that takes.
+/// The chip reads the word for as long as it works on it, and then acknowledges any REQ that it finds. Therefore a word
+/// stays on the bus until it is acknowledged, over as many calls as that takes.
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// The number of reads of the pins in a wait, if one read takes a clock of the chip or longer.
+    /// Number of reads of the pins in a wait, if one read takes at least a clock of the chip.
     polls: u32,
-    /// How often the pins may be read within one clock of the chip.
+    /// Number of reads of the pins that fit into one clock of the chip.
     looks_a_clock: NonZeroU32,
-    /// The number of reads of the pins in a wait: the saturated product of `polls` and `looks_a_clock`, which a Cortex-M0
-    /// would take long to compute.
+    /// Number of reads of the pins in a wait: the saturated product of `polls` and `looks_a_clock`, stored because a
+    /// Cortex-M0 is slow to compute it.
     patience: u32,
-    /// The phase of the word that was begun last.
+    /// Phase of the last word.
     phase: Phase,
     carries: Carries,
     answer: Answer,
@@ -101,15 +102,15 @@ impl<P: AerPort> Aer<P> {
         self.patience = self.looks(self.polls);
     }
 
-    /// How often to read the pins for this number of clocks.
+    /// Returns the number of reads of the pins that take at least this many clocks of the chip.
     pub(super) fn looks(&self, clocks: u32) -> u32 {
         clocks.saturating_mul(self.looks_a_clock.get())
     }
 
-    /// Raises reset while REQ stays as it is: if the chip takes the word meanwhile, it waits for REQ to fall, and the
-    /// reset drops the word before it acts. Then both of our wires go low.
+    /// Raises reset while REQ stays as it is, then lowers both of our wires. If the chip takes the pending word
+    /// meanwhile, it waits for REQ to fall, and the reset drops the word before it acts.
     ///
-    /// Returns the word under way if no ACK was seen for it, and whether an output was lost.
+    /// Returns the pending word if no ACK was seen for it, and whether an output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
         if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
             self.phase = Phase::Release;
@@ -136,7 +137,7 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    /// Puts a word on the bus, after the one before it has ended. After an error the word is not under way.
+    /// Puts a word on the bus, after the one before it has ended. On an error the word is not pending.
     pub(super) fn begin(
         &mut self,
         word: u32,
@@ -153,7 +154,7 @@ impl<P: AerPort> Aer<P> {
         Ok(())
     }
 
-    /// Ends the handshake of the word under way, if there is one.
+    /// Ends the handshake of the pending word, if there is one.
     pub(super) fn finish(
         &mut self,
         on_output: &mut impl FnMut(u8),
@@ -179,7 +180,8 @@ impl<P: AerPort> Aer<P> {
         Ok(())
     }
 
-    /// Waits until the output bus has been idle for this many reads of the pins in a row; false after `limit` reads.
+    /// Waits until the output bus was idle for `looks` reads of the pins in a row; returns false if that does not
+    /// happen within `limit` reads.
     pub(super) fn rest(
         &mut self,
         looks: u32,
@@ -199,7 +201,8 @@ impl<P: AerPort> Aer<P> {
         Ok(false)
     }
 
-    /// Waits for ACK. The chip acknowledges no input while an output waits, so this also serves the output bus.
+    /// Waits for ACK to reach a level. The chip acknowledges no input while an output waits, so this also serves the
+    /// output bus.
     fn wait_for(
         &mut self,
         is_high: bool,
@@ -215,7 +218,7 @@ impl<P: AerPort> Aer<P> {
         Err(AerError::Timeout(self.phase))
     }
 
-    /// Does one step of the output bus's handshake, if the chip waits for it.
+    /// Advances the output bus's handshake by one step, if the chip waits for it.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());

@@ -1,4 +1,4 @@
-//! A network as bytes: from a file or over the air, known only at run time.
+//! Networks as bytes, from a file or received by radio, which are known only at run time.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -10,7 +10,7 @@ const HEADER: usize = 12;
 const RECURRENT: u8 = 1;
 const VIRTUAL: u8 = 2;
 
-/// Why bytes could not be read as a network, or a network not written as bytes.
+/// The reason that bytes could not be read as a network, or that a network could not be written as bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -19,7 +19,8 @@ pub enum FormatError {
     Magic,
     /// The bytes are for another chip.
     Chip,
-    /// There are no neurons, or more than 256 neurons, inputs or rows of synapses; for `ReckOn` more than 16 outputs.
+    /// There are no neurons; or more than 256 neurons, inputs or rows of synapses; or, for `ReckOn`, more than 16
+    /// outputs.
     Size,
     /// The bytes or the buffer have the wrong length.
     Length {
@@ -28,7 +29,7 @@ pub enum FormatError {
         /// The length given.
         given: usize,
     },
-    /// A neuron or a weight has a value out of its range; or outputs are not neurons of the network, each another.
+    /// A neuron or a weight is out of its range; or an output is not a neuron of the network, or occurs twice.
     Value,
 }
 
@@ -83,7 +84,7 @@ struct Shape {
 }
 
 impl Shape {
-    /// The lengths in bytes of neurons, inputs, recurrent rows and outputs.
+    /// Returns the lengths in bytes of neurons, inputs, recurrent rows and outputs.
     fn lengths<I: Input>(self) -> [usize; 4] {
         let row = usize::from(self.neurons.div_ceil(2));
         let (neurons, inputs) = (usize::from(self.neurons), usize::from(self.inputs));
@@ -110,7 +111,7 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
     /// Reads the header, and checks the length.
     ///
     /// # Errors
-    /// Returns an error if the bytes are no network for this chip.
+    /// Returns an error if the bytes are not a network for this chip.
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let (header, rest) = bytes.split_at_checked(HEADER).ok_or(FormatError::Magic)?;
         let &[a, b, c, d, kind, flags, n0, n1, i0, i1, o0, o1] = header else {
@@ -143,10 +144,10 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
         Ok(Self { shape, neurons, inputs, recurrent, outputs, input: PhantomData })
     }
 
-    /// Writes a network into a buffer. Returns its length.
+    /// Writes a network to a buffer; returns the length in bytes.
     ///
     /// # Errors
-    /// Returns an error if the buffer is too small, or the network has a value out of its range.
+    /// Returns an error if the buffer is too small, or if the network has a value out of its range.
     pub fn write(network: &impl Describe<I>, buffer: &mut [u8]) -> Result<usize, FormatError> {
         let shape = Shape {
             neurons: network.neurons(),
@@ -215,7 +216,7 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
     }
 }
 
-/// The neurons that are outputs, in the order of the outputs.
+/// Returns the neurons that are outputs, in the order of the outputs.
 fn outputs_of<I: Input>(network: &impl Describe<I>) -> impl Iterator<Item = u8> {
     let neuron_of = move |output| {
         (0..network.neurons()).map(|n| n as u8).find(|&n| network.output(n) == Some(output))
@@ -223,7 +224,7 @@ fn outputs_of<I: Input>(network: &impl Describe<I>) -> impl Iterator<Item = u8> 
     (0..256).map_while(neuron_of)
 }
 
-/// Packs two weights a byte, the first in the low half.
+/// Packs two weights into each byte, the first in the low half.
 fn pack<I: Input>(
     mut weights: impl Iterator<Item = i8>,
     put: &mut impl FnMut(u8),

@@ -1,26 +1,27 @@
 //! The counters of a chip's driver.
 
-/// Counts of resets, and of time steps, events and words that were lost or late. All saturate.
+/// Counts of resets, and of time steps, events and words that were lost or late. All of them saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
-    /// Resets, with the first one.
+    /// Number of resets, including the first one.
     pub resets: u32,
-    /// Time steps that were not sent to the chip: those beyond 255 at a time, and those under way at a reset.
+    /// Number of time steps that were not sent to the chip: those beyond 255 at a time, and those pending at a reset.
     pub skipped_steps: u32,
-    /// Events that were fed after their time step was over.
+    /// Number of events that were fed after their time step was over.
     pub late_events: u32,
-    /// Events that were fed and left out, as they have no input.
+    /// Number of events that were left out because the network has no input for them.
     pub unmapped_events: u32,
-    /// Events under way at a reset, with no ACK seen. They are sent again. The chip may have taken such an event just
-    /// before the reset; if the event waited in the queue, it did not act.
+    /// Number of events that were sent again after a reset, because no ACK had been seen for them. The chip may have
+    /// taken such an event just before the reset; an event in its queue had no effect.
     pub repeated_events: u32,
-    /// Words of [`send`](super::Running::send) under way at a reset, with no ACK seen. They are lost.
+    /// Number of words of [`send`](super::Running::send) that were lost at a reset, because no ACK had been seen for
+    /// them.
     pub dropped_words: u32,
-    /// Outputs that waited at a reset, and were lost.
+    /// Number of outputs that waited at a reset and were lost.
     pub lost_outputs: u32,
-    /// How often the queue was seen to become full. Each time any number of spikes between neurons may have been lost.
+    /// How often the queue was seen to become full; any number of spikes between neurons may be lost each time. Always
     /// 0 without the [pin](super::AerPort::queue_full).
     pub overflows: u32,
 }

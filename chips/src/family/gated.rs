@@ -7,18 +7,19 @@ use super::wire::Address;
 use super::{AerPort, ChipError, Input, OdinChip, Outcome, Running, State};
 use crate::error::at_most;
 
-/// How long the probe waits, in clocks of the chip. A time step of one neuron takes 10.
+/// Time that the probe waits, in clocks of the chip; a time step of one neuron takes 10.
 const PROBE_CLOCKS: u32 = 1_000;
 
-/// A gated chip: its memories can be accessed, and it takes no events. Its loop is open, so that no write makes a
+/// A gated chip. Its memories can be accessed, and it takes no events. Its loop is open, so that no write makes a
 /// neuron fire.
 ///
-/// A call reads the old bytes, writes those that differ, and reads them again, and at the end the byte with which the step
-/// is checked. Before and after the writes 5 more frames check that chip and bus are in step; what a call returns was read
-/// before and after. So an error reports one clock lost or doubled, and a lost and a doubled clock that cancel out. A neuron
-/// of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at 656 kHz, a synapse 14; a neuron of ODIN 59. For whole networks
-/// [`load`](Self::load) takes 2 frames a byte. After such an error all memory is in doubt: reset the chip,
-/// and write all of it again.
+/// **Checks:** a call reads the old bytes, writes those that differ, and reads them back. Frames before and after the
+/// writes check that chip and bus are in step. Therefore one lost or doubled clock is an error, and so are a lost and a
+/// doubled clock that cancel out. After such an error all memory is in doubt: reset the chip, and write all of it
+/// again.
+///
+/// **Time:** a neuron of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at 656 kHz, and a synapse 14; a neuron of ODIN
+/// takes 59. For whole networks [`load`](Self::load) takes 2 frames for each byte.
 #[derive(Debug)]
 pub struct Gated<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -31,18 +32,17 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
 
     /// Writes the registers and lets the chip run.
     ///
-    /// **Verified:** after every register chip and bus must be in step, so that one clock lost or doubled is an error; two
-    /// faults that cancel out within a register's frame and its check go unseen, and may leave a register, or potentials of
-    /// neurons, other than they were. Then the chip must answer a time step
-    /// of one neuron, which shows that the gate is open. If that neuron leaks, its potential is moved up by the leak
-    /// before, so that the network is as it was.
+    /// **Checks:** chip and bus must be in step after each register, so that one lost or doubled clock is an error. Two
+    /// faults that cancel out within a register's frame and its check go unseen, and may leave a wrong register, or
+    /// wrong potentials. Then the chip must answer a time step of one neuron, which shows that the gate is open. If
+    /// that neuron leaks, its potential is raised by the leak beforehand, so that the network is unchanged.
     ///
-    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 206 for ODIN. A neuron that leaks from a potential
-    /// other than 0 takes 17 more, each neuron that cannot be probed 4 or 16.
+    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 206 for ODIN. If the probed neuron leaks from a
+    /// potential other than 0, 17 more; for each neuron that cannot be probed, 4 or 16 more.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range, or [`NoProbe`](ChipError::NoProbe): the chip is still gated.
-    /// Also if the bus or the port failed, or the chip does not read back or answer: then reset it.
+    /// Also returns an error if the bus or the port failed, or if the chip does not read back or answer: then reset it.
     pub fn run(self, registers: &I::Registers) -> Outcome<Running<'a, I, D, P>, D, P> {
         I::check_registers(registers)?;
         let chip = self.chip;
@@ -59,8 +59,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes a neuron's parameters and state.
     ///
     /// # Errors
-    /// Returns an error if the value is out of its range; or the bus failed, or it does not read back: then reset the
-    /// chip.
+    /// Returns an error if the value is out of its range. Also returns an error if the bus failed, or if the neuron
+    /// reads back differently: then reset the chip.
     pub fn set_neuron(&mut self, neuron: u8, value: &I::Neuron) -> Outcome<(), D, P> {
         let bytes = I::neuron_bytes(value)?;
         let bytes = (0..I::NEURON_BYTES).zip(bytes);
@@ -78,8 +78,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes the synapse from `pre` to `post`.
     ///
     /// # Errors
-    /// Returns an error if the value is out of its range; or the bus failed, or it does not read back: then reset the
-    /// chip.
+    /// Returns an error if the value is out of its range. Also returns an error if the bus failed, or if the synapse
+    /// reads back differently: then reset the chip.
     pub fn set_synapse(&mut self, pre: u8, post: u8, synapse: I::Synapse) -> Outcome<(), D, P> {
         let bits = I::synapse_bits(synapse)?;
         let (keep, value) = if post & 1 == 0 { (0xF0, bits) } else { (0x0F, bits << 4) };
@@ -98,7 +98,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes a byte of a neuron, for fields that [`Input::Neuron`] does not have.
     ///
     /// # Errors
-    /// Returns an error if there is no such byte, the bus failed, or it does not read back: then reset the chip.
+    /// Returns an error if there is no such byte. Also returns an error if the bus failed, or if the byte reads back
+    /// differently: then reset the chip.
     pub fn set_neuron_byte(&mut self, neuron: u8, byte: u8, value: u8) -> Outcome<(), D, P> {
         at_most("byte", byte.into(), u32::from(I::NEURON_BYTES) - 1)?;
         self.chip.store([(Address::neuron(neuron, byte), 0, value)].into_iter())
@@ -107,7 +108,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Reads a byte of a neuron, and checks that the bus is in step.
     ///
     /// # Errors
-    /// Returns an error if there is no such byte, or the bus failed or is out of step: then reset the chip.
+    /// Returns an error if there is no such byte. Also returns an error if the bus failed or is out of step: then reset
+    /// the chip.
     pub fn neuron_byte(&mut self, neuron: u8, byte: u8) -> Outcome<u8, D, P> {
         at_most("byte", byte.into(), u32::from(I::NEURON_BYTES) - 1)?;
         let [value, ..] = self.chip.fetch([Address::neuron(neuron, byte)].into_iter())?;
@@ -123,12 +125,12 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     }
 }
 
-/// The addresses of a neuron's bytes.
+/// Returns the addresses of a neuron's bytes.
 fn bytes_of<I: Input>(neuron: u8) -> impl Iterator<Item = Address> + Clone {
     (0..I::NEURON_BYTES).map(move |byte| Address::neuron(neuron, byte))
 }
 
-/// Finds a neuron that a time step can leave as it is, and moves its potential by the leak that comes.
+/// Finds a neuron that a time step can leave unchanged, and raises its potential by the leak that the step will take.
 fn prepare_probe<I: Input, D: SpiDevice, P: AerPort>(
     chip: &mut OdinChip<I, D, P>,
 ) -> Outcome<u8, D, P> {

@@ -1,4 +1,4 @@
-//! Loads a network into the chip, and compares it.
+//! Loads a network into the chip, and compares it with the chip's memory.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -11,25 +11,25 @@ use super::{AerPort, ChipError, Describe, Gated, Input, Outcome};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Progress {
-    /// Frames of 5 bytes sent.
+    /// Number of frames of 5 bytes sent so far.
     pub done: u32,
-    /// Frames of 5 bytes in all.
+    /// Total number of frames of 5 bytes.
     pub total: u32,
 }
 
-/// The number of a chip's neurons.
+/// Number of neurons in a chip.
 const NEURONS: u16 = 256;
 
 impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
-    /// Writes a network, disables all other neurons, and then reads all of it back. Synapses onto the other neurons stay
-    /// as they are. Calls `progress` after each neuron and each row.
+    /// Writes a network, disables all other neurons, and then reads all of it back. Synapses onto the other neurons
+    /// stay as they are. Calls `progress` after each neuron and each row.
     ///
     /// **Time:** two frames of 5 bytes for each byte of a neuron, and for each two synapses of a row. 256 neurons of
     /// tinyODIN with 256 rows take 67 584 frames, 4.1 s at 656 kHz.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit: then no byte is written. Also if the bus failed, or the chip
-    /// does not read back what was written: then reset it.
+    /// Returns an error if the network does not fit: then nothing was written. Also returns an error if the bus failed,
+    /// or if the chip reads back something else: then reset it.
     pub fn load(
         &mut self,
         network: &impl Describe<I>,
@@ -53,7 +53,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
         chip.check_step()
     }
 
-    /// Compares the chip's memories with a network. This includes potentials, which change when the network runs.
+    /// Compares the chip's memories with a network, including potentials, which change when the network runs.
     ///
     /// # Errors
     /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
@@ -75,7 +75,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     }
 }
 
-/// The number of bytes that [`each_byte`] visits.
+/// Returns the number of bytes that [`each_byte`] visits.
 fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     let (neurons, rows) = (u32::from(network.neurons()), u32::from(network.rows()));
     let bytes = u32::from(I::NEURON_BYTES);
@@ -84,8 +84,8 @@ fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
-/// Visits every byte of the chip's memories that belongs to the network: its address, the bits that do not belong to
-/// it, and the value of the others.
+/// Visits every byte of the chip's memories that belongs to the network: passes its address, a mask of the bits that do
+/// not belong to the network, and the value of the others.
 fn each_byte<I: Input, B, P>(
     network: &impl Describe<I>,
     mut visit: impl FnMut(Address, u8, u8) -> Result<(), ChipError<B, P>>,

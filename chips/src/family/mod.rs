@@ -47,17 +47,17 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   a bus of its own and a device whose chip select is not wired.
 /// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed;
 ///   [`Gated::run`] gives a [`Running`] one, which takes events; [`Running::gate`] gives a gated one again. Each has
-///   only the calls that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give them
-///   again later.
-/// - **Resynchronisation:** one clock lost or doubled puts chip and bus out of step, which calls on a gated chip detect; in
-///   the last frame of a call the next call does. They also detect a lost and a doubled clock within one access to
-///   memory. (Such a pair within a register's frame and its check goes unseen, as the registers cannot be read back.)
-///   After an error of the bus, or a byte that does not read back, all calls are refused until the next reset, and all
+///   only the calls that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) return the chip
+///   in its present state later.
+/// - **Resynchronisation:** a lost or doubled clock puts chip and bus out of step. Calls on a gated chip detect this; if it
+///   happens in the last frame of a call, the next call detects it. They also detect a lost and a doubled clock within one
+///   access to memory. (Such a pair within a register's frame and its check goes unseen, as registers cannot be read back.)
+///   After an error of the bus, or a byte that reads back differently, all calls are refused until the next reset, and all
 ///   memory is in doubt: load it again.
 /// - **Waits** read the pins a given number of times, then return an error.
-/// - **Words** that the chip has not acknowledged by then stay under way: every call that sends finishes them first,
-///   [`Running::poll`] goes on with them, a reset drops them.
-/// - **Events** that could not be sent are held and come first the next time, also after a reset.
+/// - **Words** that the chip has not acknowledged by then stay pending. Every call that sends finishes them first,
+///   [`Running::poll`] continues with them, and a reset drops them.
+/// - **Events** that could not be sent are kept, and sent first at the next call, even after a reset.
 /// - **Losses** are all counted; see [`counters`](Self::counters).
 ///
 /// # What to know about the chips
@@ -71,9 +71,9 @@ pub struct OdinChip<I: Input, D, P> {
     wire: Wire<D>,
     aer: Aer<P>,
     state: State,
-    /// The registers with which the chip runs.
+    /// Registers with which the chip runs.
     registers: Option<I::Registers>,
-    /// The byte that the step check writes to, once it is known.
+    /// Byte that the step check writes to, once it is known.
     anchor: Option<u8>,
     beacon: Option<Beacon>,
     held: Option<Event>,
@@ -83,7 +83,7 @@ pub struct OdinChip<I: Input, D, P> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Out of step, or not reset yet.
+    /// Out of step with the bus, or not reset yet.
     NotReset,
     Gated,
     Running,
@@ -92,15 +92,16 @@ enum State {
 /// The result of a call on a chip.
 type Outcome<T, D, P> = Result<T, ChipError<<D as ErrorType>::Error, <P as AerPort>::Error>>;
 
-/// How long reset is high, and how long the chip is then left alone.
+/// Duration of the reset pulse, and of the pause after it, in µs.
 const RESET_US: u32 = 10;
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
-    /// A chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls` times.
+    /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
+    /// times.
     ///
-    /// [`Input::MAX_CLOCKS`] polls suffice if each takes a clock of the chip or longer; if they are shorter,
-    /// [`with_looks_a_clock`](Self::with_looks_a_clock) multiplies them. With fewer, long words time out and must be
-    /// finished later.
+    /// [`Input::MAX_CLOCKS`] polls suffice if each takes at least a clock of the chip. If they are faster,
+    /// [`with_looks_a_clock`](Self::with_looks_a_clock) multiplies their number. With fewer polls long words time out,
+    /// and must be finished later.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -124,33 +125,33 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Sets the time step, in µs: as the ticks of fed events pass, a leak event is sent every `step` µs. By default none
-    /// are sent.
+    /// Sets the length of a time step in µs: while the ticks of fed events pass, a leak event is sent every `step` µs.
+    /// By default none is sent.
     ///
-    /// Call [`Running::advance`] at least every 35 minutes: a tick 2³¹ µs ahead counts as past, and no leak is sent until
-    /// time has caught up.
+    /// Call [`Running::advance`] at least every 35 minutes. A tick 2³¹ µs ahead counts as past, and no leak is sent
+    /// until time has caught up.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
     }
 
-    /// Sets how often the pins may be read within one clock of the chip, 1 by default: more if the microcontroller is
-    /// much faster. Every wait is this many times as long, in reads of the pins. If it is too low, words time out, and
-    /// [`Running::gate`] gates a chip that still works, whose potentials are then lost.
+    /// Sets how many reads of the pins fit into one clock of the chip; 1 by default, more if the microcontroller is
+    /// much faster. Every wait reads the pins this many times as often. If the number is too low, words time out, and
+    /// [`Running::gate`] may gate a chip that is still working, which loses its potentials.
     #[must_use]
     pub fn with_looks_a_clock(mut self, looks: NonZeroU32) -> Self {
         self.aer.set_looks_a_clock(looks);
         self
     }
 
-    /// Pulses reset, which brings chip and bus into step, gates the chip, opens its loop, and checks that it answers. For
-    /// this check neuron [`Input::PROBED`] is disabled if it was never written.
+    /// Pulses reset, which brings chip and bus into step; then gates the chip, opens its loop, and checks that it
+    /// answers. For this check neuron [`Input::PROBED`] is disabled if it was never written.
     ///
-    /// Spikes in the chip's queue are lost, and a word under way is dropped. If that word was an event of
-    /// [`Running::feed`] that the chip has not acknowledged, it is held and sent again.
+    /// Spikes in the chip's queue are lost, and the pending word is dropped. If that word was an event of
+    /// [`Running::feed`] that the chip has not acknowledged, it is kept and sent again.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or the chip does not read back what is written.
+    /// Returns an error if the port or the bus failed, or if the chip reads back something else than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Gated<'_, I, D, P>, D, P> {
         self.state = State::NotReset;
         let (under_way, is_output_lost) = self.aer.reset().map_err(ChipError::Port)?;
@@ -165,7 +166,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(Gated::new(self))
     }
 
-    /// The chip, if it is gated.
+    /// Returns the chip, if it is gated.
     ///
     /// # Errors
     /// Returns [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
@@ -177,7 +178,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// The chip, if it runs.
+    /// Returns the chip, if it runs.
     ///
     /// # Errors
     /// Returns [`NotReset`](ChipError::NotReset) or [`Gated`](ChipError::Gated).
@@ -189,12 +190,12 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// The counters of losses, skipped time steps and repeated events.
+    /// Returns the counts of losses, skipped time steps and repeated events.
     pub const fn counters(&self) -> Counters {
         Counters { overflows: self.aer.overflows, ..self.counters }
     }
 
-    /// Gives the device and the port back.
+    /// Returns the SPI device and the port.
     pub fn release(self) -> (D, P) {
         (self.wire.device, self.aer.port)
     }

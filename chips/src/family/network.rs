@@ -1,4 +1,4 @@
-//! The trait of networks for a chip, and a network as constant data.
+//! Networks for a chip: their trait, and networks as constant data.
 
 use super::{AerPort, Input};
 use crate::ChipError;
@@ -14,25 +14,25 @@ pub trait Describe<I: Input> {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
 
-    /// A neuron; a [disabled](Input::DISABLED) one if the network has no such neuron.
+    /// Returns a neuron's parameters; those of a [disabled](Input::DISABLED) one if the network has no such neuron.
     fn neuron(&self, neuron: u8) -> I::Neuron;
 
     /// Returns the number of inputs.
     fn inputs(&self) -> u16;
 
-    /// The neuron on which an input acts without a synapse, and its weight; `None` if it has a row.
+    /// Returns the neuron on which an input acts without a synapse, and its weight; `None` if the input has a row.
     fn virtual_input(&self, input: u16) -> Option<(u8, i8)>;
 
-    /// The weight from an input with a row to a neuron.
+    /// Returns the weight from an input with a row to a neuron.
     fn input_weight(&self, input: u16, post: u8) -> i8;
 
-    /// Whether neurons send spikes to neurons.
+    /// Returns whether neurons send spikes to neurons.
     fn is_recurrent(&self) -> bool;
 
-    /// The weight from a neuron to a neuron.
+    /// Returns the weight from a neuron to a neuron.
     fn weight(&self, pre: u8, post: u8) -> i8;
 
-    /// The number of the output that a neuron is; `None` if it is no output.
+    /// Returns the output that a neuron is, by number; `None` if it is not an output.
     fn output(&self, neuron: u8) -> Option<u16>;
 
     /// Returns the chip's input for an event of a bank with this scheme, or `None` if the network has no such input.
@@ -80,8 +80,8 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// A callback for the neurons that fire. It passes outputs to `sink`, as events whose address is the number of the
-    /// output, and ignores the other neurons.
+    /// Returns a callback for neurons that fire. It passes outputs to `sink`, as events with the number of the output
+    /// as address, and ignores other neurons.
     fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
         move |neuron| {
             if let Some(address) = self.output(neuron) {
@@ -90,8 +90,8 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// The registers to [run](super::Gated::run) the network with: closed loop if it is recurrent, outputs from its
-    /// neurons, and no other neurons in use.
+    /// Returns the registers to [run](super::Gated::run) the network with: closed loop if it is recurrent, its neurons
+    /// as outputs, and no other neurons in use.
     fn registers(&self) -> I::Registers {
         let mut inhibitory = [0; 16];
         for row in 0..self.rows() {
@@ -103,18 +103,18 @@ pub trait Describe<I: Input> {
         I::registers(self.neurons().saturating_sub(1) as u8, !self.is_recurrent(), inhibitory)
     }
 
-    /// The row of the first input.
+    /// Returns the row of the first input.
     fn first_input_row(&self) -> u16 {
         if self.is_recurrent() { self.neurons() } else { 0 }
     }
 
-    /// Returns the number of rows of synapses, from row 0 on.
+    /// Returns the number of rows of synapses, starting at row 0.
     fn rows(&self) -> u16 {
         let is_virtual = self.virtual_input(0).is_some();
         self.first_input_row().saturating_add(if is_virtual { 0 } else { self.inputs() })
     }
 
-    /// The weight from a row to a neuron.
+    /// Returns the weight from a row to a neuron.
     fn row_weight(&self, row: u16, post: u8) -> i8 {
         match row.checked_sub(self.first_input_row()) {
             Some(input) => self.input_weight(input, post),
@@ -128,12 +128,12 @@ pub trait Describe<I: Input> {
 pub enum Inputs<const IN: usize, const N: usize> {
     /// Each input's weights to all neurons.
     Rows([[i8; N]; IN]),
-    /// The neuron on which each input acts, and its weight. tinyODIN has virtual events for its first 16 neurons only.
+    /// The neuron on which each input acts, and its weight. tinyODIN has virtual events only for its first 16 neurons.
     Virtual([(u8, i8); IN]),
 }
 
 impl<const IN: usize, const N: usize> Inputs<IN, N> {
-    /// Input `n` drives neuron `n` with this weight, and no other neuron.
+    /// Connects input `n` to neuron `n` with this weight, and to no other neuron.
     #[must_use]
     pub const fn one_to_one(weight: i8) -> Self {
         let mut rows = [[0; N]; IN];
@@ -149,7 +149,7 @@ impl<const IN: usize, const N: usize> Inputs<IN, N> {
     }
 }
 
-/// The neurons from `FIRST` on, for [`Network::outputs`].
+/// Lists `OUT` neurons, starting at `FIRST`, for [`Network::outputs`].
 #[must_use]
 pub const fn neurons_from<const FIRST: u8, const OUT: usize>() -> [u8; OUT] {
     const { assert!(FIRST as usize + OUT <= 256, "a chip has 256 neurons") };
@@ -189,8 +189,8 @@ pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> 
     pub neurons: [I::Neuron; N],
     /// The inputs.
     pub inputs: Inputs<IN, N>,
-    /// The weights from neuron 0, 1 and so on to all neurons. Neurons without a row have no effect on others; without any
-    /// row the loop is open.
+    /// The weights from neurons to all neurons: row 0 belongs to neuron 0, and so on. Neurons without a row have no
+    /// effect on others; without any row the loop is open.
     pub recurrent: &'static [[i8; N]],
     /// The neurons that are outputs, in the order of the outputs.
     pub outputs: [u8; OUT],
@@ -245,7 +245,7 @@ fn at<const N: usize>(rows: &[[i8; N]], row: usize, post: u8) -> i8 {
     rows.get(row).and_then(|row| row.get(usize::from(post))).copied().unwrap_or(0)
 }
 
-/// Checks that a network fits the chip, and that its values are in range.
+/// Returns an error unless a network fits the chip, and its values are in range.
 pub(super) fn check<I: Input, B, P: AerPort>(
     network: &impl Describe<I>,
 ) -> Result<(), ChipError<B, P::Error>> {

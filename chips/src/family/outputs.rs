@@ -1,4 +1,4 @@
-//! The outputs of one time step, as a list of events.
+//! A list for the outputs of one time step, as events.
 
 use spikewire::Polarity;
 use spikewire::{Event, Tick};
@@ -41,7 +41,7 @@ impl<const N: usize> Default for Spikes<N> {
 }
 
 impl<const N: usize> Spikes<N> {
-    /// An empty list.
+    /// Makes an empty list.
     pub const fn new() -> Self {
         const NONE: Event =
             Event { tick: Tick::from_micros(0), address: 0, polarity: Polarity::Up };
@@ -58,7 +58,7 @@ impl<const N: usize> Spikes<N> {
         }
     }
 
-    /// The events, in the order in which they came.
+    /// Returns the events, in the order in which they came.
     pub fn as_slice(&self) -> &[Event] {
         self.events.get(..self.len).unwrap_or_default()
     }

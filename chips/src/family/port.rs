@@ -1,4 +1,4 @@
-//! The wires of a chip's two address-event buses.
+//! The wires of a chip's input bus and output bus.
 
 /// The wires of a chip's two address-event buses and its reset, all active high.
 ///
@@ -15,10 +15,10 @@
 ///
 /// A call that fails may have changed the pins or not: the driver repeats it before it goes on.
 pub trait AerPort {
-    /// The error of the port; `Infallible` for the microcontroller's own pins.
+    /// Error type of the port; `Infallible` for the microcontroller's own pins.
     type Error;
 
-    /// Puts a word on the input bus. It must have settled at the chip when this returns.
+    /// Puts a word on the input bus. The word must have settled at the chip when this returns.
     ///
     /// # Errors
     /// Returns an error if the port failed.
@@ -60,8 +60,8 @@ pub trait AerPort {
     /// See [`set_input`](Self::set_input).
     fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `SCHED_FULL`; `None`, the default, if it is not wired. It is high while the chip's queue is full, so that
-    /// spikes between neurons are lost.
+    /// Reads `SCHED_FULL`, which is high while the chip's queue is full, so that spikes between neurons are lost. The
+    /// default returns `None`: the pin is not wired.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

@@ -1,14 +1,14 @@
-//! A chip that runs, and takes events.
+//! A chip that runs and takes events.
 
 use embedded_hal::spi::SpiDevice;
 
 use super::aer::Carries;
 use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome};
 
-/// Clocks from our ACK to an output until the chip goes on, with some to spare.
+/// Number of clocks from our ACK to an output until the chip continues, with a margin.
 const HANDSHAKE_CLOCKS: u32 = 32;
-/// How many clocks [`Running::quiesce`] allows for outputs, beyond four times the longest time without any: enough for
-/// more than a thousand outputs.
+/// Number of clocks that [`Running::quiesce`] allows for outputs, beyond four times the longest time without any:
+/// enough for more than a thousand outputs.
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
 /// A running chip: it takes events, and its memories cannot be accessed. After an error it still runs, unless the call
@@ -23,13 +23,13 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Self { chip }
     }
 
-    /// Sends one input, and passes the neurons that fire meanwhile to `on_output`. After the chip has taken the word, it
-    /// still works on it: 2 clocks for every neuron in use.
+    /// Sends one input, and passes neurons that fire meanwhile to `on_output`. The chip still works on the word after
+    /// it has taken it: 2 clocks for every neuron in use.
     ///
     /// # Errors
-    /// Returns an error if the input is not valid, the chip does not answer, or the port failed. With
-    /// [`Phase::Idle`](super::Phase::Idle) the input was not sent; with any other [`Handshake`](ChipError::Handshake)
-    /// error it is under way, and must not be sent again.
+    /// Returns an error if the input is invalid, the chip does not answer, or the port failed. With
+    /// [`Phase::Idle`](super::Phase::Idle) the input was not sent. With any other [`Handshake`](ChipError::Handshake)
+    /// error it is pending, and must not be sent again.
     pub fn send(&mut self, input: I, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let word = input.word()?;
         let aer = &mut self.chip.aer;
@@ -37,8 +37,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Ok(aer.finish(&mut on_output)?)
     }
 
-    /// Passes the neurons that have fired to `on_output`, and goes on with a word under way. Reads the pins a few times
-    /// only: call it often, as the chip stands still while an output waits.
+    /// Passes neurons that have fired to `on_output`, and continues with a pending word. Reads the pins only a few
+    /// times: call it often, as the chip stops while an output waits.
     ///
     /// # Errors
     /// Returns an error if the port failed. No output is passed on twice.
@@ -46,16 +46,16 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         self.chip.aer.poll(&mut on_output).map_err(ChipError::Port)
     }
 
-    /// Waits until the chip has processed all its input, and passes the neurons that fire meanwhile to `on_output`.
+    /// Waits until the chip has processed all its input, and passes neurons that fire meanwhile to `on_output`.
     ///
-    /// No pin shows that the chip is at rest, so this waits until no output has come for the longest time that the chip
-    /// can work without one: in open loop a few sweeps of 2 clocks a neuron, in closed loop a sweep for each spike that
-    /// its queue can hold, 66 000 clocks for tinyODIN's 256 neurons.
+    /// No pin shows that the chip is at rest. So this waits until no output has come for the longest time that the chip
+    /// can work without one. In open loop that is a few sweeps of 2 clocks a neuron. In closed loop it is a sweep for
+    /// each spike that the queue can hold: 66 000 clocks for tinyODIN's 256 neurons.
     ///
     /// # Errors
-    /// Returns [`Busy`](ChipError::Busy) if outputs come without end, as from a network that drives itself; see
-    /// [`open_loop`](Self::open_loop). Returns another error if the chip does not take a word under way, or the port
-    /// failed. The chip still runs.
+    /// Returns [`Busy`](ChipError::Busy) if outputs do not end, as those of a network that drives itself; see
+    /// [`open_loop`](Self::open_loop). Returns another error if the chip does not take the pending word, or if the port
+    /// failed. In both cases the chip still runs.
     pub fn quiesce(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let chip = &mut *self.chip;
         chip.aer.finish(&mut on_output)?;
@@ -74,12 +74,12 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         }
     }
 
-    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it: then its memories can be
-    /// accessed, and the neurons keep their potentials.
+    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it. Then its memories can be
+    /// accessed, and its neurons keep their potentials.
     ///
     /// # Errors
-    /// Returns the errors of [`quiesce`](Self::quiesce), after which the chip still runs. Also if the bus failed, or the
-    /// chip does not read back what is written: then reset it.
+    /// Returns the errors of [`quiesce`](Self::quiesce), after which the chip still runs. Also returns an error if the
+    /// bus failed, or if the chip reads back something else than was written: then reset it.
     pub fn gate(mut self, on_output: impl FnMut(u8)) -> Outcome<Gated<'a, I, D, P>, D, P> {
         self.quiesce(on_output)?;
         self.chip.shut()?;
@@ -87,7 +87,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     }
 
     /// Opens the loop, so that a network that drives itself comes to rest. The loop stays open until the next
-    /// [`run`](Gated::run). This write cannot be verified; [`gate`](Self::gate) verifies its own.
+    /// [`run`](Gated::run). This write is not verified; [`gate`](Self::gate) verifies its own.
     ///
     /// # Errors
     /// Returns an error if the bus failed: then reset the chip.
@@ -97,7 +97,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Ok(self)
     }
 
-    /// The counters of losses, skipped time steps and repeated events.
+    /// Returns the counts of losses, skipped time steps and repeated events.
     pub const fn counters(&self) -> Counters {
         self.chip.counters()
     }

@@ -1,17 +1,17 @@
-//! Checks that chip and bus are in step and the gate is shut, and reads and writes memory with such checks.
+//! Checks that chip and bus are in step and that the gate is shut; reads and writes memory with such checks.
 
 use embedded_hal::spi::SpiDevice;
 
 use super::wire::Address;
 use super::{AerPort, ChipError, Input, OdinChip, Outcome, State};
 
-/// The gate's register.
+/// Number of the gate's register.
 const GATE_ACTIVITY: u16 = 0;
 
-/// The bit of a neuron's last byte that disables it.
+/// Mask of the bit in a neuron's last byte that disables it.
 pub(super) const DISABLE: u8 = 0x80;
 
-/// A byte of a neuron's parameters that is known not to be 0: a bus out of step reads 0 instead.
+/// A byte of a neuron's parameters that is known not to be 0. A bus out of step reads 0 there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beacon {
     address: Address,
@@ -19,16 +19,16 @@ pub(super) struct Beacon {
     value: u8,
 }
 
-/// The byte that the step check writes: a bus out of step by a bit reads another.
+/// The byte that the step check writes; a bus that is out of step by a bit reads a different one.
 const SIGN: u8 = 0xA5;
 
-/// The byte that the step check writes to.
+/// Returns the address that the step check writes to.
 fn anchor() -> Address {
     Address::synapse(255, 249)
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
-    /// Shuts the gate of a chip at rest, opens its loop, and checks both the gate and the step.
+    /// Shuts the gate of a chip at rest, opens its loop, and checks gate and step.
     pub(super) fn shut(&mut self) -> Outcome<(), D, P> {
         self.state = State::NotReset;
         self.registers = None;
@@ -38,14 +38,15 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_step()
     }
 
-    /// Opens the gate. If the gate later shuts on a chip that works, tinyODIN overwrites the byte that was accessed
-    /// last, in each neuron that it has still to process. So the last access here is to a byte that does not exist.
+    /// Opens the gate. If the gate is later shut while the chip works, tinyODIN overwrites the byte that was accessed
+    /// last, in each neuron that it has still to process. Therefore the last access here is to a byte that does not
+    /// exist.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
     }
 
-    /// Looks for a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. If all are 0, the neuron was never
+    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. If all are 0 the neuron was never
     /// written: it is disabled, which sets a bit.
     pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
         let last = I::NEURON_BYTES.saturating_sub(1);
@@ -66,9 +67,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_step()
     }
 
-    /// Changes a byte of the synapses' memory and changes it back, and reads it each time: this fails on a chip that runs,
-    /// and after a clock was lost or doubled. Between, it reads a byte that is not 0, if one is known: out of step, the
-    /// chip's line is low.
+    /// Changes a byte of the synapses' memory and restores it, and reads it both times. This fails if the chip runs, or
+    /// after a lost or doubled clock. In between it reads a byte that is not 0, if one is known, as a chip out of step
+    /// sends 0.
     pub(super) fn check_step(&mut self) -> Outcome<(), D, P> {
         let value = match self.anchor {
             Some(value) => value,
@@ -92,10 +93,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Writes bytes, each with the bits to keep, and reads them back once the step is checked.
+    /// Writes bytes, each with a mask of the bits to keep, and reads them back once the step is checked.
     ///
-    /// A write that a fault leads astray leaves its own byte as it was. So that this shows, only bytes that differ are
-    /// written, and which ones is only believed after a check. Bits to keep are compared, too.
+    /// A faulty write to another address leaves its own byte unchanged. To notice this, only bytes that differ are
+    /// written, and the comparison that finds them is checked as well. The bits to keep are compared too.
     pub(super) fn store(
         &mut self,
         bytes: impl Iterator<Item = (Address, u8, u8)> + Clone,
@@ -132,8 +133,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Reads the byte that the step check wrote once more: two faults in the check's last frames may cancel out and leave
-    /// it wrong.
+    /// Reads the byte that the step check wrote once more: two faults in the check's last frames may cancel out and
+    /// leave it wrong.
     fn expect_anchor(&mut self) -> Outcome<(), D, P> {
         match self.anchor {
             Some(value) => self.expect_byte(anchor(), 0, value),
@@ -141,7 +142,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Reads up to 16 bytes, which may be wrong if the bus is out of step.
+    /// Reads up to 16 bytes; they may be wrong if the bus is out of step.
     pub(super) fn read_bytes(
         &mut self,
         addresses: impl Iterator<Item = Address>,
@@ -154,7 +155,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes the bits of a byte that are 0 in `keep`.
+    /// Writes those bits of a byte that are 0 in `keep`.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -166,7 +167,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Reads a byte, and compares it with this value except for the bits of `ignored`.
+    /// Reads a byte, and returns an error unless it equals `value` outside the bits in `ignored`.
     pub(super) fn expect_byte(
         &mut self,
         address: Address,
@@ -183,7 +184,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Remembers a byte of memory, if it can serve as a beacon.
+    /// Remembers a byte of memory if it can serve as a beacon.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);
@@ -206,7 +207,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Demands a reset after an error of the bus, as a clock may be lost.
+    /// Requires a reset after an error of the bus, as a clock may be lost.
     pub(super) fn heed<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
         result.map_err(|error| {
             self.state = State::NotReset;

@@ -1,17 +1,19 @@
-//! Steps in which each neuron compares with its threshold once, as in training, and the chip's neurons after every event.
+//! Time steps in which each neuron compares with its threshold once, as in training, although the chip's neurons
+//! compare after every event.
 
 use embedded_hal::spi::SpiDevice;
 
 use super::{AerPort, ChipError, Input, Outcome, Running};
 
-/// The events that make a network's step on tinyODIN: data that belongs to a [`Network`](super::Network) in open loop, which
-/// `spikewire network` writes. [`Running::step`] runs a step.
+/// The sequence of events by which tinyODIN runs one time step of a network. It belongs to a [`Network`](super::Network) in
+/// open loop; `spikewire network` writes both, and [`Running::step`] runs a step.
 ///
-/// While a step's inputs come, potentials lie lower than they mean, so that no neuron reaches its threshold. Then a row of
-/// weights raises a layer by its *rungs*, and its neurons compare. The layer's spikes go on to the next layer, which is
-/// raised in turn. At last another row lets all neurons fall again. On their way leaks come: each moves a potential
-/// towards the one that lies at 0 just then, so that leaks at several heights together move it by a share, as in
-/// training. What a neuron that fired has got beyond 0 by then, leaks of its own take away.
+/// While a step's inputs arrive, all potentials are offset downwards, so that no neuron reaches its threshold. Then events on
+/// a row of weights raise a layer, each by a *rung*, until the offset is gone and its neurons compare. The layer's spikes go
+/// to the next layer, which is raised in turn. Finally events on another row lower all neurons again. Leaks come between
+/// these: each moves a potential towards the value that is at 0 at that moment. Leaks at several heights together therefore
+/// reduce a potential by a share of it, as in training. A neuron that fired may end above its reset value, and gets leaks of
+/// its own to remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
@@ -69,28 +71,33 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// }
 /// ```
 ///
-/// Rows of the network, each group of inputs or neurons in order: the inputs, the bias if there is one; for each layer
-/// the neurons onto the next layer, if there is one, then the neurons onto themselves, if it loops; a row that raises for
-/// each layer; the row that lets all fall; the row that lifts all, if [`lift`](Self::lift) is not 0. Neurons begin lower
-/// by what the rungs raise them above 0.
+/// The rows of the network are, in this order:
+///
+/// 1. the inputs, and the bias if there is one;
+/// 2. for each layer, its neurons onto the next layer, if there is one, and onto themselves, if the layer is recurrent;
+/// 3. for each layer, a row that raises it;
+/// 4. a row that lowers all neurons;
+/// 5. a row that raises all neurons, if [`lift`](Self::lift) is not 0.
+///
+/// The neurons' initial potentials contain the offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps<'a> {
     /// Number of inputs.
     pub inputs: u16,
-    /// Whether one more input, behind the others, belongs to every step.
+    /// Whether there is one more input, after the others, that belongs to every step.
     pub has_bias: bool,
-    /// Rows of each input and each neuron that sends spikes. Their weights add up, so that rows are bits of a weight.
+    /// Number of rows for each input and for each neuron that sends spikes. A weight is the sum of its rows.
     pub rows: u16,
-    /// The layers, from the input on. Their neurons are the chip's from 0 on.
+    /// The layers, in order from the input. Their neurons are the chip's, from 0 on.
     pub layers: &'a [StepsLayer],
-    /// Events that raise a layer, and that let all neurons fall.
+    /// Number of events that raise a layer, and that lower all neurons again.
     pub rungs: u16,
-    /// For each step, in turn: after how many events of the fall there is a leak of all neurons, in ascending order.
+    /// For each step: after how many lowering events all neurons leak, in ascending order. The list is repeated.
     pub leaks: &'a [&'a [u16]],
-    /// Events that lift all neurons again after the fall, before the leaks of neurons that fired, and let them fall after
-    /// these.
+    /// Number of events that raise all neurons again after they were lowered, for the leaks of neurons that fired, and
+    /// that lower them after these.
     pub lift: u16,
-    /// The number of leaks that a neuron gets alone once it has fired, by neuron.
+    /// For each neuron, the number of leaks that it alone gets after it has fired.
     pub own_leaks: &'a [u16],
 }
 
@@ -99,30 +106,30 @@ pub struct Steps<'a> {
 pub struct StepsLayer {
     /// Number of neurons.
     pub neurons: u16,
-    /// Whether its spikes lead back to it in the next step.
+    /// Whether the layer is recurrent: its spikes act on it in the next step.
     pub loops: bool,
 }
 
-/// The memory of a network from one step to the next: 36 bytes.
+/// The state of a network between steps: 36 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepsState {
-    /// The neurons that fired in the last step.
+    /// Neurons that fired in the last step.
     fired: Fired,
-    /// The place in [`Steps::leaks`].
+    /// Index of the next step in [`Steps::leaks`].
     turn: u16,
 }
 
 impl StepsState {
-    /// Before the first step.
+    /// The state before the first step.
     pub const REST: Self = Self { fired: Fired([0; 8]), turn: 0 };
 }
 
-/// A set of neurons.
+/// A set of neurons, one bit for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Fired([u32; 8]);
 
 impl Fired {
-    /// Adds a neuron; false if it was there.
+    /// Adds a neuron; returns false if it was in the set.
     fn insert(&mut self, neuron: u8) -> bool {
         let Some(word) = self.0.get_mut(usize::from(neuron >> 5)) else { return false };
         let bit = 1 << (neuron & 31);
@@ -136,14 +143,14 @@ impl Fired {
         word >> (neuron & 31) & 1 == 1
     }
 
-    /// Those of a range, counted from its start.
+    /// Returns the neurons of a range that are in the set, counted from the range's start.
     fn of(self, start: u16, count: u16) -> impl Iterator<Item = u16> {
         (0..count).filter(move |at| self.contains(start.saturating_add(*at)))
     }
 }
 
 impl Steps<'_> {
-    /// The row that raises the first layer.
+    /// Returns the row that raises the first layer.
     #[must_use]
     pub fn first_rise(&self) -> u16 {
         let sources = self.inputs.saturating_add(self.has_bias.into());
@@ -156,7 +163,7 @@ impl Steps<'_> {
         sources.saturating_mul(self.rows)
     }
 
-    /// The number of rows in all.
+    /// Returns the total number of rows.
     #[must_use]
     pub fn all_rows(&self) -> u16 {
         let gates = match (self.rungs, self.lift) {
@@ -169,18 +176,18 @@ impl Steps<'_> {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Runs a step of a network: its inputs, by number, in any order. Passes each output's neuron to `on_output` at once,
-    /// and neurons of other layers too: [`Describe::answers`](super::Describe::answers) leaves these out. No neuron fires
-    /// twice in a step. Leaks come between steps only, so that a step cannot begin with the wrong one. Inputs that the
-    /// network has not are left out and [counted](super::Counters::unmapped_events).
+    /// Runs a step of a network. `inputs` are the numbers of the inputs that fire, in any order; those that the network
+    /// does not have are left out and [counted](super::Counters::unmapped_events). Neurons that fire are passed to
+    /// `on_output` at once, at most once in a step. They include neurons of layers before the last, which
+    /// [`Describe::answers`](super::Describe::answers) filters out. Leaks come only between steps.
     ///
-    /// **Time:** each event takes the chip 2 clocks for every neuron in use, and 6 more: those of inputs and spikes,
-    /// [`rungs`](Steps::rungs) for each layer and once more for all, leaks. When the call returns the chip still works on
-    /// the last one.
+    /// **Time:** each event takes the chip 2 clocks for every neuron in use, and 6 more. Events are inputs, spikes,
+    /// [`rungs`](Steps::rungs) for each layer and once more for all, and leaks. The chip still works on the last event
+    /// when the call returns.
     ///
     /// # Errors
-    /// Returns the errors of [`send`](Self::send). The step is then cut off, and the chip's potentials are those of no
-    /// step: gate it, load the network again, and begin with [`StepsState::REST`].
+    /// Returns the errors of [`send`](Self::send). The step is then incomplete and the chip's potentials are useless:
+    /// gate the chip, load the network again, and begin with [`StepsState::REST`].
     pub fn step(
         &mut self,
         steps: &Steps,
@@ -260,7 +267,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     }
 }
 
-/// A step under way.
+/// A step that is being run.
 struct Step<'r, 'c, I: Input, D, P, F> {
     running: &'r mut Running<'c, I, D, P>,
     rows: u16,
@@ -278,7 +285,7 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         })
     }
 
-    /// Sends a row's spike so many times.
+    /// Sends a spike on a row, `times` times.
     fn row(&mut self, row: u16, times: u16) -> Outcome<(), D, P> {
         for _ in 0..times {
             let Ok(pre) = u8::try_from(row) else {
@@ -290,7 +297,7 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends the spikes of all rows of an input or a neuron.
+    /// Sends a spike on each row of an input or a neuron.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let first = first.saturating_add(number.saturating_mul(self.rows));
         for at in 0..self.rows {

@@ -1,4 +1,4 @@
-//! A network for `ReckOn` as bytes: from a file or over the air, known only at run time.
+//! Networks for `ReckOn` as bytes, from a file or received by radio, which are known only at run time.
 
 use super::network::check;
 use super::{DescribeReckOn, ReckOnPair, ReckOnShared};
@@ -36,7 +36,7 @@ pub struct ReckOnBytes<'a> {
     outputs: &'a [u8],
 }
 
-/// The lengths of pairs, inputs, recurrent rows and outputs.
+/// Returns the lengths in bytes of pairs, inputs, recurrent rows and outputs.
 fn lengths([neurons, inputs, outputs]: [u16; 3], is_recurrent: bool) -> [usize; 4] {
     let [pairs, neurons, inputs, outputs] =
         [neurons.div_ceil(2), neurons, inputs, outputs].map(usize::from);
@@ -57,7 +57,7 @@ impl<'a> ReckOnBytes<'a> {
     /// Reads the header, and checks the length and every value.
     ///
     /// # Errors
-    /// Returns an error if the bytes are no network for this chip.
+    /// Returns an error if the bytes are not a network for this chip.
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let (header, rest) = bytes.split_at_checked(HEADER).ok_or(FormatError::Magic)?;
         let &[a, b, c, d, kind, flags, n0, n1, i0, i1, o0, o1, s0, s1, s2, keep] = header else {
@@ -87,10 +87,10 @@ impl<'a> ReckOnBytes<'a> {
         Ok(network)
     }
 
-    /// Writes a network into a buffer. Returns its length.
+    /// Writes a network to a buffer; returns the length in bytes.
     ///
     /// # Errors
-    /// Returns an error if the buffer is too small, or the network has a value out of its range.
+    /// Returns an error if the buffer is too small, or if the network has a value out of its range.
     pub fn write(network: &impl DescribeReckOn, buffer: &mut [u8]) -> Result<usize, FormatError> {
         let sizes = [network.neurons(), network.inputs(), network.outputs()];
         check_sizes(sizes)?;
@@ -132,7 +132,7 @@ impl<'a> ReckOnBytes<'a> {
     }
 }
 
-/// The weight in this row and column, of rows of this length.
+/// Returns the weight in this row and column, of rows with `length` weights.
 fn weight(rows: &[u8], length: u16, row: u16, column: u16) -> i8 {
     let at = usize::from(row).wrapping_mul(length.into()).wrapping_add(column.into());
     rows.get(at).filter(|_| column < length).map_or(0, |&byte| byte as i8)

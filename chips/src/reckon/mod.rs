@@ -24,40 +24,40 @@ use wire::{Address, Wire};
 
 /// `ReckOn`, on an SPI device and a port.
 ///
-/// Source: RTL and documentation, ChFrenkel/ReckOn; nothing of them is in here.
+/// Source: RTL and documentation, ChFrenkel/ReckOn; nothing was copied from them.
 ///
 /// - **SPI:** mode 0; the chip has no chip select: it needs a bus of its own and a device whose chip select is not
 ///   wired. SCK at most a tenth of the chip's clock: a word that is read must be ready within half a clock of SCK.
 /// - **States:** [`reset`](Self::reset) gives a [`Programmed`] chip, whose memories can be accessed;
-///   [`Programmed::run`] a [`Started`] one; [`Started::begin`] a [`ReckOnSample`], which takes inputs and time steps
-///   until [`ReckOnSample::end`]. [`Started::program`] leads back. After an error of the bus, of a handshake or of a
-///   step all calls are refused until the next reset.
-/// - **Checks:** memories are read back. Registers cannot be read; after each, a word that no network uses is written
-///   and read twice, so that a clock lost or doubled before it is an error. A lost and a doubled clock, one of
-///   them in a register's own frame or in the one before it, may cancel out and go unseen: the register keeps its value,
-///   takes another, or another register does. The same pair in the first bits of a frame that writes neurons' weights may
-///   reach a register, too; that is seen unless the memory held these weights before. And a read with which a load
-///   compares may become a write: [`Programmed::verify`] after the load sees that in weights and parameters, but nobody does
-///   in the potential of a neuron or an output.
+///   [`Programmed::run`] gives a [`Started`] one; [`Started::begin`] gives a [`ReckOnSample`], which takes inputs and time
+///   steps until [`ReckOnSample::end`]. [`Started::program`] gives a [`Programmed`] chip again. After an error of the bus,
+///   of a handshake or of a step all calls are refused until the next reset.
+/// - **Checks:** memories are read back. Registers cannot be read. Therefore, after each register, a word that no network
+///   uses is written and read twice, so that a clock lost or doubled before it is an error.
+/// - **Faults that go unseen** need a lost and a doubled clock that cancel out. With one of them in a register's own frame or
+///   in the frame before it, the register may keep its value or take another, or a different register may be written. In the
+///   first bits of a frame that writes neurons' weights, the pair may write a register too, which is noticed unless the memory
+///   held these weights before. A read by which a load compares may become a write. [`Programmed::verify`] after the load
+///   finds that in weights and parameters; in the potential of a neuron or an output it goes unseen.
 /// - **Waits** read the pins a given number of times, then return an error.
 ///
 /// # A time step
-/// Inputs that are sent before a tick act after it; neurons leak and fire at the next tick; their spikes act after that,
-/// and outputs show them at the third. With as many inputs as neurons, N, a step takes 2 N + 4 clocks of the chip and N
+/// Inputs that are sent before a tick act after that tick. Neurons leak and fire at the second tick, and their spikes act
+/// after it. Outputs show these at the third tick. With N inputs and N neurons, a step takes 2 N + 4 clocks of the chip, and N
 /// more for each event.
 ///
 /// # What to know about the chip
-/// - After reset learning is on, and the first tick with a target waits for it for ever: [`Programmed::run`] writes
-///   [`ReckOnSettings::learning`].
-/// - A tick that comes before the last step is done stops the chip until a reset, and `TIMING_ERROR_RDY` then says ready.
-///   [`ReckOnSample::step`] waits for the line before. After, the line is low for 2 N + 4 clocks, which pins that are read
-///   seldom miss: so the chip is always told to send its answer in each step, until whose last byte is taken the line stays
-///   low, and a step without an answer is an error.
-/// - If `SAMPLE` falls while the chip learns and sends no answer in each step, it goes on learning without end, through
-///   all weights.
-/// - Neurons work in pairs, as far as the number of neurons, inputs or outputs, whichever is the most. A pair beyond the
-///   network whose memory holds a threshold of 0 fires at every step: [`Programmed::load`] writes all 128 pairs.
-/// - With an odd number of neurons the last would never fire: the driver tells the chip of one more.
+/// - After reset learning is on: at the first tick with `TARGET_VALID` the chip would wait for a target without end.
+///   Therefore [`Programmed::run`] always writes [`ReckOnSettings::learning`].
+/// - A tick that comes before the last step is done stops the chip until a reset, although `TIMING_ERROR_RDY` then says
+///   ready. [`ReckOnSample::step`] waits for this line before the tick. After the tick the line is low for 2 N + 4 clocks
+///   only, which a driver that reads its pins rarely would miss. Therefore the chip is always set to send an answer in each
+///   step, as the line stays low until the last byte is taken, and a step without an answer is an error.
+/// - If `SAMPLE` falls while the chip learns and does not send an answer in each step, it goes on learning without end,
+///   through all weights.
+/// - Neurons are processed in pairs, up to the number of neurons, inputs or outputs, whichever is the largest. A pair beyond
+///   the network whose memory holds a threshold of 0 fires at every step. Therefore [`Programmed::load`] writes all 128 pairs.
+/// - With an odd number of neurons the last would never fire, so the driver gives the chip a number one higher.
 /// - A word to a register with a count above 1 writes the same register again.
 /// - An input sent twice within a step counts once. Inputs that are sent after the last tick of a sample are lost.
 /// - Reset clears no memory.
@@ -115,7 +115,7 @@ pub struct ReckOn<D, P> {
     sizes: Sizes,
 }
 
-/// The highest numbers of an input, a neuron and an output in the network.
+/// Highest number of an input, of a neuron and of an output in the network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sizes {
     input: u8,
@@ -125,7 +125,7 @@ struct Sizes {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Out of step, or not reset yet.
+    /// Out of step with the bus, or not reset yet.
     NotReset,
     Programmed,
     Started,
@@ -134,19 +134,19 @@ enum State {
 
 type Outcome<T, D, P> = Result<T, ChipError<<D as ErrorType>::Error, <P as ReckOnPort>::Error>>;
 
-/// How long reset is high, and how long the chip is then left alone.
+/// Duration of the reset pulse, and of the pause after it, in µs.
 const RESET_US: u32 = 10;
 
-/// The register that opens the memories to SPI.
+/// Number of the register that opens the memories to SPI.
 const OPEN: u16 = 0;
 
 impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
-    /// The longest step in clocks of the chip: 256 neurons that all fire, and learning.
+    /// Longest step in clocks of the chip: 256 neurons that all fire, and learning.
     pub const MAX_CLOCKS: u32 = 76_000;
 
-    /// A chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls` times;
-    /// [`MAX_CLOCKS`](Self::MAX_CLOCKS) suffice if each takes a clock of the chip or longer. If pins are read more often
-    /// than that, multiply it by the reads in a clock, rounded up: two short waits count clocks so.
+    /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
+    /// times; [`MAX_CLOCKS`](Self::MAX_CLOCKS) suffice if each read takes at least a clock of the chip. If reads are
+    /// faster, multiply it by the number of reads in a clock, rounded up; two short waits rely on that factor.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         let wire = Wire { device };
         let sizes = Sizes { input: 255, neuron: 255, output: 15 };
@@ -154,11 +154,11 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         Self { wire, port, polls, state: State::NotReset, settings, sizes }
     }
 
-    /// Pulses reset, which brings chip and bus into step, and checks that the chip answers. Memories keep what they
-    /// held; registers do not.
+    /// Pulses reset, which brings chip and bus into step, and checks that the chip answers. Memories keep their
+    /// content; registers do not.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or the chip does not read back what is written.
+    /// Returns an error if the port or the bus failed, or if the chip reads back something else than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Programmed<'_, D, P>, D, P> {
         self.state = State::NotReset;
         self.clear_pins().map_err(ChipError::Port)?;
@@ -182,7 +182,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         port.set_infer(false)
     }
 
-    /// The chip, if its memories can be accessed.
+    /// Returns the chip, if its memories can be accessed.
     ///
     /// # Errors
     /// Returns [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
@@ -194,7 +194,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// The chip, if it runs and is between samples.
+    /// Returns the chip, if it runs and is between samples.
     ///
     /// # Errors
     /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`Busy`](ChipError::Busy) within a
@@ -208,11 +208,11 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// The chip, if it is within a sample.
+    /// Returns the chip, if it is within a sample.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or
-    /// [`NotStarted`](ChipError::NotStarted) between samples.
+    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`NotStarted`](ChipError::NotStarted)
+    /// between samples.
     pub fn sample(&mut self) -> Outcome<ReckOnSample<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -222,7 +222,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Gives the device and the port back.
+    /// Returns the SPI device and the port.
     pub fn release(self) -> (D, P) {
         (self.wire.device, self.port)
     }
@@ -235,7 +235,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Demands a reset after an error.
+    /// Requires a reset after an error.
     fn heed<T>(&mut self, result: Outcome<T, D, P>) -> Outcome<T, D, P> {
         if result.is_err() {
             self.state = State::NotReset;
@@ -267,7 +267,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         self.heed(Err(ChipError::ReadBack { address: address.0, written, read }))
     }
 
-    /// Writes two words to a place that no network uses, and reads each back: a bus out of step by a bit reads another.
+    /// Writes two words to an address that no network uses, and reads each back; a bus that is out of step by a bit
+    /// reads different ones.
     fn check_step(&mut self) -> Outcome<(), D, P> {
         for word in [0xA53C_0F96, 0x5AC3_F069] {
             self.write(Address::anchor(), word)?;
@@ -276,12 +277,12 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         Ok(())
     }
 
-    /// Number of reads of a pin that take this many clocks of the chip or longer.
+    /// Returns the number of reads of a pin that take at least this many clocks of the chip.
     fn looks(&self, clocks: u32) -> u32 {
         self.polls.div_ceil(Self::MAX_CLOCKS).saturating_mul(clocks)
     }
 
-    /// Reads the ready line up to `looks` times, and returns whether it became `is_high`.
+    /// Reads the ready line up to `looks` times; returns whether it reached the level `is_high`.
     fn wait_ready(&mut self, is_high: bool, looks: u32) -> Result<bool, P::Error> {
         for _ in 0..looks {
             if self.port.ready()? == is_high {

@@ -1,21 +1,21 @@
-//! A network for `ReckOn`, as constant data.
+//! Networks for `ReckOn`: their trait, and networks as constant data.
 
 use crate::ChipError;
 use crate::error::in_range;
 
-/// The parameters that two neighbouring neurons share.
+/// The parameters that two adjacent neurons share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnPair {
-    /// The part of the potential that stays in a time step, of 32 768: 28 672 (0.875) to 36 863 (1.125).
+    /// Share of the potential that remains after a time step, in units of 1/32 768: 28 672 (0.875) to 36 863 (1.125).
     pub keep: u16,
-    /// The potential at which a neuron fires, 1 to 32 767.
+    /// Potential at which a neuron fires, 1 to 32 767.
     pub threshold: i16,
 }
 
 impl ReckOnPair {
-    /// Neurons that keep their potential and hardly ever fire.
+    /// Parameters of neurons that keep their potential and almost never fire.
     pub const REST: Self = Self { keep: 1 << 15, threshold: i16::MAX };
 }
 
@@ -24,44 +24,44 @@ impl ReckOnPair {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnShared {
-    /// Shifts left of the weights of inputs, neurons and outputs, 0 to 7 each.
+    /// Left shifts of the weights from inputs, between neurons and to outputs, 0 to 7 each.
     pub shifts: [u8; 3],
-    /// The part of an output's potential that stays in a time step, of 128.
+    /// Share of an output's potential that remains after a time step, in units of 1/128.
     pub keep: u8,
-    /// Whether a neuron that fires returns to 0; else its threshold is subtracted.
+    /// Whether a neuron that fires returns to 0; otherwise its threshold is subtracted.
     pub resets_to_zero: bool,
 }
 
 /// A network that [`Programmed::load`](super::Programmed::load) can write.
 pub trait DescribeReckOn {
-    /// The number of neurons, 1 to 256.
+    /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
-    /// The number of inputs, 1 to 256.
+    /// Returns the number of inputs, 1 to 256.
     fn inputs(&self) -> u16;
-    /// The number of outputs, 1 to 16.
+    /// Returns the number of outputs, 1 to 16.
     fn outputs(&self) -> u16;
-    /// The parameters that neurons `2 * pair` and `2 * pair + 1` share.
+    /// Returns the parameters of neurons `2 * pair` and `2 * pair + 1`.
     fn pair(&self, pair: u16) -> ReckOnPair;
-    /// The weight from an input to a neuron.
+    /// Returns the weight from an input to a neuron.
     fn input_weight(&self, input: u16, neuron: u16) -> i8;
-    /// The weight from a neuron to a neuron.
+    /// Returns the weight from a neuron to a neuron.
     fn recurrent_weight(&self, from: u16, to: u16) -> i8;
-    /// The weight from a neuron to an output.
+    /// Returns the weight from a neuron to an output.
     fn output_weight(&self, neuron: u16, output: u16) -> i8;
-    /// The parameters that all neurons share.
+    /// Returns the parameters that all neurons share.
     fn shared(&self) -> ReckOnShared;
 }
 
-/// A network as constant data: `IN` inputs, `N` neurons, `OUT` outputs.
+/// A network with `IN` inputs, `N` neurons and `OUT` outputs, as constant data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReckOnNetwork<const IN: usize, const N: usize, const OUT: usize> {
-    /// The parameters that two neurons each share: `N / 2` pairs, rounded up.
+    /// Parameters of each pair of neurons: `N / 2` pairs, rounded up.
     pub pairs: &'static [ReckOnPair],
-    /// Weights from each input to the neurons.
+    /// Weights from each input to all neurons.
     pub inputs: [[i8; N]; IN],
-    /// Weights from each neuron to the neurons; empty if there are none.
+    /// Weights from each neuron to all neurons; empty if the network is not recurrent.
     pub recurrent: &'static [[i8; N]],
-    /// Weights from each neuron to the outputs.
+    /// Weights from each neuron to all outputs.
     pub outputs: [[i8; OUT]; N],
     /// The parameters that all neurons share.
     pub shared: ReckOnShared,

@@ -13,7 +13,7 @@
 /// | `TIMING_ERROR_RDY` | from the chip | whether a tick may come |
 /// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of step |
 pub trait ReckOnPort {
-    /// The error of the port; `Infallible` for the microcontroller's own pins.
+    /// Error type of the port; `Infallible` for the microcontroller's own pins.
     type Error;
 
     /// Puts a byte on `AERIN_ADDR`, and drives `AERIN_TAR_EN`. Both must have settled at the chip when this returns.

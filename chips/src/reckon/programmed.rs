@@ -11,25 +11,25 @@ use super::{
 use crate::error::{at_most, in_range};
 use crate::{ChipError, Progress};
 
-/// A chip between reset and its run: its memories can be accessed.
+/// A chip that has been reset and does not run yet: its memories can be accessed.
 #[derive(Debug)]
 pub struct Programmed<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
 }
 
-/// Pairs of neurons.
+/// Number of pairs of neurons in the chip.
 const PAIRS: u16 = 128;
 
 impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
-    /// Writes a network, sets all other pairs of neurons at rest, and reads all of it back. Calls `progress` after each
+    /// Writes a network, sets all other pairs of neurons to rest, and reads all of it back. Calls `progress` after each
     /// pair and each row.
     ///
-    /// **Time:** two transfers of 8 bytes for each word: 512 for the pairs, and one for each four weights; 256 inputs,
-    /// neurons and 16 outputs take 68 608 transfers, 4.4 s at 1 MHz.
+    /// **Time:** two transfers of 8 bytes for each word. There are 512 words for the pairs, and one for each four
+    /// weights. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at 1 MHz.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit: then nothing is written. Also if the bus failed, or the chip
-    /// does not read back what was written: then reset it, and load again.
+    /// Returns an error if the network does not fit: then nothing was written. Also returns an error if the bus failed,
+    /// or if the chip reads back something else: then reset it, and load again.
     pub fn load(
         &mut self,
         network: &impl DescribeReckOn,
@@ -70,11 +70,11 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         Ok(())
     }
 
-    /// Compares the chip's memories with a network, as to weights that may have learnt.
+    /// Compares the chip's memories with a network, including weights that learning may have changed.
     ///
     /// # Errors
     /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
-    /// first difference. Then reset the chip.
+    /// first difference: then reset the chip.
     pub fn verify(&mut self, network: &impl DescribeReckOn) -> Outcome<(), D, P> {
         check::<D::Error, P::Error>(network)?;
         let chip = &mut *self.chip;
@@ -97,7 +97,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         chip.check_step()
     }
 
-    /// The weight from an input to a neuron, as learning may have moved it.
+    /// Reads the weight from an input to a neuron, which learning may have changed.
     ///
     /// # Errors
     /// Returns an error if the bus failed or is out of step: then reset the chip.
@@ -105,7 +105,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.weight(Address::input(input.into()), neuron)
     }
 
-    /// The weight from a neuron to a neuron.
+    /// Reads the weight from a neuron to a neuron.
     ///
     /// # Errors
     /// See [`input_weight`](Self::input_weight).
@@ -113,10 +113,10 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.weight(Address::recurrent(from.into()), to)
     }
 
-    /// The weight from a neuron to an output.
+    /// Reads the weight from a neuron to an output.
     ///
     /// # Errors
-    /// Returns an error if there is no such output; see [`input_weight`](Self::input_weight).
+    /// Returns an error if there is no such output; see also [`input_weight`](Self::input_weight).
     pub fn output_weight(&mut self, neuron: u8, output: u8) -> Outcome<i8, D, P> {
         at_most("output", output.into(), 15)?;
         self.weight(Address::output(neuron.into()), output)
@@ -132,11 +132,12 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         Ok((word >> (8 * u32::from(at & 3))) as i8)
     }
 
-    /// Writes a register, for what [`ReckOnSettings`] and the network do not hold, and checks that chip and bus are still
-    /// in step. Register 0 opens the memories and is the driver's.
+    /// Writes a register that [`ReckOnSettings`] and the network do not contain, and checks that chip and bus are still
+    /// in step. Register 0, which opens the memories, is reserved for the driver.
     ///
     /// # Errors
-    /// Returns an error if there is no such register; or the bus failed or is out of step: then reset the chip.
+    /// Returns an error if there is no such register. Also returns an error if the bus failed or is out of step: then
+    /// reset the chip.
     pub fn set_register(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
         in_range("register", register.into(), 1, 104)?;
         self.configure(register, value)
@@ -149,12 +150,12 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.chip.check_step()
     }
 
-    /// Writes the registers and lets the chip run. Closed memories are checked: whatever word is asked for then reads as the
-    /// one before.
+    /// Writes the registers and lets the chip run. Checks that the memories are closed, in which case every read
+    /// returns the word that was read before.
     ///
     /// # Errors
-    /// Returns an error if a value is out of its range: the chip is as it was. Also if the bus failed or is out of
-    /// step, or the memories are still open: then reset the chip.
+    /// Returns an error if a value is out of its range: then nothing was changed. Also returns an error if the bus
+    /// failed or is out of step, or if the memories are still open: then reset the chip.
     pub fn run(mut self, settings: &ReckOnSettings) -> Outcome<Started<'a, D, P>, D, P> {
         check_settings::<D::Error, P::Error>(settings)?;
         let answers = settings.answers;
@@ -241,7 +242,7 @@ fn pair(network: &impl DescribeReckOn, pair: u16) -> ReckOnPair {
     if pair < network.neurons().div_ceil(2) { network.pair(pair) } else { ReckOnPair::REST }
 }
 
-/// The number of words that [`each_word`] visits.
+/// Returns the number of words that [`each_word`] visits.
 fn words(network: &impl DescribeReckOn) -> u32 {
     let rows = u32::from(network.inputs()) + 256;
     let row = u32::from(network.neurons().div_ceil(4));
@@ -250,7 +251,7 @@ fn words(network: &impl DescribeReckOn) -> u32 {
     rows.wrapping_mul(row).wrapping_add(outputs).wrapping_add(4 * u32::from(PAIRS))
 }
 
-/// Visits every word of the chip's memories that the network needs, and its value.
+/// Visits every word of the chip's memories that the network needs, with its value.
 fn each_word<B, X>(
     network: &impl DescribeReckOn,
     mut visit: impl FnMut(Address, u32) -> Result<(), ChipError<B, X>>,

@@ -1,4 +1,4 @@
-//! A chip that runs: samples of time steps.
+//! A chip that runs, and its samples, which consist of time steps.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -6,7 +6,7 @@ use super::{OPEN, Outcome, Programmed, ReckOn, ReckOnAnswers, ReckOnPort, ReckOn
 use crate::error::at_most;
 use crate::{ChipError, Phase};
 
-/// A chip that runs, between samples.
+/// A chip that runs and is between samples.
 #[derive(Debug)]
 pub struct Started<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
@@ -18,11 +18,11 @@ pub struct ReckOnSample<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
 }
 
-/// A time step.
+/// The options of a time step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ReckOnStep<'a> {
-    /// Whether the highest output of this step counts for the label.
+    /// Whether this step counts for the label, by the output that is highest in it.
     pub counts: bool,
     /// The target of this step; `None` if it does not learn.
     pub target: Option<ReckOnTarget<'a>>,
@@ -32,28 +32,28 @@ pub struct ReckOnStep<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnTarget<'a> {
-    /// The output that should be the highest, told once a sample.
+    /// The output that should be the highest; given once in a sample.
     Label(u8),
     /// A potential for each output.
     Potentials(&'a [i16]),
 }
 
-/// An answer of the chip.
+/// An answer of the chip; its kind is set by [`ReckOnAnswers`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnAnswer {
-    /// The output that was the highest in the most steps that count; the first of several.
+    /// The output that was the highest in the most steps that count; of several, the first.
     Label(u8),
-    /// The outputs' potentials, and 0 beyond the network.
+    /// The outputs' potentials; 0 for outputs that the network does not have.
     Potentials([i16; 16]),
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
-    /// Begins a sample with a first tick: all potentials are 0. If the chip does not take the tick, the first
-    /// [`step`](ReckOnSample::step) or [`end`](ReckOnSample::end) is an error.
+    /// Begins a sample with a first tick; all potentials are then 0. If the chip does not take this tick, the first
+    /// [`step`](ReckOnSample::step) or [`end`](ReckOnSample::end) returns the error.
     ///
     /// # Errors
-    /// Returns an error if the chip is not ready, or the port failed: then reset the chip.
+    /// Returns an error if the chip is not ready, or if the port failed: then reset the chip.
     pub fn begin(self) -> Outcome<ReckOnSample<'a, D, P>, D, P> {
         let chip = self.chip;
         let result = begin(chip);
@@ -62,7 +62,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
         Ok(ReckOnSample { chip })
     }
 
-    /// Opens the memories again, as to read what was learnt.
+    /// Opens the memories again, for example to read weights that were learnt.
     ///
     /// # Errors
     /// Returns an error if the bus failed or is out of step: then reset the chip.
@@ -77,22 +77,24 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
-    /// Sends an input's spike, which acts after the next tick. Sent twice within a step, it counts once.
+    /// Sends a spike of an input, which acts after the next tick. Sent twice within a step, it counts once.
     ///
     /// # Errors
-    /// Returns an error if there is no such input. Also if the chip does not answer, or the port failed: then reset
-    /// the chip.
+    /// Returns an error if there is no such input. Also returns an error if the chip does not answer, or if the port
+    /// failed: then reset the chip.
     pub fn send(&mut self, input: u8) -> Outcome<(), D, P> {
         at_most("input", input.into(), self.chip.sizes.input.into())?;
         self.chip.send(input, false)
     }
 
-    /// Ends a time step and begins the next: waits until the chip is ready, ticks, takes its answer, which proves the
-    /// step, and returns it if [one is asked for in each step](ReckOnAnswers::PotentialsEachStep).
+    /// Ends a time step and begins the next: waits until the chip is ready, ticks, and takes the chip's answer, which
+    /// proves that the step was done. Returns the answer if [one is asked for in each
+    /// step](ReckOnAnswers::PotentialsEachStep).
     ///
     /// # Errors
-    /// Returns an error if the target is not one of the network or of the settings: nothing was sent. Also if the
-    /// chip does not finish its step, does not take the tick, or the port failed: then reset the chip.
+    /// Returns an error if the target does not fit the network or the settings: then nothing was sent. Also returns an
+    /// error if the chip does not finish its step, if it does not take the tick, or if the port failed: then reset the
+    /// chip.
     pub fn step(&mut self, step: ReckOnStep<'_>) -> Outcome<Option<ReckOnAnswer>, D, P> {
         self.check(&step)?;
         let result = self.try_step(step);
@@ -100,10 +102,10 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         Ok(self.chip.settings.answers.is_each_step().then_some(answer))
     }
 
-    /// Ends the sample with a last tick, and returns the chip's answer. Then all potentials are 0.
+    /// Ends the sample with a last tick, and returns the chip's answer. All potentials are then 0.
     ///
     /// # Errors
-    /// Returns an error if the chip does not finish, or the port failed: then reset the chip.
+    /// Returns an error if the chip does not finish, or if the port failed: then reset the chip.
     pub fn end(mut self) -> Outcome<(ReckOnAnswer, Started<'a, D, P>), D, P> {
         let result = self.try_end();
         let answer = self.chip.heed(result)?;
@@ -172,10 +174,10 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
     }
 }
 
-/// Clocks from a tick until all neurons have leaked, with some to spare.
+/// Number of clocks from a tick until all neurons have leaked, with a margin.
 const STEP_CLOCKS: u32 = 280;
 
-/// Clocks from a tick until the ready line has fallen, with some to spare.
+/// Number of clocks from a tick until the ready line has fallen, with a margin.
 const TICK_CLOCKS: u32 = 16;
 
 fn begin<D: SpiDevice, P: ReckOnPort>(chip: &mut ReckOn<D, P>) -> Outcome<(), D, P> {
@@ -197,7 +199,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
     }
 
-    /// Ticks where an answer follows: the ready line then stays low until the answer is taken.
+    /// Ticks, for a tick after which the chip sends an answer; the ready line then stays low until the answer is taken.
     fn tick(&mut self) -> Outcome<(), D, P> {
         self.port.set_tick(true).map_err(ChipError::Port)?;
         let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;
@@ -205,7 +207,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_taken { Ok(()) } else { Err(ChipError::Handshake(Phase::Acknowledge)) }
     }
 
-    /// Waits until the step is done, and takes the answer's bytes meanwhile.
+    /// Waits until the step is done, and takes the bytes of the answer meanwhile.
     fn finish(&mut self) -> Outcome<ReckOnAnswer, D, P> {
         let mut bytes = [0; 32];
         let mut taken = 0_usize;

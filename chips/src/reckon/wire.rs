@@ -1,46 +1,46 @@
-//! SPI without chip select: a header of 32 bits, then words of 32, which the chip counts from its reset on.
+//! SPI without chip select: a header of 32 bits and then 32-bit words, which the chip counts from its reset.
 
 use embedded_hal::spi::SpiDevice;
 
 const READ: u32 = 1 << 31;
 
-/// A word of one of the chip's memories.
+/// The address of a word in one of the chip's memories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Address(pub(super) u32);
 
 impl Address {
-    /// One of the four words of a pair of neurons.
+    /// Addresses one of the four words of a pair of neurons.
     pub(super) const fn pair(pair: u16, quarter: u32) -> Self {
         Self(1 << 28 | (pair as u32) << 2 | quarter)
     }
 
-    /// Weights from an input to the first four neurons; the next address holds the next four.
+    /// Addresses the weights from an input to the first four neurons; the next address holds the next four.
     pub(super) const fn input(input: u16) -> Self {
         Self(3 << 28 | (input as u32) << 6)
     }
 
-    /// Weights from a neuron to the first four neurons, likewise.
+    /// Addresses the weights from a neuron to the first four neurons; the next address holds the next four.
     pub(super) const fn recurrent(neuron: u16) -> Self {
         Self(4 << 28 | (neuron as u32) << 6)
     }
 
-    /// Weights from a neuron to the first four outputs, likewise.
+    /// Addresses the weights from a neuron to the first four outputs; the next address holds the next four.
     pub(super) const fn output(neuron: u16) -> Self {
         Self(5 << 28 | (neuron as u32) << 2)
     }
 
-    /// A word that no network uses.
+    /// Addresses a word that no network uses.
     pub(super) const fn anchor() -> Self {
         Self::output(0x1AA)
     }
 
-    /// The address this many words further on.
+    /// Returns the address `words` further on.
     pub(super) const fn next(self, words: u16) -> Self {
         Self(self.0.wrapping_add(words as u32))
     }
 }
 
-/// The bus, once it is in step.
+/// The bus, while it is in step.
 #[derive(Debug)]
 pub(super) struct Wire<D> {
     pub(super) device: D,
@@ -64,7 +64,7 @@ impl<D: SpiDevice> Wire<D> {
     }
 }
 
-/// A header that asks for one word, and the word.
+/// Makes a frame: a header that announces one word, and the word.
 fn frame(header: u32, word: u32) -> [u8; 8] {
     (u64::from(header | 1 << 16) << 32 | u64::from(word)).to_be_bytes()
 }

@@ -54,7 +54,7 @@ fn the_bytes_on_the_bus_are_golden() {
     chip.release().done();
 }
 
-/// The transactions of `program`, by the table of block sizes.
+/// Returns the transactions of `program`, with blocks by the table of block sizes.
 fn programming(address: u32, words: &[u32], back: &[u32]) -> Vec<[Transaction<u8>; 4]> {
     let mut blocks = Vec::new();
     let mut at = 0;
@@ -74,23 +74,23 @@ fn programming(address: u32, words: &[u32], back: &[u32]) -> Vec<[Transaction<u8
     writes.chain(reads).collect()
 }
 
-/// What happens to a byte on its way to the chip.
+/// A fault of a byte on its way to the chip.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
-    /// Its clocks are lost: what follows comes a byte early.
+    /// The byte's clocks are lost, so that the following bytes come early.
     Lost,
-    /// It comes twice.
+    /// The byte comes twice.
     Doubled,
-    /// One of its bits is another.
+    /// A bit of the byte is flipped.
     Flipped(u8),
 }
 
-/// The chip's memory behind its bus, as the vendor's sources have it. Chip select begins a block; of one that is cut
-/// the whole words are written.
+/// The chip's memory behind its bus, as in the vendor's sources. Chip select begins a block; of an incomplete block the
+/// whole words are written.
 #[derive(Debug, Default)]
 struct Memory {
     words: BTreeMap<u32, u32>,
-    /// Bytes that the chip was sent so far.
+    /// Number of bytes that the chip was sent so far.
     sent: usize,
     fault: Option<(usize, Fault)>,
 }
@@ -100,7 +100,7 @@ impl ErrorType for Memory {
 }
 
 impl Memory {
-    /// The byte as it comes, or twice, or not at all.
+    /// Appends the byte to the block as the chip receives it: once, twice, flipped, or not at all.
     fn on_its_way(&mut self, byte: u8, block: &mut Vec<u8>) {
         let fault = self.fault.filter(|(at, _)| *at == self.sent).map(|(_, fault)| fault);
         self.sent += 1;
@@ -159,7 +159,8 @@ fn memory(words: impl Iterator<Item = u32>) -> Memory {
     Memory { words, ..Memory::default() }
 }
 
-/// Each byte of a program and of its reading back is lost, doubled and flipped in turn. Memory held something else.
+/// Each byte of a write and of its reading back is lost, doubled and flipped in turn. The memory held other words
+/// before.
 #[test]
 fn one_fault_on_the_bus_is_an_error_or_did_no_harm_and_the_next_call_mends_it() {
     let words: Vec<u32> = (0..61).map(|n| 0x0101_0101 * n + 0x8000_0001).collect();

@@ -1,13 +1,13 @@
-//! A bus that fails when told to; the mocks of embedded-hal-mock never do.
+//! A bus that fails on request, which the mocks of embedded-hal-mock cannot do.
 
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 
-/// Passes transactions on, but for one that fails before a byte is sent.
+/// Passes transactions on, except for one that fails before any byte is sent.
 #[derive(Debug)]
 pub(crate) struct Failing<D> {
-    /// The bus.
+    /// The bus to which transactions are passed.
     pub(crate) device: D,
-    /// How many transactions go well before one fails.
+    /// Number of transactions that succeed before one fails.
     pub(crate) left: usize,
 }
 

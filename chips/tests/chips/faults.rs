@@ -1,5 +1,5 @@
-//! What the chips' code was seen to do wrong under a driver in the wrong order: none of it happens to
-//! this one.
+//! Faults that the chips' code showed under drivers that call it in the wrong order; this driver must cause none of
+//! them.
 
 use std::num::NonZeroU32;
 
@@ -41,7 +41,7 @@ fn events(addresses: impl IntoIterator<Item = u16>) -> impl Iterator<Item = Even
     addresses.into_iter().map(event)
 }
 
-/// Neurons at rest, far from their thresholds.
+/// Fills the memory with neurons at rest, far from their thresholds.
 fn at_rest(board: &TinyBoard) {
     board.pins().chip.neurons.fill(neuron(2047, 0, 0));
 }
@@ -108,7 +108,7 @@ proptest! {
     }
 }
 
-/// As with too few looks to a clock.
+/// The gate is shut too early, as it would be if too few reads of the pins were made for each clock.
 #[test]
 fn parameters_stay_whole_even_where_the_gate_shuts_on_a_chip_that_works() {
     for clocks in 0..200 {
@@ -213,7 +213,7 @@ fn programming_makes_no_neuron_fire() {
     }
 }
 
-/// The registers that the chip should have, and has.
+/// Returns the values of registers 1 to 3 in the chip.
 fn registers(board: &TinyBoard) -> [u32; 3] {
     let pins = board.pins();
     [pins.chip.registers.0[1] & 1, pins.chip.registers.0[2] & 1, pins.chip.registers.0[3] & 0xFF]
@@ -383,8 +383,8 @@ fn a_start_that_no_neuron_can_show_is_refused_and_changes_nothing() {
     assert!(gated.run(&OPEN).is_ok());
 }
 
-/// Accesses to memory that holds these words, with a lost and a doubled clock, in either order: the pairs whose first
-/// fault is at every `stride`-th clock.
+/// Accesses memory that holds these words while a clock is lost and another doubled, in either order; the first fault
+/// is at every `stride`-th clock. Returns the number of pairs.
 fn pairs_within_an_access(stride: usize) -> usize {
     use ClockFault::{Doubled, Lost};
     let access = |words: (u32, u32), is_neuron: bool, faults: &[(u64, ClockFault)]| {
@@ -434,7 +434,7 @@ fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
     assert!(pairs_within_an_access(77) > 10_000);
 }
 
-/// Two faults that cancel out in the last frames of a step check, and leave the byte wrong that it writes.
+/// Two faults that cancel out in the last frames of a step check, and leave a wrong value in the byte that it writes.
 #[test]
 fn a_pair_within_a_step_check_is_an_error() {
     use ClockFault::{Doubled, Lost};

@@ -1,4 +1,4 @@
-//! tinyODIN's and ODIN's frames, order, handshakes and time steps, on the models of the chips.
+//! The frames of tinyODIN and ODIN, their order, handshakes and time steps, on the models of the chips.
 
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;
@@ -23,7 +23,7 @@ const OPEN: TinyOdinRegisters = TinyOdinRegisters {
     last_neuron: 255,
 };
 
-/// A board whose first `firing` neurons fire at every event, and a chip on it that runs.
+/// Makes a board whose first `firing` neurons fire at every event, and a chip that runs on it.
 fn running(clocks: u32, polls: u32, firing: usize) -> (TinyBoard, Tiny) {
     let board = TinyBoard::new(4, clocks);
     let mut chip = TinyOdin::new(board.spi(), board.port(), polls);
@@ -44,7 +44,7 @@ fn spike(event: Event) -> TinyOdinInput {
     TinyOdinInput::Spike { pre: event.address as u8 }
 }
 
-/// The frames that go over the bus.
+/// Records the frames on the bus.
 struct Recorder<D> {
     device: D,
     frames: Rc<RefCell<Vec<[u8; 5]>>>,
@@ -70,7 +70,7 @@ impl<D: SpiDevice> SpiDevice for Recorder<D> {
 
 #[test]
 fn looks_a_clock_multiply_the_polls_of_every_wait() {
-    /// Counts the calls of the port until a chip whose gate was shut is given up.
+    /// Returns the number of calls of the port until the driver gives up on a chip whose gate was shut.
     fn polls(looks: u32, polls: u32) -> u64 {
         let board = Board::<silicon::TinyOdin>::new(8, 1);
         board.pins().chip.neurons.fill(0x1000);
@@ -95,7 +95,7 @@ fn looks_a_clock_multiply_the_polls_of_every_wait() {
     assert!((200..210).contains(&one) && (1000..1010).contains(&five), "{one} {five}");
 }
 
-/// The check of the step changes the byte of synapses (255, 248) and (255, 249), and changes it back.
+/// The step check changes the byte of synapses (255, 248) and (255, 249), and restores it.
 #[test]
 fn the_byte_that_the_step_check_writes_keeps_its_synapses() {
     let board = TinyBoard::new(4, 1);
@@ -217,7 +217,7 @@ fn an_error_at_every_transfer_asks_for_a_reset() {
     }
 }
 
-/// A port whose input ACK can be held, and whose output bus may never come to rest; counts how often that is read.
+/// A port whose input ACK can be held, and whose output bus may never be idle; counts the reads of the latter.
 struct Held<P> {
     port: P,
     acknowledge: Rc<Cell<Option<bool>>>,
@@ -260,8 +260,8 @@ impl<P: AerPort> AerPort for Held<P> {
     }
 }
 
-/// No pin shows that the chip is at rest: the driver waits as long as it may work without an output, and longer where
-/// outputs come.
+/// No pin shows that the chip is at rest: the driver waits for the longest time that the chip may work without an
+/// output, and longer if outputs come.
 #[test]
 fn rest_is_waited_for_as_long_as_the_chip_may_work() {
     let waits = |is_open_loop: bool, is_noisy: bool| {
@@ -285,7 +285,7 @@ fn rest_is_waited_for_as_long_as_the_chip_may_work() {
     assert_eq!(waits(true, true), 4 * open + (1 << 15));
 }
 
-/// Without a pin for it, a port does not know whether the queue is full.
+/// The port cannot say whether the queue is full if it has no pin for it.
 #[test]
 fn a_port_may_have_no_pin_for_the_queue() {
     let port = TinyBoard::new(4, 1).port();
@@ -426,7 +426,7 @@ fn leak_events_are_the_time_step() {
     assert_eq!((taken, running.counters().skipped_steps), (8 + 255, 745));
 }
 
-/// The clock of ticks wraps after 71.6 minutes.
+/// The ticks' clock wraps after 71.6 minutes.
 #[test]
 fn time_steps_that_passed_in_an_hour_are_not_taken_for_the_past() {
     const MINUTE: u32 = 60_000_000;
@@ -513,8 +513,8 @@ fn the_same_handshake_carries_odins_words() {
     assert_eq!(board.pins().chip.taken, [0x0_FFFF, 0x1_0705, 0x7F], "the probe comes first");
 }
 
-/// Clocks of the chip, with one to a look at a pin, that the driver before this one took: 32.9, 136.4
-/// and 518.5 a spike, 15.5 a virtual event, 11.6 an output.
+/// The bounds are the clocks that an earlier driver took, with one clock for each read of the pins: 32.9, 136.4 and
+/// 518.5 for a spike, 15.5 for a virtual event, 11.6 for an output.
 #[test]
 fn throughput_is_that_of_the_chip() {
     for (neurons, most) in [(12, 32.9), (64, 136.4), (256, 518.5)] {

@@ -1,6 +1,5 @@
-//! The models of tinyODIN and ODIN show what the chips' register-transfer code does, driven by hand: how
-//! long words take, and what goes wrong when the order is wrong. The figures are those of the chips' code
-//! in simulation.
+//! Drives the models of tinyODIN and ODIN by hand, and compares how long words take, and what goes wrong in a wrong
+//! order, with figures from a simulation of the chips' register-transfer code.
 
 #![allow(
     clippy::cast_possible_wrap,
@@ -18,7 +17,7 @@ const READ: u32 = 1 << 19;
 const NEURON: u32 = 1 << 16;
 const SYNAPSE: u32 = 2 << 16;
 
-/// 20 bits of address, 20 of data; the last byte that comes back.
+/// Sends a frame of 20 bits of address and 20 of data; returns the last byte that comes back.
 fn frame<K: Kind>(board: &Board<K>, address: u32, data: u32) -> u8 {
     let [_, _, _, bytes @ ..] = (u64::from(address) << 20 | u64::from(data)).to_be_bytes();
     let mut frame: [u8; 5] = bytes;
@@ -26,7 +25,7 @@ fn frame<K: Kind>(board: &Board<K>, address: u32, data: u32) -> u8 {
     frame[4]
 }
 
-/// A chip that was reset and gated, with these registers.
+/// Makes a chip that was reset and gated, with these registers.
 fn gated<K: Kind>(ratio: u32, registers: &[(u32, u32)]) -> Board<K> {
     let board = Board::new(ratio, 1);
     board.pins().chip.set_reset(true);
@@ -40,7 +39,7 @@ fn gated<K: Kind>(ratio: u32, registers: &[(u32, u32)]) -> Board<K> {
     board
 }
 
-/// A word through the handshake, without a look at the outputs. Returns its clocks up to ACK.
+/// Sends a word with its handshake, and ignores outputs; returns the number of clocks until ACK.
 fn send<K: Kind>(board: &Board<K>, word: u32) -> Option<u64> {
     let mut port = board.port();
     port.set_input(word).unwrap();
@@ -57,7 +56,7 @@ fn tiny_neuron(threshold: u32, leak: u32, potential: i32) -> u128 {
     u128::from(leak << 24 | threshold << 12 | potential as u32 & 0xFFF)
 }
 
-/// Of a neuron of tinyODIN.
+/// Returns the potential of a neuron of tinyODIN.
 fn potential(board: &Board<TinyOdin>, neuron: usize) -> i32 {
     ((board.pins().chip.neurons[neuron] as u32) << 20) as i32 >> 20
 }
@@ -282,7 +281,7 @@ fn odins_synapse_needs_the_mapping_bit_or_register_24() {
     }
 }
 
-/// tinyODIN's neuron, in plain arithmetic.
+/// Computes tinyODIN's neuron in plain arithmetic.
 fn expected(neuron: (i32, i32, i32), event: Option<i32>) -> (i32, bool) {
     let (threshold, leak, potential) = neuron;
     let next = match event {

@@ -1,4 +1,4 @@
-//! Networks: described, loaded, verified, run on a flight and read out, on the models of the chips.
+//! Networks on the models of the chips: described, loaded, verified, run on a flight and read out.
 
 use std::num::NonZeroU32;
 
@@ -33,7 +33,7 @@ fn tiny(
     TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS)
 }
 
-/// Every input neuron passes its spike on, so that what comes back is what the encoder said.
+/// Every input neuron passes its spike on, so that the outputs are the encoder's events.
 #[test]
 fn a_network_of_64_neurons_flies() {
     let board = TinyBoard::new(16, 1);
@@ -71,7 +71,7 @@ fn a_network_is_described_neuron_by_neuron() {
     assert_eq!(Inputs::<3, 2>::one_to_one(5), tall, "the last drives none");
 }
 
-/// A code of one neuron with two polarities has an input for each.
+/// A code with one neuron and two polarities has an input for each polarity.
 #[test]
 fn events_find_their_inputs() {
     let step = StepForward::<f32>::new(1.0);
@@ -244,7 +244,7 @@ fn a_network_may_have_all_neurons_of_the_chip() {
     assert_eq!(gated.load(&network, |_| ()), Ok(()));
 }
 
-/// The address in the chip's memory, and the bits that are the network's, at the first difference.
+/// The error has the address in the chip's memory, and the network's bits, at the first difference.
 #[test]
 fn what_differs_from_the_network_is_told() {
     let board = TinyBoard::new(4, 1);
@@ -261,7 +261,7 @@ fn what_differs_from_the_network_is_told() {
     }
 }
 
-/// Two layers: an input drives a neuron, which drives another, which holds the first one down.
+/// The network has two layers: an input drives a neuron, which drives a second, which inhibits the first.
 #[test]
 fn a_recurrent_network_runs_in_closed_loop_on_either_chip() {
     let board = TinyBoard::new(8, 1);
@@ -331,7 +331,7 @@ fn network(
     }
 }
 
-/// Bytes that were written are the same network, or are not written.
+/// A network either comes back unchanged from its bytes, or cannot be written.
 #[test]
 fn bytes_do_not_leave_out_what_they_cannot_say() {
     let network = network(&[3], &[50], true, false);
@@ -417,7 +417,7 @@ proptest! {
     }
 }
 
-/// ODIN's inputs, one after the other, on its neurons.
+/// ODIN's neurons as a reference, to which inputs are applied one after the other.
 #[derive(Clone, Debug)]
 struct Twin {
     neurons: Vec<u128>,

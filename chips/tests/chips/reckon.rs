@@ -1,4 +1,4 @@
-//! `ReckOn`'s driver on the chip's model, which equals the chip's own code (`cargo verify reckon`).
+//! The driver of `ReckOn` on the chip's model, which is held against the chip's own code by `cargo verify reckon`.
 
 #![allow(clippy::needless_range_loop, reason = "a neuron's number is its column in several tables")]
 
@@ -35,7 +35,7 @@ fn on(board: &Board) -> Chip {
     ReckOn::new(board.spi(), board.port(), Chip::MAX_CLOCKS)
 }
 
-/// The network in plain arithmetic: what fires at a tick, the outputs at it, then what acts after.
+/// The network in plain arithmetic: at a tick neurons fire and outputs are read, then spikes and inputs act.
 #[derive(Clone)]
 struct Plain {
     potentials: [i32; 4],
@@ -158,7 +158,7 @@ fn a_network_as_bytes_is_the_same_and_damaged_bytes_are_refused() {
     assert_eq!(buffer[5], 2, "it has no flag but that of neurons that return to 0");
 }
 
-/// More neurons than 16 bits count are not a few.
+/// The number of neurons must not be truncated to 16 bits.
 #[test]
 fn a_network_of_far_too_many_neurons_is_refused() {
     static LARGE: ReckOnNetwork<1, 65_540, 1> = ReckOnNetwork {
@@ -303,7 +303,7 @@ fn settings_that_the_chip_has_no_bits_for_are_refused() {
     }
 }
 
-/// As learning may have moved them.
+/// Learning may have changed the weights.
 #[test]
 fn each_weight_can_be_read() {
     let board = Board::new(10, 1);
@@ -341,7 +341,8 @@ fn loading_says_how_far_it_is() {
     assert_eq!(last.done, last.total);
 }
 
-/// Two words a row of outputs; four registers of pairs whose potential grows, those at rest among them.
+/// The outputs take two words in each row, and four registers hold pairs whose potential grows, including those at
+/// rest.
 #[test]
 fn many_pairs_and_outputs_are_loaded() {
     static MOSTLY_GROW: [ReckOnPair; 33] = {
@@ -367,7 +368,7 @@ fn many_pairs_and_outputs_are_loaded() {
     assert_eq!(grows, [u32::MAX, !1, u32::MAX, u32::MAX], "one of 128 does not");
 }
 
-/// Slopes have five bits and a sign.
+/// Slopes are registers of five bits with a sign.
 #[test]
 fn learning_is_told_in_registers() {
     let board = Board::new(10, 1);
@@ -379,7 +380,7 @@ fn learning_is_told_in_registers() {
     assert_eq!(slopes, [16, 31, 0, 5, 15]);
 }
 
-/// Lines that stay as they are: `AERIN_ACK` and `OUT_REQ`; and an answer of so many bytes.
+/// Faults of the port: `AERIN_ACK` and `OUT_REQ` that are stuck at a level, and an answer with this number of bytes.
 #[derive(Default)]
 struct Lines {
     acknowledge: Cell<Option<bool>>,
@@ -387,7 +388,7 @@ struct Lines {
     bytes: Cell<Option<u32>>,
 }
 
-/// A port of a chip whose lines are not as they should be.
+/// A port whose lines can be made to misbehave.
 struct Odd<'a> {
     port: Port,
     lines: &'a Lines,
@@ -443,7 +444,7 @@ impl ReckOnPort for Odd<'_> {
     }
 }
 
-/// A sample on a chip without a network, which has 16 outputs, with lines that are set once it has begun.
+/// Runs a sample on a chip without a network, which has 16 outputs. The faults are set once the sample has begun.
 fn odd<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),
@@ -471,7 +472,7 @@ fn a_line_that_stays_as_it_is_ends_the_handshake() {
     assert_eq!(stuck, Err(Error::Handshake(Phase::Release)));
 }
 
-/// Two bytes for each of 16 outputs, or one for a label.
+/// A right answer has two bytes for each of 16 outputs, or one byte for a label.
 #[test]
 fn an_answer_of_another_length_is_none() {
     let answer = |settings, bytes| {
@@ -487,7 +488,7 @@ fn an_answer_of_another_length_is_none() {
     assert_eq!([2, 32].map(label), [2, 32].map(|_| Err(Error::Unfinished)));
 }
 
-/// A chip that does not hear that its memories are to be closed.
+/// A bus on which the chip does not hear that its memories are to be closed.
 #[derive(Debug)]
 struct Open(Spi);
 
@@ -518,7 +519,7 @@ fn a_chip_whose_memories_stay_open_is_not_started() {
     assert_eq!(error, Error::NotStarted);
 }
 
-/// A pair of neurons that is not the network's is found, as a weight is.
+/// A difference in a pair of neurons outside the network is found, like that in a weight.
 #[test]
 fn another_pair_is_not_the_network_that_was_loaded() {
     static OTHERS: [[ReckOnPair; 2]; 3] = [
@@ -631,7 +632,7 @@ fn spi_needs_an_eighth_of_the_chips_clock_to_read() {
     assert_eq!(ratios, [2, 3, 4, 5, 6, 7]);
 }
 
-/// What the caller was told the chip holds.
+/// Asserts that the chip holds what the caller was told.
 fn expected(board: &Board, network: &impl DescribeReckOn, at: &str) {
     let pins = board.pins();
     for input in 0..network.inputs() {
@@ -657,8 +658,8 @@ fn expected(board: &Board, network: &impl DescribeReckOn, at: &str) {
     assert_eq!(pins.chip.register_value(69), 110, "{at}");
 }
 
-/// Calls in any order, with up to three SPI clocks lost or doubled and up to two calls of the port failing: what is
-/// `Ok` is as the caller was told, and every answer is that of plain arithmetic.
+/// Makes calls in any order, with up to three SPI clocks lost or doubled and up to two calls of the port failing. After
+/// each `Ok` the chip is as the caller was told, and every answer is that of plain arithmetic.
 fn search(seed: u64, count: &mut [u32; 2]) {
     let mut random = Pcg32::seed_from_u64(seed);
     let mut below = |end: u32| random.next_u32() % end;
@@ -769,7 +770,7 @@ fn two_thousand_orders_with_faults_are_right_or_refused() {
     println!("calls refused, and Ok: {count:?}");
 }
 
-/// Clocks from a tick to the ready line, of a network of as many inputs as neurons.
+/// Returns the number of clocks from a tick to the ready line, for a network with as many inputs as neurons.
 fn clocks_of_a_step(size: u16, events: u16) -> u64 {
     let board = Board::new(10, 1);
     let mut chip = on(&board);

@@ -1,4 +1,4 @@
-//! A lost and a doubled SPI clock within one access to `ReckOn`, which bring chip and bus back into step.
+//! A lost and a doubled SPI clock within one access to `ReckOn`, after which chip and bus are in step again.
 
 use embedded_hal::spi::ErrorKind;
 use rand_core::{Rng, SeedableRng};
@@ -8,14 +8,14 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// What of a chip is compared, and what the driver does before.
+/// Selects the part of a chip that is compared, and the calls that the driver makes before.
 type Look = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
-/// Clocks of a frame.
+/// Number of clocks in a frame.
 const FRAME: u64 = 64;
 
-/// Registers and memories, but for the word with which the driver checks its step.
+/// Returns registers and memories, without the word that the driver uses to check the step.
 fn all(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     let registers = (0..=104).map(|register| chip.register_value(register)).collect();
     let outputs = chip.output_weights.iter().enumerate().filter(|(at, _)| *at != 0x1AA);
@@ -26,8 +26,8 @@ fn all(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (registers, memories.chain(outputs.map(|(_, word)| word)).collect())
 }
 
-/// Of the registers all, of the memories only what `verify` reads of [`NETWORK`]: of a pair of neurons its last quarter, and
-/// of a row the first word, which two neurons and an output take. Potentials are not among it.
+/// Returns all registers, and the part of the memories that `verify` reads of [`NETWORK`]: the last quarter of a pair
+/// of neurons, and the first word of a row, in which two neurons and an output lie. Potentials are not included.
 fn of_network(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     let word = |row: u128| row & u128::from(u32::MAX);
     let rows = (0..256).map(|neuron| word(chip.recurrent_weights[neuron << 4]));
@@ -37,8 +37,8 @@ fn of_network(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (all(chip).0, own.chain(rows).chain(outputs).collect())
 }
 
-/// What an access does to a chip whose memories hold `words`, with these faults: its result, all that the chip then holds,
-/// and its clocks.
+/// Runs an access on a chip whose memories hold `words`, with these faults. Returns its result, the content of the chip
+/// after it, and its number of clocks.
 fn with<T>(
     words: u128,
     faults: &[(u64, ClockFault)],
@@ -75,17 +75,18 @@ const NETWORK: ReckOnNetwork<1, 2, 1> = ReckOnNetwork {
     shared: ReckOnShared { shifts: [0; 3], keep: 110, resets_to_zero: true },
 };
 
-/// Words that a load of it writes: 128 pairs of four, rows of one input, of all neurons and to outputs.
+/// Number of words that a load of [`NETWORK`] writes: 128 pairs of four, and rows of one input, of all neurons and to
+/// the outputs.
 const LOADED: u64 = 512 + 1 + 256 + 256;
 
-/// All of it, at once.
+/// Compares everything immediately.
 const AT_ONCE: Look = (all, |_| Ok(()));
-/// What a network needs, once it is read anew: a read that became a write of it is seen then.
+/// Compares what the network needs, after it has been verified; this notices reads that became writes.
 const VERIFIED: Look = (of_network, |chip| chip.programmed()?.verify(&NETWORK));
 
 const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];
 
-/// Where two chips differ, and the second's word.
+/// Returns where two chips differ, with both words.
 fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usize, u128, u128)> {
     let words = |of: &(Vec<u32>, Vec<u128>)| {
         of.0.iter().map(|&word| u128::from(word)).chain(of.1.iter().copied()).collect::<Vec<_>>()
@@ -94,8 +95,9 @@ fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usi
     both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
 }
 
-/// Tries pairs of faults in an access but those of which one is in a register's own frame, of which `is_register` says so,
-/// or in the one before. So many at random whose second fault comes within `reach` clocks, and every pair within the first frame if `all_in_first`.
+/// Tries pairs of faults in an access. `some` pairs are random, with the second fault within `reach` clocks; all pairs
+/// within the first frame are tried if `all_in_first`. Pairs are left out if a fault lies in a register's own frame,
+/// which `is_register` recognises, or in the frame before it.
 fn pairs<T: PartialEq + std::fmt::Debug>(
     (some, all_in_first): (usize, bool),
     reach: u64,
@@ -168,7 +170,7 @@ fn a_lost_and_a_doubled_clock_within_an_access_are_an_error_or_right() {
     assert!(accesses((30, false)) > 500);
 }
 
-/// A clock doubled before the second reading makes it a write, which reads 0; one lost at its end hides that.
+/// A clock doubled before the second read makes it a write, which reads 0; a clock lost at its end hides that.
 #[test]
 fn a_weight_that_is_read_is_not_written_where_it_ends() {
     let faults = [(5 * FRAME - 1, Doubled), (6 * FRAME - 1, Lost)];
@@ -176,8 +178,8 @@ fn a_weight_that_is_read_is_not_written_where_it_ends() {
     assert!(result.is_err());
 }
 
-/// Without its first bit, the header that reads a word of neurons writes an output's potential, and what is read is 0, as
-/// the word should be.
+/// Without its first bit, the header that reads a word of neurons writes an output's potential. The word then reads 0,
+/// which is its right value.
 #[test]
 fn a_word_of_neurons_that_is_read_moves_no_output() {
     // All words; the check; the first word that is read.

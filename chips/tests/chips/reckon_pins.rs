@@ -1,4 +1,5 @@
-//! `ReckOn` behind pins that are read seldom, and late: what the chip did is what the driver says, for any size of network.
+//! The driver of `ReckOn` with pins that are read rarely and late: for any size of network its answers are those of the
+//! chip.
 
 use std::cell::Cell;
 
@@ -10,12 +11,12 @@ use spikewire_chips::{
     ReckOnSettings, ReckOnShared, ReckOnStep, Started,
 };
 
-/// A network of so many neurons, each with an input of its own, and three outputs.
+/// A random network in which each neuron has its own input, with three outputs.
 struct Drawn {
     neurons: u16,
 }
 
-/// A weight from place to place.
+/// Returns the weight between two places.
 fn weight(kind: u64, from: u16, to: u16) -> i8 {
     let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
     Pcg32::seed_from_u64(place).next_u32() as i8
@@ -48,14 +49,14 @@ impl DescribeReckOn for Drawn {
     }
 }
 
-/// How long the calls of a port take, in clocks of the chip: before it reads or sets a pin, and after.
+/// Duration of the port's calls, in clocks of the chip: before a pin is read or set, and after.
 #[derive(Default)]
 struct Pace {
     before: Cell<u32>,
     after: Cell<u32>,
-    /// The tick that does not reach the chip.
+    /// Number of a tick that does not reach the chip.
     lost: Cell<Option<u32>>,
-    /// Ticks so far.
+    /// Number of ticks so far.
     ticks: Cell<u32>,
 }
 
@@ -120,7 +121,7 @@ impl ReckOnPort for Slow<'_> {
 
 type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
 
-/// Steps of a sample.
+/// Number of steps in a sample.
 const STEPS: u32 = 6;
 
 const SETTINGS: [ReckOnSettings; 3] = [
@@ -129,7 +130,7 @@ const SETTINGS: [ReckOnSettings; 3] = [
     ReckOnSettings::POTENTIALS,
 ];
 
-/// A board, and a driver whose pins have this pace. Calls of the board's own port take no time.
+/// Makes a board, and a driver whose pins have this pace. Calls of the board's own port take no time.
 fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     let board = Board::new(10, 0);
     let port = Slow { port: board.port(), board: board.clone(), pace };
@@ -137,7 +138,7 @@ fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     (board, chip)
 }
 
-/// What a sample answers, and which neurons fired in it.
+/// The answers of a sample, and the neurons that fired in it.
 type Answered = (Vec<Option<ReckOnAnswer>>, Vec<u8>);
 
 fn sample<'a, 'b>(
@@ -160,8 +161,8 @@ fn sample<'a, 'b>(
     Ok(((answers, fired), started))
 }
 
-/// At 26 clocks a call, the ready line of a network of up to 10 neurons is low for less than a call at a step, and of up to
-/// 25 at the tick that begins a sample.
+/// At 26 clocks a call, the ready line of networks of up to 10 neurons is low for less than a call during a step, and
+/// that of networks of up to 25 neurons at the tick that begins a sample.
 #[test]
 fn pins_that_are_read_seldom_change_no_answer() {
     for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {
@@ -196,7 +197,7 @@ fn pins_that_are_read_seldom_change_no_answer() {
     }
 }
 
-/// A tick that does not reach the chip: no answer is one of another step, at any pace.
+/// If a tick does not reach the chip, no answer is taken for that of another step, at any pace.
 #[test]
 fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
     for neurons in [2, 16, 64] {

@@ -1,8 +1,7 @@
-//! A random search: calls of tinyODIN's driver in any order, outputs answered late, SPI clocks lost or
-//! doubled, up to three in a schedule. Whenever a call is `Ok`, the chip's memories and registers are as the
-//! caller was told.
+//! A random search: calls of tinyODIN's driver in any order, with late answers to outputs, and with up to three SPI
+//! clocks lost or doubled. Whenever a call is `Ok`, the chip's memories and registers must be as the caller was told.
 //!
-//! `cargo test` tries some; `cargo test --release -p host-tests --test chip_search -- --ignored` 100 000.
+//! `cargo test` tries a few schedules, `cargo test --release -p host-tests --test chip_search -- --ignored` 100 000.
 
 use std::num::NonZeroU32;
 
@@ -20,10 +19,10 @@ type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;
 type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
 
-/// SPI clocks within which a lost and a doubled one may cancel each other before the driver looks: eight
-/// frames. The registers cannot be read back, so that such a pair cannot be seen.
+/// Number of SPI clocks, eight frames, within which a lost and a doubled clock may cancel out before the driver checks.
+/// Such a pair can go unseen, as the registers cannot be read back.
 const CANCELLING: u64 = 320;
-/// The potential's bits.
+/// Mask of the potential's bits.
 const STATE: u128 = 0xFFF;
 
 struct Random(Pcg32);
@@ -33,7 +32,7 @@ impl Random {
         (u64::from(self.0.next_u32()) * u64::from(end)).wrapping_shr(32) as u32
     }
 
-    /// Below 2^`bits`, small ones as often as large ones.
+    /// Draws a number below 2^`bits`; small numbers are as frequent as large ones.
     fn of_any_size(&mut self, bits: u32) -> u32 {
         let bits = self.below(bits + 1);
         self.below(1 << bits)
@@ -73,19 +72,19 @@ impl Random {
     }
 }
 
-/// What the caller knows.
+/// What the caller knows of the chip.
 struct Told {
     neurons: Vec<u128>,
     synapses: Vec<u32>,
     registers: Option<TinyOdinRegisters>,
     fired: Vec<u8>,
     out: Vec<u8>,
-    /// Whether a closed loop has moved the potentials.
+    /// Whether a closed loop has changed the potentials.
     is_stale: bool,
 }
 
 impl Told {
-    /// All that is there: a memory that is not known is taken as it is.
+    /// Takes over the content of the memories, as that of unknown memory is accepted.
     fn of(board: &TinyBoard) -> Self {
         let pins = board.pins();
         let (neurons, synapses) = (pins.chip.neurons.clone(), pins.chip.synapses.clone());
@@ -106,7 +105,7 @@ impl Told {
         }
     }
 
-    /// A word that the chip works off.
+    /// Applies a word that the chip processes.
     fn take(&mut self, input: TinyOdinInput) {
         let Some(TinyOdinRegisters { last_neuron, .. }) = self.registers else { return };
         let none = Drive { is_event: true, is_leak: false, virtual_bits: 0, synapse: 0, pre: 0 };
@@ -129,7 +128,7 @@ impl Told {
         }
     }
 
-    /// A chip at rest against what was told.
+    /// Compares a chip at rest with what the caller knows.
     fn compare(&mut self, board: &TinyBoard, at: &str) {
         let pins = board.pins();
         let is_exact = !std::mem::take(&mut self.is_stale);
@@ -171,7 +170,7 @@ impl Told {
     }
 }
 
-/// What a schedule came to.
+/// Counts of outcomes.
 #[derive(Debug, Default)]
 struct Tally {
     calls: u32,
@@ -179,7 +178,7 @@ struct Tally {
     gates: u32,
 }
 
-/// One schedule. Panics at a call that is `Ok` with a difference.
+/// Runs one schedule; panics if a call is `Ok` and there is a difference.
 fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
     let mut random = Random(Pcg32::seed_from_u64(seed));
     let board = TinyBoard::new(2 + random.below(63), 1 + random.below(3));
@@ -249,7 +248,7 @@ fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
     }
 }
 
-/// A call on a gated chip.
+/// Makes a call on a gated chip.
 fn gated(
     random: &mut Random,
     chip: &mut Tiny,
@@ -321,7 +320,7 @@ fn start(
     Ok(())
 }
 
-/// A call on a chip that runs.
+/// Makes a call on a running chip.
 fn running(
     random: &mut Random,
     chip: &mut Tiny,
@@ -372,7 +371,7 @@ fn running(
     }
 }
 
-/// The chip is gated: what it holds is compared once more by the caller, as it is told from now on.
+/// Updates what the caller knows when the chip has been gated; from then on spikes of a closed loop no longer count.
 fn finish(told: &mut Told) {
     if !told.is_open_loop() {
         told.fired.clear();

@@ -1,4 +1,4 @@
-//! Steps in which each neuron compares once, on tinyODIN's model clock by clock, against plain arithmetic.
+//! Steps in which each neuron compares once: tinyODIN's model, clock by clock, against plain arithmetic.
 
 use proptest::prelude::*;
 use silicon::Board;
@@ -6,16 +6,16 @@ use spikewire_chips::{
     Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
 };
 
-/// A neuron as its network means it: potentials as they are when it compares, less what it is raised by then.
+/// A neuron in plain arithmetic. Its potential is the one at which it compares, without what rungs add to it.
 #[derive(Clone, Debug)]
 struct Neuron {
     threshold: i32,
     leak: i32,
-    /// The amount by which an event raises the potential.
+    /// Amount by which a rung raises the potential.
     rung: i32,
-    /// Leaks of its own after a spike.
+    /// Number of leaks that it alone gets after a spike.
     own: u16,
-    /// Weights from the layer before, of its rows in order, and of the bias; then those from its own layer.
+    /// Weights from the layer before, listed by row, and of the bias; `own_weights` are those from its own layer.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -28,7 +28,7 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Events that raise a neuron to 0, and beyond.
+    /// Number of events that raise a neuron up to 0; `above` is the number that raise it further.
     below: u16,
     above: u16,
     leaks: Vec<Vec<u16>>,
@@ -41,7 +41,7 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl Net {
-    /// The neurons that fire, of all layers, counted on.
+    /// Runs a step; returns the neurons of each layer that fire.
     fn step(&mut self, step: usize, inputs: &[u16], before: &[Vec<u16>]) -> Vec<Vec<u16>> {
         let [below, above, lift] = [self.below, self.above, self.lift].map(i32::from);
         let rows = self.rows;
@@ -104,7 +104,7 @@ impl Net {
         None
     }
 
-    /// Each row's layer of sources and its number there, and its kind.
+    /// Returns the weight of a row onto a neuron.
     fn row(&self, row: usize, post: usize) -> i8 {
         let (layer, _, neuron) = self.neuron(post).unwrap();
         let rows = self.rows;
@@ -149,7 +149,7 @@ impl Net {
     }
 }
 
-/// A network with all of its rows as inputs, in open loop.
+/// A network whose rows are all inputs, in open loop; the second value is the number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

@@ -1,4 +1,4 @@
-//! tinyODIN's and ODIN's words on the input bus, and their memories' fields.
+//! The words on the input buses of tinyODIN and ODIN, and the fields of their memories.
 
 use proptest::prelude::*;
 use spikewire_chips::{
@@ -57,7 +57,7 @@ fn errors_of_a_chip_are_told_in_words() {
     assert_eq!(short.to_string(), "the network takes 300 bytes, not 12");
 }
 
-/// What does not fit into a time step's list is counted, and the next step begins empty.
+/// Events that do not fit are counted, and the list for the next step begins empty.
 #[test]
 fn a_list_of_spikes_counts_what_it_has_no_room_for() {
     use spikewire::{Event, Polarity, Tick};
@@ -105,7 +105,7 @@ fn a_virtual_event_of_odin_has_its_sign_apart() {
     }
 }
 
-/// What a time step without a spike turns into the neuron: its potential falls by the leak.
+/// A time step without a spike lowers the potential by the leak; the neuron before it was higher by that.
 #[test]
 fn before_a_time_step_a_neuron_of_odin_was_higher() {
     let neuron = |potential| OdinNeuron { threshold: 100, leak: 5, potential, ..OdinNeuron::REST };
@@ -123,7 +123,7 @@ fn before_a_time_step_a_neuron_of_odin_was_higher() {
     assert_eq!(before(OdinNeuron { learning: Some(learning), ..neuron(0) }), None);
 }
 
-/// Registers by number, and what they say of the loop and of the longest sweep.
+/// Checks the registers by number, and what they say about the loop and the longest sweep.
 #[test]
 fn registers_are_those_of_the_documentation() {
     fn written<I: Input>(registers: &I::Registers) -> Vec<(u16, u32)> {

@@ -1,4 +1,4 @@
-//! Xylo: packing, the registers of a time step, and errors at every access.
+//! Xylo: packing of counts, the registers of a time step, and errors at every access.
 
 use std::num::NonZeroU32;
 
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use spikewire::{Bins, Event, Polarity, Tick};
 use spikewire_chips::{ChipError, InputBank, Registers, Xylo, XyloMap, pack_counts};
 
-/// Done after some reads of the status; the outputs 0 and 2 fired.
+/// A chip that is done after some reads of its status, and whose outputs 0 and 2 fired.
 #[derive(Debug, Default)]
 struct Chip {
     accesses: Vec<(char, u16, u32)>,

@@ -1,43 +1,43 @@
-//! How numbers are packed into frames. See "Blackbox Internals" of Betaflight's documentation.
+//! Decodes the numbers that are packed into frames. See "Blackbox Internals" of Betaflight's documentation.
 
-/// The bytes of a frame, and the place of the next one to read.
+/// The bytes of a frame, and the index of the next one to read.
 pub(crate) struct Input<'a> {
     pub bytes: &'a [u8],
     pub at: usize,
 }
 
-/// A frame's numbers do not fit, or there are none of this encoding.
+/// The reason that a frame cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
-    /// The bytes end.
+    /// The bytes end within the frame.
     End,
-    /// The bytes are not those of a frame.
+    /// The bytes cannot be those of a frame.
     Odd,
 }
 
-/// How the next numbers of a frame are packed.
+/// How one or several numbers of a frame are packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
-    /// Variable length, seven bits a byte; the lowest bit is the sign.
+    /// Variable length, seven bits in each byte; the lowest bit of the number is the sign.
     Signed,
-    /// Variable length, seven bits a byte.
+    /// Variable length, seven bits in each byte.
     Unsigned,
     /// 14 bits, negated.
     Negative14,
-    /// Up to eight numbers, and a byte that says which are not 0.
+    /// Up to eight numbers, after a byte that marks those that are not 0.
     UpToEight,
-    /// Three numbers that share one of four sizes.
+    /// Three numbers of one size, of four possible ones.
     Three,
-    /// Four numbers, each of its own one of four sizes.
+    /// Four numbers, each with its own size of four possible ones.
     Four,
-    /// No bytes: the number is 0.
+    /// No bytes; the number is 0.
     Null,
-    /// Three numbers of one of four sizes, in fewer bits for the third.
+    /// Three numbers of one size, of four possible ones, of which the third may have fewer bits.
     ThreeVariable,
 }
 
 impl Encoding {
-    /// The encoding of this number in the header.
+    /// Returns the encoding with this number in the header.
     pub(crate) fn of(number: i64) -> Option<Self> {
         Some(match number {
             0 => Self::Signed,
@@ -52,7 +52,7 @@ impl Encoding {
         })
     }
 
-    /// The number of fields that are packed together, if `in_a_row` neighbours have this encoding.
+    /// Returns how many fields are packed together, if `in_a_row` neighbouring fields have this encoding.
     pub(crate) fn group(self, in_a_row: usize) -> usize {
         match self {
             Self::UpToEight => in_a_row.min(8),
@@ -70,7 +70,7 @@ impl Input<'_> {
         Ok(byte)
     }
 
-    /// A number of seven bits a byte, of five bytes at most.
+    /// Reads a number with seven bits in each byte, five bytes at most.
     pub(crate) fn unsigned(&mut self) -> Result<u32, Fault> {
         let mut number = 0_u32;
         for place in 0..5 {
@@ -83,13 +83,13 @@ impl Input<'_> {
         Err(Fault::Odd)
     }
 
-    /// A number of both signs by turns: 0, -1, 1, -2.
+    /// Reads a number whose code alternates between the signs: 0, -1, 1, -2.
     pub(crate) fn signed(&mut self) -> Result<i32, Fault> {
         let number = self.unsigned()?;
         Ok((number >> 1) as i32 ^ -((number & 1) as i32))
     }
 
-    /// The next numbers of an encoding, as many as are packed together.
+    /// Reads the numbers that this encoding packs together.
     pub(crate) fn numbers(
         &mut self,
         encoding: Encoding,
@@ -158,7 +158,7 @@ impl Input<'_> {
         })
     }
 
-    /// The first version: numbers of four bits come two at a time.
+    /// Reads four numbers as in version 1, where numbers of four bits come in pairs.
     fn four_bytes(&mut self) -> Result<[i32; 4], Fault> {
         let mut which = self.byte()?;
         let mut numbers = [0; 4];
@@ -187,7 +187,7 @@ impl Input<'_> {
         Ok(numbers)
     }
 
-    /// The second version: all are of whole half bytes, without a gap, the high half first.
+    /// Reads four numbers as in version 2: each takes a whole number of half bytes, without gaps, the high half first.
     fn four_nibbles(&mut self) -> Result<[i32; 4], Fault> {
         let which = self.byte()?;
         let mut half: Option<u8> = None;
@@ -214,7 +214,7 @@ impl Input<'_> {
     }
 }
 
-/// The low bits as a number with a sign.
+/// Extends the sign of a number in the lowest `bits` bits.
 fn extend(number: u32, bits: u32) -> i32 {
     let shift = 32 - bits;
     (number << shift) as i32 >> shift

@@ -1,19 +1,19 @@
-//! The head of a log: `H name:value` lines, with the fields of each kind of frame.
+//! The header of a log: lines `H name:value`, which define the fields of each kind of frame.
 
 use super::encoding::Encoding;
 
-/// The part of the header that is needed to read frames.
+/// The part of the header that is needed to decode frames.
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
     pub version: i64,
-    /// The number of iterations from one full frame to the next.
+    /// Number of iterations from one full frame to the next.
     pub full_every: i64,
-    /// Numerator and denominator of the part of loop iterations that is logged.
+    /// Share of loop iterations that is logged, as numerator and denominator.
     pub logged: (i64, i64),
     pub min_throttle: i32,
     pub min_motor: i32,
     pub battery: i32,
-    /// Frames that hold all numbers. `changes` has those that hold differences from the frame before.
+    /// Fields of full frames; `changes` has those of frames that hold differences from the frame before.
     pub full: Fields,
     pub changes: Fields,
     pub slow: Fields,
@@ -30,11 +30,11 @@ pub(crate) struct Fields {
     pub encodings: Vec<Encoding>,
 }
 
-/// The most iterations that a log leaves out.
+/// Largest interval that is accepted, in iterations.
 const MOST: i64 = 1 << 12;
 
 impl Header {
-    /// Reads the header from the lines of a log.
+    /// Parses the header of a log from its lines.
     ///
     /// # Errors
     /// Returns an error that names what is missing or unknown.
@@ -76,7 +76,7 @@ impl Header {
         })
     }
 
-    /// The number of iterations after this one that the logger leaves out on purpose.
+    /// Returns how many iterations the logger leaves out on purpose after this one.
     pub(crate) fn skipped(&self, after: i64) -> i64 {
         let (some, of) = self.logged;
         let is_logged =
@@ -115,12 +115,12 @@ impl Fields {
         Ok(Self { names, signed, predictors, encodings })
     }
 
-    /// The index of a field.
+    /// Returns the index of a field.
     pub(crate) fn place(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|own| own == name)
     }
 
-    /// A definition of these fields as a message of numbers of eight bytes, arrays where names count from 0 on.
+    /// Defines these fields as a message of 8-byte numbers; fields whose names count from 0 form an array.
     pub(crate) fn definition(&self) -> String {
         let mut text = String::new();
         let mut names = self.names.as_slice();

@@ -1,4 +1,4 @@
-//! Files that a web page lends to the library, by name.
+//! Files that a web page provides to the library under a name.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -6,17 +6,17 @@ use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Bytes that can be read from any place on, such as a browser's `File`.
+/// Bytes with random access, such as a browser's `File`.
 pub trait Bytes {
     /// Returns the number of bytes.
     fn len(&self) -> u64;
 
-    /// Returns whether there are none.
+    /// Returns whether there are no bytes.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Reads from a place on and returns how many bytes were read, which is 0 at the end only.
+    /// Reads from offset `place` on; returns the number of bytes read, which is 0 only at the end.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read.
@@ -27,22 +27,22 @@ thread_local! {
     static LENT: RefCell<HashMap<PathBuf, Rc<dyn Bytes>>> = RefCell::default();
 }
 
-/// Lends a file under a name, in the place of another one of that name.
+/// Provides a file under a name; it replaces another file of that name.
 pub fn lend(name: impl Into<PathBuf>, bytes: impl Bytes + 'static) {
     LENT.with_borrow_mut(|lent| lent.insert(name.into(), Rc::new(bytes)));
 }
 
-/// Takes all files back; those that are open stay readable.
+/// Withdraws all files; those that are open stay readable.
 pub fn take_back() {
     LENT.take();
 }
 
-/// Returns whether there is a directory of this name; pages lend none.
+/// Returns whether there is a directory of this name. It is always false: a page provides files only.
 pub fn is_dir(_: &Path) -> bool {
     false
 }
 
-/// Returns whether a file of this name was lent.
+/// Returns whether a file was provided under this name.
 pub fn is_file(path: &Path) -> bool {
     LENT.with_borrow(|lent| lent.contains_key(path))
 }
@@ -59,10 +59,10 @@ enum Content {
 }
 
 impl File {
-    /// Opens a file that was lent.
+    /// Opens a file that was provided.
     ///
     /// # Errors
-    /// Returns an error if no file of this name was lent.
+    /// Returns an error if there is no file of this name.
     pub fn open(path: &Path) -> io::Result<Self> {
         let found = LENT.with_borrow(|lent| lent.get(path).cloned());
         let content = found.ok_or(ErrorKind::NotFound)?;
@@ -77,10 +77,10 @@ impl File {
     }
 }
 
-/// Opens a file in memory to unpack into.
+/// Creates a file in memory, for decompressed bytes.
 ///
 /// # Errors
-/// None: there is memory, or the program ends.
+/// Never returns an error; if memory runs out the program ends.
 pub fn scratch() -> io::Result<File> {
     Ok(File { content: Content::Scratch(Vec::new()), place: 0 })
 }
@@ -98,7 +98,7 @@ impl Read for File {
     }
 }
 
-/// Appends to a scratch file; a lent one cannot be written.
+/// Appends to a file in memory; a provided file cannot be written.
 impl Write for File {
     fn write(&mut self, from: &[u8]) -> io::Result<usize> {
         let Content::Scratch(bytes) = &mut self.content else {

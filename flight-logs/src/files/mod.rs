@@ -1,6 +1,7 @@
-//! Files that are read: the system's, or in WebAssembly those that the page lent by name.
+//! Access to files: those of the operating system or, in WebAssembly, those that the page provided.
 //!
-//! WebAssembly in a browser has no file system. A page lends what its user dropped, and all readers open it here by its name.
+//! WebAssembly in a browser has no file system. The page provides what its user dropped, and all readers open it here
+//! by name.
 
 #[cfg(target_family = "wasm")]
 mod lent;

@@ -1,4 +1,4 @@
-//! The system's files.
+//! Files of the operating system.
 
 pub use std::fs::File;
 use std::io;
@@ -9,15 +9,15 @@ pub fn is_dir(path: &Path) -> bool {
     path.is_dir()
 }
 
-/// Returns whether there is a file of this name that can be read again from its start.
+/// Returns whether there is a regular file of this name, which can be read more than once.
 pub fn is_file(path: &Path) -> bool {
     path.is_file()
 }
 
-/// Opens a nameless file to unpack into, which is gone once it is closed.
+/// Creates a nameless file for decompressed bytes, which is deleted when it is closed.
 ///
 /// # Errors
-/// Returns an error if no temporary file can be made.
+/// Returns an error if no temporary file can be created.
 pub fn scratch() -> io::Result<File> {
     tempfile::tempfile()
 }

@@ -1,4 +1,4 @@
-//! PX4 flight logs, which are read as a whole: a topic each for what is registered, later instances as `topic:1`.
+//! Reads PX4 flight logs, each as a whole. Each registered message is a topic; later instances are `topic:1` and so on.
 
 mod scan;
 
@@ -14,18 +14,18 @@ use std::path::Path;
 /// The first bytes of a log.
 pub(crate) const START: &[u8] = b"ULog";
 
-/// The error of a file that starts with other bytes.
+/// Error text for a file that starts with other bytes.
 pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` and 12 bytes more";
 
-/// A log, all in memory.
+/// A log in memory.
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
     topics: Vec<Topic>,
-    /// For each topic, the layout of its messages.
+    /// Layout of the messages of each topic.
     series: Vec<Series>,
-    /// The good messages of data in order: the index of the topic, and the place in the file.
+    /// The valid data messages, in order: index of the topic, and offset in the file.
     messages: std::vec::IntoIter<(usize, usize)>,
-    /// The content of the present message.
+    /// The content of the current message.
     present: Range<usize>,
     faults: Faults,
 }

@@ -1,4 +1,4 @@
-//! The messages of a log one by one, and which of them can be read.
+//! Finds the messages of a log, and decides which of them can be read.
 
 use super::super::definition::{Definition, Path, declared};
 use super::super::topic::Topic;
@@ -7,12 +7,12 @@ use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 
-/// The length of the file's header.
+/// Length of the file's header, in bytes.
 pub(crate) const HEADER: usize = 16;
-/// The bytes before the content of a message of data: length, kind and id.
+/// Number of bytes before the content of a data message: length, kind and id.
 pub(crate) const DATA: usize = 5;
 
-/// Findings on a log besides its data.
+/// What was found in a log besides its data.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     unregistered: Found,
@@ -20,20 +20,20 @@ pub(crate) struct Findings {
     lengths: Found,
     damaged: Found,
     dropouts: Dropouts,
-    /// The place at which the last message, which does not end, begins.
+    /// Offset of the last message, if the file ends within it.
     pub(crate) cut: Option<usize>,
-    /// The place of the first damage, and that at which messages go on.
+    /// Range of the first damage: from its first byte to the next message.
     pub(crate) damage: Option<Range<usize>>,
 }
 
-/// Messages that were skipped.
+/// Count of messages that were skipped, and offset of the first.
 #[derive(Debug, Default)]
 struct Found {
     count: u64,
     first: usize,
 }
 
-/// Times in which the logger could not write.
+/// Dropouts: times in which the logger could not write.
 #[derive(Debug, Default)]
 struct Dropouts {
     count: u64,
@@ -50,7 +50,7 @@ impl Found {
     }
 }
 
-/// A line for each thing found.
+/// Writes a line for each finding.
 impl fmt::Display for Findings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Dropouts { count, milliseconds, longest } = self.dropouts;
@@ -75,39 +75,39 @@ impl fmt::Display for Findings {
     }
 }
 
-/// A message: where it begins, its kind, and its content.
+/// A message: its offset, its kind, and the range of its content.
 struct Message {
     at: usize,
     kind: u8,
     content: Range<usize>,
 }
 
-/// The walk over a log.
+/// A pass over a log.
 pub(crate) struct Scan<'a> {
     bytes: &'a [u8],
-    /// The definitions by name, a line for each field.
+    /// The definitions by name, with a line for each field.
     formats: HashMap<String, String>,
-    /// The present meaning of each registered id, as an index of `topics`.
+    /// Index in `topics` of each registered id; ids may be registered anew.
     registered: HashMap<u16, usize>,
-    /// The topics that were registered, in order.
+    /// The registered topics, in order.
     pub topics: Vec<Topic>,
-    /// For each topic, the layout of its messages.
+    /// Layout of the messages of each topic.
     pub series: Vec<Series>,
-    /// The good messages of data in order: the index of the topic, and the place in the file.
+    /// The valid data messages, in order: index of the topic, and offset in the file.
     pub messages: Vec<(usize, usize)>,
     pub findings: Findings,
 }
 
 /// The layout of a topic's messages.
 pub(crate) struct Series {
-    /// The place of the time at which a message was logged.
+    /// Path to the time at which a message was logged.
     pub time: Path,
-    /// The length of a message without the padding at its end, which is seldom logged, and with it.
+    /// Length of a message without the padding at its end, and with it; the logger usually leaves the padding out.
     pub lengths: (usize, usize),
 }
 
 impl<'a> Scan<'a> {
-    /// Takes all messages of a log that is as long as its header at least.
+    /// Reads all messages of a log, which must be at least as long as its header.
     pub(crate) fn run(bytes: &'a [u8]) -> Self {
         let mut scan = Self {
             bytes,
@@ -127,7 +127,7 @@ impl<'a> Scan<'a> {
         scan
     }
 
-    /// The place at which data was appended later, such as after a crash.
+    /// Returns the offset at which data was appended later, such as after a crash.
     fn appended(&self) -> Option<usize> {
         let first = self.header(HEADER, self.bytes.len()).filter(|first| first.kind == b'B')?;
         let content = &self.bytes[first.content];
@@ -165,7 +165,8 @@ impl<'a> Scan<'a> {
         (content.end <= end).then_some(Message { at, kind, content })
     }
 
-    /// The message at this place: a good one, or one to skip whose length leads to another message or to the end.
+    /// Returns the message at this offset: a valid one, or one that can be skipped as another message or the end
+    /// follows it.
     fn accepted(&self, at: usize, end: usize) -> Option<Message> {
         let message = self.header(at, end)?;
         if self.is_good(&message) {
@@ -177,7 +178,7 @@ impl<'a> Scan<'a> {
         (is_one && is_led).then_some(message)
     }
 
-    /// Whether good messages follow each other from here.
+    /// Returns whether valid messages follow each other from this offset on.
     fn goes_on(&self, at: usize, end: usize) -> bool {
         const ENOUGH: usize = 3;
         let mut next = at;
@@ -199,7 +200,7 @@ impl<'a> Scan<'a> {
         is_known(message) && (message.kind != b'D' || fits().is_some())
     }
 
-    /// The id of a message of data, and how many bytes follow.
+    /// Returns the id of a data message, and the number of bytes after it.
     fn data_of(&self, message: &Message) -> Option<(u16, usize)> {
         let id = self.bytes[message.content.clone()].first_chunk()?;
         Some((u16::from_le_bytes(*id), message.content.len() - 2))
@@ -234,7 +235,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Keeps a definition, `name:type field;type[8] field;`.
+    /// Stores a definition, `name:type field;type[8] field;`.
     fn define(&mut self, at: usize, content: &[u8]) {
         let defined = str::from_utf8(content).ok().and_then(|text| text.split_once(':'));
         let fields = |fields: &str| fields.replace(';', "\n");
@@ -249,7 +250,7 @@ impl<'a> Scan<'a> {
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
-        /// Zeros, more than the longest message has bytes.
+        /// Zeros, more bytes than the longest message has.
         const NOTHING: &[u8] = &[0; 1 << 16];
         let registered = || {
             let (&[instance, low, high], name) = content.split_first_chunk()?;
@@ -280,7 +281,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// Whether there is such a kind, of this length.
+/// Returns whether a message's kind is known, and its length fits the kind.
 fn is_known(message: &Message) -> bool {
     let length = message.content.len();
     match message.kind {

@@ -1,28 +1,28 @@
-//! The figures of one channel of a flight, known before it is flown.
+//! The figures of one channel of a recorded flight, before it is encoded.
 
 use spikewire::{Calibration, Sample};
 
-/// One channel's calibration, and parameters as fractions of its range.
+/// The calibration of one channel, from which parameters are set as fractions of its range.
 #[derive(Clone, Copy, Debug)]
 pub struct Channel<S> {
-    /// The channel's index, from which a generator starts.
+    /// Index of the channel, which seeds its random generator.
     pub index: usize,
-    /// The calibration over all its samples.
+    /// Calibration over all samples of the channel.
     pub calibration: Calibration<S>,
-    /// Its smallest sample.
+    /// Smallest sample.
     pub min: S,
-    /// Its largest sample.
+    /// Largest sample.
     pub max: S,
 }
 
 impl<S: Sample> Channel<S> {
-    /// A channel whose calibration has seen its samples.
+    /// Makes a channel from a calibration that has seen all its samples.
     pub fn new(index: usize, calibration: Calibration<S>) -> Self {
         let (min, max) = (calibration.min(), calibration.max());
         Self { index, calibration, min: min.unwrap_or_default(), max: max.unwrap_or_default() }
     }
 
-    /// A part of the range.
+    /// Returns a fraction of the range.
     pub fn fraction(&self, part: f64) -> S {
         S::from_f64((self.max.to_f64() - self.min.to_f64()) * part)
     }

@@ -1,4 +1,4 @@
-//! The trait of a catalogue entry, for visitors.
+//! The trait of a catalogue entry, and those of its visitors.
 
 use spikewire::population::Position;
 use spikewire::{ConfigError, Sample, Scheme, Spike, Start};
@@ -8,36 +8,36 @@ use crate::{Channel, InC, Info, Scaled, State};
 
 /// A scheme of the catalogue.
 pub trait Entry {
-    /// The description of the scheme, without running it.
+    /// The description of the scheme.
     const INFO: Info;
 
-    /// The scheme's forms in C; empty if its encoders need a generator.
+    /// The scheme's forms in C; empty if its encoders need a random generator.
     const IN_C: &'static [InC];
 
-    /// Hands the instances that fly the recorded flight to a visitor.
+    /// Passes the instances that fly the recorded flight to a visitor.
     ///
     /// # Errors
-    /// Those of the visitor, and parameters that the channel's calibration makes bad.
+    /// Returns the visitor's errors, and an error if the channel's calibration gives an invalid parameter.
     fn fly<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<(), V::Error>;
 
-    /// Hands the instances whose instructions are counted to a visitor.
+    /// Passes the instances whose instructions are counted to a visitor.
     ///
     /// # Errors
-    /// Those of the visitor, and parameters that the signal makes bad.
+    /// Returns the visitor's errors, and an error if the signal gives an invalid parameter.
     fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error>;
 }
 
-/// Takes schemes as they fly.
+/// A visitor of the instances that fly.
 pub trait Flight {
-    /// The sample type that it wants.
+    /// The sample type of the instances.
     type Sample: Sample;
-    /// Why it stops.
+    /// The visitor's error type.
     type Error: From<ConfigError>;
 
-    /// Takes one instance, by its name and its name in words, with the state from which its encoder starts.
+    /// Visits one instance, with its name, its name in words, and the state in which its encoder starts.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn visit<P: Scheme<Sample = Self::Sample, EncoderState: State, DecoderState: State>>(
         &mut self,
         name: &'static str,
@@ -47,22 +47,25 @@ pub trait Flight {
     ) -> Result<(), Self::Error>;
 }
 
-/// Takes schemes with their plain transcriptions, which write a number of spikes, a neuron or a slot as one `i8`.
+/// A visitor of the instances whose instructions are counted, and of their plain transcriptions. These write a number
+/// of spikes, a neuron or a slot as one `i8`.
 pub trait Count {
-    /// How many parts the catalogue is taken in, where a program of all does not fit a small core's flash.
+    /// Number of parts into which the catalogue is divided, if a program with all schemes does not fit a small core's
+    /// flash.
     const PARTS: usize = 1;
-    /// The index of the part that it wants.
+    /// Index of the part to visit.
     const PART: usize = 0;
 
-    /// The sample type that it wants.
+    /// The sample type of the instances.
     type Sample: Plain;
-    /// Why it stops.
+    /// The visitor's error type.
     type Error: From<ConfigError>;
 
-    /// A code of one `i8` a sample. `encode` is the transcription of its encoder, `decode` of its decoder.
+    /// Visits a code with one `i8` for each sample. `encode` is the transcription of its encoder, `decode` that of its
+    /// decoder.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn coded<P: Start<Sample = Self::Sample>>(
         &mut self,
         name: &'static str,
@@ -75,10 +78,10 @@ pub trait Count {
         self.coded_from(name, scheme, &|| P::START, to_plain, of_plain, encode, decode)
     }
 
-    /// A code of one `i8` a sample, whose encoders start so.
+    /// Visits a code with one `i8` for each sample, whose encoders start in the states that `start` makes.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     #[allow(clippy::too_many_arguments)]
     fn coded_from<P: Scheme<Sample = Self::Sample>>(
         &mut self,
@@ -91,11 +94,11 @@ pub trait Count {
         decode: impl FnOnce(&[i8], &mut [Self::Sample]),
     ) -> Result<(), Self::Error>;
 
-    /// A rate code. `encode` works in place on the signal less the shift. `agreeing` is the scheme with the very
-    /// parameters of the transcription, where that cannot have those of the one that is counted.
+    /// Visits a rate code. `encode` works in place on the signal minus the shift. `agreeing` is the scheme with exactly
+    /// the parameters of the transcription, for cases in which the counted scheme cannot have them.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn rate<P: Start<Sample = Self::Sample, Code = Spike>>(
         &mut self,
         name: &'static str,
@@ -106,10 +109,11 @@ pub trait Count {
         encode: impl FnOnce(&mut [Self::Sample], &mut [i8]),
     ) -> Result<(), Self::Error>;
 
-    /// The winner of `M` neurons by their exponentials, which rounding may decide between two neurons.
+    /// Visits a code in which one of `M` neurons wins, with a transcription that compares exponentials. Rounding may
+    /// make it choose a neighbouring neuron.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn winner<const M: usize>(
         &mut self,
         name: &'static str,
@@ -119,11 +123,11 @@ pub trait Count {
         encode: impl FnOnce(&[Self::Sample], &mut [i8]),
     ) -> Result<(), Self::Error>;
 
-    /// A code that says something of each of `M` neurons, one `i8` each; a value decoded may be off by rounding.
-    /// `decode` takes the value before the first.
+    /// Visits a code with one `i8` for each of `M` neurons; decoded values may differ by rounding. `decode` is given
+    /// the value before the first.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn neurons<P: Scheme<Sample = Self::Sample, Code: PartialEq>, const M: usize>(
         &mut self,
         name: &'static str,
@@ -134,10 +138,10 @@ pub trait Count {
         decode: impl Fn(&[i8], Self::Sample, &mut [Self::Sample]),
     ) -> Result<(), Self::Error>;
 
-    /// A temporal code whose decoder adds up steps of this size.
+    /// Visits a temporal code whose decoder adds up steps of size `step`.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn steps<P: Start<Sample = Self::Sample, Code = Spike>>(
         &mut self,
         name: &'static str,
@@ -151,7 +155,7 @@ pub trait Count {
     }
 }
 
-/// The spike of a sign.
+/// Converts a sign to a spike.
 pub(crate) fn spike_of(sign: i8) -> Spike {
     match sign {
         1 => Spike::Up,

@@ -1,76 +1,76 @@
-//! A scheme's forms in C.
+//! The forms of a scheme in C.
 //!
-//! The library's declarations are written from this: types and values are Rust, in which `S` stands for the sample type
-//! and `{0}` for the first number of the shape.
+//! The C library's declarations are generated from this. Types and values are written in Rust, with `S` for the sample
+//! type and `{0}` for the first number of the shape.
 
-/// A scheme as a codec of C's library, in a few shapes.
+/// A scheme as a codec of the C library, in several shapes.
 #[derive(Clone, Copy, Debug)]
 pub struct InC {
     /// The name in C, without the shape and the sample type: `threshold_hough`.
     pub name: &'static str,
-    /// Its type: `rate::ThresholdHough<S, {0}>`.
+    /// The scheme's type: `rate::ThresholdHough<S, {0}>`.
     pub scheme: &'static str,
-    /// Its shapes; the first flies.
+    /// The shapes; the first of them flies.
     pub shapes: &'static [&'static [usize]],
-    /// How it is initialised.
+    /// The functions that initialise it.
     pub made: &'static [Made],
 }
 
-/// A way to initialise a codec.
+/// A function that initialises a codec.
 #[derive(Clone, Copy, Debug)]
 pub struct Made {
-    /// How the function's name ends: `init`.
+    /// Ending of the function's name: `init`.
     pub name: &'static str,
-    /// Its arguments, in a line.
+    /// The arguments in words, in one line.
     pub words: &'static str,
-    /// Its arguments.
+    /// The arguments.
     pub arguments: &'static [Argument],
-    /// A `Result` of the scheme or a `ConfigError`; `?` works in it.
+    /// Rust expression for a `Result` of the scheme or a `ConfigError`; it may use `?`.
     pub value: &'static str,
-    /// Under which name it flies the recorded flight.
+    /// Name under which it flies the recorded flight, if it does.
     pub flies: Option<&'static str>,
 }
 
-/// An argument of an initialisation.
+/// An argument of a function that initialises a codec.
 #[derive(Clone, Copy, Debug)]
 pub struct Argument {
-    /// Its name.
+    /// Name of the argument.
     pub name: &'static str,
-    /// Its type in Rust.
+    /// Type in Rust.
     pub kind: &'static str,
-    /// Its value on the recorded flight.
+    /// Value for the recorded flight.
     pub flown: Flown,
 }
 
 /// The value of an argument on the recorded flight, from the channel's calibration.
 #[derive(Clone, Copy, Debug)]
 pub enum Flown {
-    /// This initialisation does not fly.
+    /// None: the function is not used on the flight.
     Not,
-    /// A part of the channel's range.
+    /// A fraction of the channel's range.
     Fraction(f64),
-    /// Its smallest sample.
+    /// The channel's smallest sample.
     Min,
-    /// Its largest sample.
+    /// The channel's largest sample.
     Max,
     /// This number.
     Number(f64),
-    /// The calibration.
+    /// The channel's calibration.
     Calibration,
 }
 
 impl Argument {
-    /// One that does not fly.
+    /// Makes an argument of a function that is not used on the flight.
     pub const fn new(name: &'static str, kind: &'static str) -> Self {
         Self { name, kind, flown: Flown::Not }
     }
 
-    /// A sample.
+    /// Makes an argument that is a sample.
     pub const fn sample(name: &'static str, flown: Flown) -> Self {
         Self { name, kind: "S", flown }
     }
 
-    /// A number of this type.
+    /// Makes an argument that is a number of this type.
     pub const fn number(name: &'static str, kind: &'static str, flown: f64) -> Self {
         Self { name, kind, flown: Flown::Number(flown) }
     }
@@ -81,12 +81,12 @@ impl Argument {
     pub const MAX: Self = Self::sample("max", Flown::Max);
     /// The number that a rate code subtracts from the samples.
     pub const SHIFT: Self = Self::sample("shift", Flown::Min);
-    /// As many taps as the shape says.
+    /// Taps of a filter, as many as the shape says.
     pub const TAPS: Self = Self::new("taps", "[S; {0}]");
-    /// As many centres as the shape says.
+    /// Centres, as many as the shape says.
     pub const CENTRES: Self = Self::new("centres", "[S; {0}]");
-    /// The triangle of a filter.
+    /// The triangular shape of a filter.
     pub const TRIANGULAR: Self = Self::number("shape", "rate::Shape", 0.0);
-    /// The Hann window of a filter.
+    /// The shape of a Hann window.
     pub const HANN: Self = Self::number("shape", "rate::Shape", 1.0);
 }

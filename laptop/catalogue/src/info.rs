@@ -1,35 +1,34 @@
-//! The description of a scheme, without running it.
+//! The description of a scheme as data.
 
 /// A scheme's names, words and parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Info {
-    /// The name in options and files.
+    /// Name in options and files.
     pub name: &'static str,
-    /// What its class is called in bindings to other languages: the name of its type in the crate, where it has one
-    /// of its own.
+    /// Name of its class in bindings to other languages: that of its type in the crate, if it has one of its own.
     pub type_name: &'static str,
-    /// The name in the paper's tables.
+    /// Name in the paper's tables.
     pub title: &'static str,
-    /// Its name in words.
+    /// Name in words.
     pub words: &'static str,
-    /// The purpose, in a few words.
+    /// What it is good for, in a few words.
     pub good_for: &'static str,
     /// Whether its spikes have a direction.
     pub is_signed: bool,
-    /// The errors of its steps, if its decoder adds up steps from a first value.
+    /// Whether the errors of its steps add up, if its decoder adds up steps from a first value.
     pub steps: StepErrors,
-    /// The parameter that limits how far the decoded value can move in one sample, if one does.
+    /// Name of the parameter that limits how far the decoded value can move in one sample, if there is such a limit.
     pub climbs_by: Option<&'static str>,
-    /// Whether it is in the paper's first figure.
+    /// Whether it appears in the paper's first figure.
     pub is_drawn: bool,
-    /// Its colour in pictures: red, green and blue.
+    /// Colour in pictures: red, green and blue.
     pub colour: [u8; 3],
-    /// The options that it takes, in the order in which a file of spikes lists them.
+    /// The parameters, in the order in which a file of spikes lists them.
     pub parameters: &'static [Parameter],
 }
 
 impl Info {
-    /// A description to fill in: spikes have no direction, and the decoder adds up no steps.
+    /// A template for descriptions: spikes without direction, and a decoder that adds up no steps.
     pub(crate) const BLANK: Self = Self {
         name: "",
         type_name: "",
@@ -44,28 +43,28 @@ impl Info {
         parameters: &[],
     };
 
-    /// Returns whether its decoder adds up steps from a first value.
+    /// Returns whether the decoder adds up steps from a first value.
     pub const fn has_first_value(&self) -> bool {
         !matches!(self.steps, StepErrors::None)
     }
 
-    /// Returns whether the errors of its steps add up in its decoder until a keyframe comes, though every spike arrives.
+    /// Returns whether errors of its steps add up in the decoder until a keyframe arrives, even if every spike arrives.
     pub const fn drifts(&self) -> bool {
         matches!(self.steps, StepErrors::Drifting)
     }
 
-    /// The parameter of this name.
+    /// Returns the parameter of this name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|own| own.name == name)
     }
 }
 
-/// The errors of a code's steps.
+/// Whether the errors of a code's steps add up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepErrors {
     /// The code has no steps: its decoder has no first value.
     None,
-    /// The encoder holds what the decoder holds, so that the errors of steps do not add up.
+    /// The encoder tracks what the decoder holds, so that errors of steps do not add up.
     Held,
     /// The errors of all steps add up in the decoder until a keyframe comes.
     Drifting,
@@ -74,77 +73,79 @@ pub enum StepErrors {
 /// A parameter of a scheme.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// The name in options and files.
+    /// Name in options and files.
     pub name: &'static str,
-    /// The values that it takes.
+    /// Kind of its values.
     pub kind: Kind,
-    /// The unit of its values.
+    /// Unit of its values.
     pub unit: Unit,
-    /// Its meaning, in a line.
+    /// Meaning, in one line.
     pub help: &'static str,
-    /// The paper's setting.
+    /// Value in the paper.
     pub paper: Paper,
-    /// The value unless given, if it is not a preset or found from the signal.
+    /// Default value, if it comes neither from a preset nor from the signal.
     pub default: Option<&'static str>,
-    /// The figure of the signal that stands in its place unless it is given.
+    /// Figure of the signal that is the default.
     pub found: Option<Found>,
-    /// Whether a file of spikes holds it, so that the file decodes by itself.
+    /// Whether a file of spikes contains it, so that the file can be decoded by itself.
     pub is_recorded: bool,
-    /// Whether decoding does without it.
+    /// Whether only the encoder needs it.
     pub is_of_encoder: bool,
     /// An example of a value.
     pub example: &'static str,
-    /// The range in which a good value is looked for; `None` if it keeps its default.
+    /// Range in which a good value is searched; `None` if it keeps its default.
     pub search: Option<Search>,
 }
 
-/// The range in which a good value of a parameter is looked for.
+/// The range in which a good value of a parameter is searched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Search {
-    /// A number between these, as likely between 1 and 2 as between 10 and 20. Of a parameter in the signal's unit they
-    /// are parts of the signal's range.
+    /// A number between these, searched by its logarithm. For a parameter in the signal's unit they are fractions of
+    /// the signal's range.
     Log(f64, f64),
-    /// A number between these, counted from what the signal tells, in parts of the signal's range.
+    /// An offset between these from a figure of the signal, as fractions of the signal's range.
     Around(f64, f64),
-    /// A number between these, in parts of the filter's sum.
+    /// A number between these, as fractions of the filter's sum.
     OfFilter(f64, f64),
-    /// Between these, in thresholds: `2x`.
+    /// A multiple of the threshold between these, such as `2x`.
     Thresholds(f64, f64),
-    /// A whole number between these.
+    /// An integer between these.
     Whole(u32, u32),
-    /// A most that settings allow, a whole number between these. More than a signal ever comes to changes nothing.
+    /// An integer between these that is an upper limit, such as that of spikes in a sample. Raising it above what a
+    /// signal needs changes nothing.
     Most(u32, u32),
     /// One of these words.
     Words(&'static [&'static str]),
-    /// Shape and length of a filter of at most so many taps, and its sum in parts of the signal's range.
+    /// A filter: its shape, its length up to this number of taps, and its sum between these fractions of the signal's
+    /// range.
     Filter(u32, f64, f64),
 }
 
-/// The values that a parameter takes.
+/// The kind of a parameter's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
     Number,
-    /// A whole number, 0 or more.
+    /// An integer, 0 or more.
     Count,
     /// One of these words.
     Choice(&'static [&'static str]),
-    /// Present or not.
+    /// A flag, which is given or not.
     Flag,
-    /// A word or a list, as its help says.
+    /// A word or a list; its help says which.
     Text,
-    /// A filter; a file of spikes holds its taps, as `taps`.
+    /// A filter. A file of spikes contains its taps, as `taps`.
     Filter,
 }
 
-/// A figure of a signal that may stand in the place of a parameter.
+/// A figure of a signal that may serve as a parameter's default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
-    /// Its first sample.
+    /// The first sample.
     First,
-    /// Its smallest sample.
+    /// The smallest sample.
     Min,
-    /// Its largest sample.
+    /// The largest sample.
     Max,
 }
 
@@ -155,25 +156,25 @@ pub enum Unit {
     None,
     /// The signal's unit.
     Signal,
-    /// A sample.
+    /// Samples.
     Samples,
 }
 
-/// The paper's setting of a parameter.
+/// The value of a parameter in the paper.
 #[derive(Clone, Copy, Debug)]
 pub enum Paper {
     /// The paper has none.
     None,
-    /// As it stands.
+    /// This text.
     Text(&'static str),
-    /// In the unit of the paper's signal, whose range is 5.8: scaled to that of another.
+    /// This number, in the unit of the paper's signal, whose range is 5.8; scaled to the range of another signal.
     Signal(f64),
-    /// A filter of this shape, whose peak is scaled as a number is.
+    /// A filter of this shape, with its peak scaled to the range of the signal.
     Filter(&'static str),
 }
 
 impl Parameter {
-    /// A parameter without a preset.
+    /// Makes a parameter without a value in the paper.
     pub const fn new(name: &'static str, kind: Kind, unit: Unit, help: &'static str) -> Self {
         Self {
             name,
@@ -190,42 +191,42 @@ impl Parameter {
         }
     }
 
-    /// A whole number without a unit and without a preset.
+    /// Makes an integer parameter without a unit, and without a value in the paper.
     pub const fn count(name: &'static str, help: &'static str) -> Self {
         Self::new(name, Kind::Count, Unit::None, help)
     }
 
-    /// With the place where a good value is looked for.
+    /// Sets the range in which a good value is searched.
     #[must_use]
     pub const fn searched(self, search: Search) -> Self {
         Self { search: Some(search), ..self }
     }
 
-    /// With the paper's setting.
+    /// Sets the value in the paper.
     #[must_use]
     pub const fn with_paper(self, paper: Paper) -> Self {
         Self { paper, ..self }
     }
 
-    /// With what it is unless given.
+    /// Sets the default value.
     #[must_use]
     pub const fn with_default(self, default: &'static str) -> Self {
         Self { default: Some(default), ..self }
     }
 
-    /// With an example of what one may give.
+    /// Sets an example of a value.
     #[must_use]
     pub const fn with_example(self, example: &'static str) -> Self {
         Self { example, ..self }
     }
 
-    /// In the place of what the signal tells.
+    /// Sets the figure of the signal that is the default.
     #[must_use]
     pub const fn in_place_of(self, found: Found) -> Self {
         Self { found: Some(found), ..self }
     }
 
-    /// Marks a parameter from which another one is made, and which a file of spikes does not hold.
+    /// Marks a parameter from which another one is derived, and which a file of spikes does not contain.
     #[must_use]
     pub const fn unrecorded(self) -> Self {
         Self { is_recorded: false, ..self }
@@ -237,12 +238,12 @@ impl Parameter {
         Self { is_of_encoder: true, ..self }
     }
 
-    /// The name in a file of spikes.
+    /// Returns the name in a file of spikes.
     pub const fn key(&self) -> &'static str {
         if matches!(self.kind, Kind::Filter) { "taps" } else { self.name }
     }
 
-    /// The value before the first sample, of schemes whose decoders add up steps.
+    /// Value before the first sample, for schemes whose decoders add up steps.
     pub const START: Self = Self::new(
         "start",
         Kind::Number,
@@ -253,7 +254,7 @@ impl Parameter {
     .with_example("0")
     .in_place_of(Found::First);
 
-    /// The signal's minimum, of the rate codes.
+    /// Number that rate codes subtract from the samples; by default the signal's minimum.
     pub const SHIFT: Self = Self::new(
         "shift",
         Kind::Number,
@@ -264,7 +265,7 @@ impl Parameter {
     .in_place_of(Found::Min)
     .searched(Search::Around(-0.25, 0.25));
 
-    /// The lower end of a population's range.
+    /// Lower end of a population's range.
     pub const MIN: Self = Self::new(
         "min",
         Kind::Number,
@@ -275,7 +276,7 @@ impl Parameter {
     .in_place_of(Found::Min)
     .searched(Search::Around(-0.1, 0.3));
 
-    /// The upper end of a population's range.
+    /// Upper end of a population's range.
     pub const MAX: Self = Self::new(
         "max",
         Kind::Number,
@@ -286,7 +287,7 @@ impl Parameter {
     .in_place_of(Found::Max)
     .searched(Search::Around(-0.3, 0.1));
 
-    /// How wide receptive fields are.
+    /// Ratio of the distance between receptive fields to their width.
     pub const BETA: Self = Self::new(
         "beta",
         Kind::Number,
@@ -296,19 +297,19 @@ impl Parameter {
     .with_default("1.5")
     .searched(Search::Log(0.3, 4.0));
 
-    /// How many sub-timesteps receptive fields fire in.
+    /// Number of sub-timesteps in which receptive fields fire.
     pub const SLOTS: Self = Self::count("slots", "sub-timesteps a sample, 2 to 256")
         .with_paper(Paper::Text("10"))
         .with_example("10")
         .searched(Search::Whole(2, 32));
 
-    /// The lowest level of receptive fields that fires.
+    /// Lowest level at which receptive fields fire.
     pub const FLOOR: Self =
         Self::count("floor", "neurons below this level of the slots are silent")
             .with_default("1")
             .searched(Search::Whole(1, 2));
 
-    /// How the mean of spikes is taken.
+    /// How the decoder averages spikes.
     pub const MEAN: Self = Self::new(
         "mean",
         Kind::Choice(&["average", "window"]),
@@ -318,7 +319,7 @@ impl Parameter {
     .with_default("average")
     .searched(Search::Words(&["average", "window"]));
 
-    /// Over how many samples the mean of spikes is taken.
+    /// Number of samples over which spikes are averaged, as a power of two.
     pub const POWER: Self = Self::count(
         "power",
         "the mean is over about 2^POWER samples: 1 to 15, of a window 0 to 12",
@@ -326,20 +327,20 @@ impl Parameter {
     .with_default("4")
     .searched(Search::Whole(1, 8));
 
-    /// The seed of chance.
+    /// Seed of the random generator.
     pub const SEED: Self = Self::count(
         "seed",
         "where the generator starts; each channel draws from a stream of its own",
     )
     .with_default("0");
 
-    /// Most spikes a sample.
+    /// Maximum number of spikes in a sample.
     pub const SPIKES: Self = Self::count("spikes", "most spikes a sample, 1 to 127")
         .with_example("4")
         .with_paper(Paper::Text("4"))
         .searched(Search::Most(1, 127));
 
-    /// How many neurons there are.
+    /// Makes the parameter for the number of neurons.
     pub const fn neurons(paper: &'static str) -> Self {
         Self::count("neurons", "how many neurons share the range, 3 to 1024")
             .with_paper(Paper::Text(paper))
@@ -347,7 +348,7 @@ impl Parameter {
             .searched(Search::Whole(3, 64))
     }
 
-    /// The filter of a rate code.
+    /// Makes the parameter for the filter of a rate code.
     pub const fn filter(paper: &'static str) -> Self {
         Self::new(
             "filter",
@@ -361,7 +362,7 @@ impl Parameter {
         .searched(Search::Filter(64, 0.3, 8.0))
     }
 
-    /// A threshold in the signal's unit.
+    /// Makes the parameter for a threshold in the signal's unit.
     pub const fn threshold(help: &'static str, paper: f64) -> Self {
         Self::new("threshold", Kind::Number, Unit::Signal, help)
             .with_paper(Paper::Signal(paper))

@@ -1,9 +1,9 @@
-//! Every scheme of the crate once.
+//! A description of every scheme of the crate, as data.
 //!
-//! A scheme's file under `schemes` says its names, its parameters with their units and the paper's presets, which
-//! instances of it the firmware flies and counts, its plain transcription, and, with the feature `run`, how to build it
-//! from options. Firmware, tests, instruction counts and the laptop program are visitors: they ask for all entries and
-//! know none by name.
+//! A scheme's file under `schemes` contains its names, its parameters with their units and the paper's values, the
+//! instances that the firmware flies and counts, a plain transcription of its pseudo-code and, with the feature `run`,
+//! how to build it from options. Firmware, tests, instruction counts and the laptop program are visitors: they ask for
+//! all entries, and none of them names a scheme.
 //!
 //! To add a scheme: write its file in the crate, its file under `schemes`, and its line in the list below.
 
@@ -28,32 +28,32 @@ pub use info::{Found, Info, Kind, Paper, Parameter, Search, StepErrors, Unit};
 pub use signal::Scaled;
 pub use state::State;
 
-/// Calls a function that is not inlined: a small board has room for one scheme at a time on its stack.
+/// Calls a function without inlining it: a small board's stack has room for only one scheme at a time.
 #[inline(never)]
 fn apart<R>(call: impl FnOnce() -> R) -> R {
     call()
 }
 
-/// Declares the modules of the schemes, and what runs over all of them.
+/// Declares the modules of the schemes, and the functions that visit all of them.
 macro_rules! schemes {
     ($($module:ident),* $(,)?) => {
-        /// The entries, a file each.
+        /// The entries, one in each file.
         #[allow(clippy::needless_range_loop)] // transcriptions go index by index, as pseudo-code does
         pub mod schemes {
             $(pub mod $module;)*
         }
 
-        /// The description of every scheme, in the order of the catalogue.
+        /// Descriptions of all schemes, in the order of the catalogue.
         pub const INFO: &[Info] = &[$(<schemes::$module::Scheme as Entry>::INFO),*];
 
-        /// The forms in C of every scheme, in the order of the catalogue.
+        /// Forms in C of all schemes, in the order of the catalogue.
         pub const IN_C: &[(&Info, &[InC])] =
             &[$((&<schemes::$module::Scheme as Entry>::INFO, <schemes::$module::Scheme as Entry>::IN_C)),*];
 
-        /// Hands every flown instance of every scheme to a visitor.
+        /// Passes every instance of every scheme that flies to a visitor.
         ///
         /// # Errors
-        /// Those of the visitor, and parameters that a channel's calibration makes bad.
+        /// Returns the visitor's errors, and an error if a channel's calibration gives an invalid parameter.
         pub fn fly<V: Flight>(
             channel: &Channel<V::Sample>,
             visitor: &mut V,
@@ -62,10 +62,11 @@ macro_rules! schemes {
             Ok(())
         }
 
-        /// Hands every counted instance of every scheme of a part, with its plain transcription, to a visitor.
+        /// Passes every counted instance of the visitor's part of the catalogue, with its plain transcription, to the
+        /// visitor.
         ///
         /// # Errors
-        /// Those of the visitor, and parameters that the signal makes bad.
+        /// Returns the visitor's errors, and an error if the signal gives an invalid parameter.
         pub fn count<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), V::Error> {
             $(
                 if Number::$module as usize * V::PARTS / INFO.len() == V::PART {
@@ -75,20 +76,20 @@ macro_rules! schemes {
             Ok(())
         }
 
-        /// The place of a scheme in the catalogue.
+        /// The index of a scheme in the catalogue.
         #[allow(non_camel_case_types)]
         enum Number {
             $($module),*
         }
 
-        /// Every scheme, to be chosen at run time.
+        /// All schemes, for choosing one at run time.
         #[cfg(feature = "run")]
         pub static ALL: &[&dyn run::RunTime] = &[$(&schemes::$module::Scheme),*];
 
-        /// Builds the scheme of this name in a sample type and hands it to a visitor.
+        /// Builds the scheme of this name in a sample type, and passes it to a visitor.
         ///
         /// # Errors
-        /// Returns an error if there is no such scheme, a parameter makes no sense, or the visitor returns one.
+        /// Returns an error if there is no such scheme, if a parameter is invalid, or if the visitor returns one.
         #[cfg(feature = "run")]
         pub fn visit<S: spikewire::Sample, V: run::Visit<S>>(
             name: &str,

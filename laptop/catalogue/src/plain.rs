@@ -1,7 +1,8 @@
-//! Shared by the plain transcriptions: the numbers that they are written in, and the decoders that several codes use.
+//! What the plain transcriptions share: their number types, and decoders of several codes.
 //!
-//! A transcription is the paper's pseudo-code: whole recordings, one index after the other, its slips of sign and index
-//! mended. It is what the codecs are measured against, in the same sample type, for the same core, by the same compiler.
+//! A transcription is the paper's pseudo-code, with its slips of sign and index corrected; it works on whole
+//! recordings, one index after the other. The codecs are measured against it, in the same sample type, for the same
+//! core, with the same compiler.
 
 #![allow(clippy::needless_range_loop)] // index by index, as the pseudo-code
 
@@ -13,9 +14,9 @@ use fixed::{
 };
 use spikewire::Sample;
 
-/// The arithmetic that the pseudo-code needs of a number: a type that its sums and products fit in.
+/// A number type with the arithmetic of the pseudo-code; sums and products are computed in the type `Wide`.
 pub trait Plain: Sample + Into<Self::Wide> {
-    /// Sums and products.
+    /// The type of sums and products.
     type Wide: Copy
         + Default
         + PartialOrd
@@ -26,14 +27,14 @@ pub trait Plain: Sample + Into<Self::Wide> {
         + AddAssign
         + SubAssign;
 
-    /// By how much a mean of centres may be off, as whole numbers hold neither exactly.
+    /// How far a mean of centres may be off, as integers hold neither the mean nor the centres exactly.
     const MEAN: f64;
 
-    /// A number.
+    /// Converts a number.
     fn wide(value: f64) -> Self::Wide;
-    /// A count.
+    /// Converts a count.
     fn count(count: i16) -> Self::Wide;
-    /// Back to the sample type, which holds it.
+    /// Converts back to the sample type, in which the value must fit.
     fn narrow(wide: Self::Wide) -> Self;
     /// Doubles the value `times` times.
     fn doubled(wide: Self::Wide, times: u8) -> Self::Wide;
@@ -41,7 +42,7 @@ pub trait Plain: Sample + Into<Self::Wide> {
     fn halved(wide: Self::Wide, times: u8) -> Self::Wide;
     /// Halves the value `times` times; integers round to the nearest, halves upwards.
     fn halved_to_nearest(wide: Self::Wide, times: u8) -> Self::Wide;
-    /// Whether a draw of 16 bits falls below a part of the range: `2^17 part >= (2 draw + 1) range`.
+    /// Returns whether a 16-bit draw falls below a share of the range: `2^17 part >= (2 draw + 1) range`.
     fn is_drawn(part: Self::Wide, range: Self::Wide, draw: u32) -> bool;
 }
 
@@ -113,7 +114,7 @@ impl Plain for i16 {
     }
 }
 
-/// Fixed point, whose sums and products have twice the bits.
+/// Implements the arithmetic for fixed point; sums and products have twice as many bits.
 macro_rules! fixed_point {
     ($own:ty, $bits:ty, $wide:ident<$fraction:ty>, $mean:expr) => {
         impl Plain for $own {
@@ -156,12 +157,12 @@ macro_rules! fixed_point {
 fixed_point!(FixedI16<U8>, i16, FixedI32<U8>, 1.0 / 256.0);
 fixed_point!(FixedI32<U16>, i32, FixedI64<U16>, 1.0 / 65_536.0);
 
-/// Without its sign.
+/// Returns the absolute value.
 pub fn magnitude<W: Copy + Default + PartialOrd + Sub<Output = W>>(value: W) -> W {
     if value < W::default() { W::default() - value } else { value }
 }
 
-/// The temporal codes' decoder.
+/// Decodes a temporal code.
 #[inline(never)]
 pub fn step_decode<S: Plain>(spikes: &[i8], step: S, values: &mut [S]) {
     let mut value = S::Wide::default();
@@ -175,7 +176,7 @@ pub fn step_decode<S: Plain>(spikes: &[i8], step: S, values: &mut [S]) {
     }
 }
 
-/// A sample above the minimum, within the range.
+/// Returns how far a sample is above the minimum, clamped to the range.
 pub fn above_min<S: Plain>(x: S, min: S, max: S) -> S::Wide {
     if x < min {
         S::Wide::default()
@@ -186,7 +187,7 @@ pub fn above_min<S: Plain>(x: S, min: S, max: S) -> S::Wide {
     }
 }
 
-/// The decoder of a mean's spikes over a window of `2^power` samples.
+/// Decodes spikes by their mean over a window of `2^power` samples.
 #[inline(never)]
 pub fn window_decode<S: Plain>(spikes: &[i8], min: S, max: S, power: u8, values: &mut [S]) {
     let range = max.into() - min.into();
@@ -201,7 +202,7 @@ pub fn window_decode<S: Plain>(spikes: &[i8], min: S, max: S, power: u8, values:
     }
 }
 
-/// The decoder of a mean's spikes by an average, where a spike right behind `g` others weighs `unit * 2^g`, up to
+/// Decodes spikes by a running average, in which a spike directly after `g` others weighs `unit * 2^g`, with `g` up to
 /// `doublings`.
 #[inline(never)]
 pub fn average_decode<S: Plain>(
@@ -226,7 +227,7 @@ pub fn average_decode<S: Plain>(
     }
 }
 
-/// The rate codes' decoder: a convolution, the oldest spike first.
+/// Decodes a rate code by a convolution, the oldest spike first.
 #[inline(never)]
 pub fn rate_decode<S: Plain>(spikes: &[i8], filter: &[S], shift: S, values: &mut [S]) {
     for i in 0..spikes.len() {
@@ -240,7 +241,7 @@ pub fn rate_decode<S: Plain>(spikes: &[i8], filter: &[S], shift: S, values: &mut
     }
 }
 
-/// The centre of the neuron that fired.
+/// Decodes to the centre of the neuron that fired.
 #[inline(never)]
 pub fn position_decode<S: Plain>(neurons: &[i8], centres: &[S], values: &mut [S]) {
     for i in 0..neurons.len() {
@@ -248,13 +249,13 @@ pub fn position_decode<S: Plain>(neurons: &[i8], centres: &[S], values: &mut [S]
     }
 }
 
-/// The response of a receptive field.
+/// Returns the response of a Gaussian receptive field.
 pub fn response(x: f32, centre: f32, sigma: f32) -> f32 {
     let u = (x - centre) / sigma;
     libm::expf(-u * u / 2.0)
 }
 
-/// The widths of fields as wide as the distance between their neighbours.
+/// Returns the widths of fields that are as wide as the distance between their neighbours, divided by `beta`.
 pub fn spaced_widths<const M: usize>(centres: &[f32; M], beta: f32) -> [f32; M] {
     core::array::from_fn(|i| {
         let (lower, upper) = (i.saturating_sub(1), (i + 1).min(M - 1));

@@ -1,4 +1,4 @@
-//! What the file of a scheme needs.
+//! The items that a scheme's file imports.
 
 pub(crate) use spikewire::{Sample, Start};
 

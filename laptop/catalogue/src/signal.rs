@@ -1,37 +1,37 @@
-//! Figures of a signal, found before instructions are counted on it.
+//! Figures of a signal, computed before instructions are counted on it.
 
 use spikewire::{Calibration, Sample};
 
-/// A signal's calibration, and the paper's parameters scaled to its range.
+/// A signal's calibration, with which the paper's parameters are scaled to its range.
 #[derive(Clone, Copy, Debug)]
 pub struct Scaled<S> {
-    /// The calibration over all its samples.
+    /// Calibration over all samples.
     pub calibration: Calibration<S>,
-    /// Its smallest sample.
+    /// Smallest sample.
     pub min: S,
-    /// Its largest sample.
+    /// Largest sample.
     pub max: S,
-    /// Between the two.
+    /// Difference between the largest and the smallest sample.
     pub range: f64,
 }
 
 impl<S: Sample> Scaled<S> {
-    /// The paper's amplitude of its signal.
+    /// Range of the paper's signal, as the paper states it.
     pub const PAPER_RANGE: f64 = 5.8;
 
-    /// A signal whose calibration has seen its samples.
+    /// Makes it from a calibration that has seen all samples.
     pub fn new(calibration: Calibration<S>) -> Self {
         let min = calibration.min().unwrap_or_default();
         let max = calibration.max().unwrap_or_default();
         Self { calibration, min, max, range: max.to_f64() - min.to_f64() }
     }
 
-    /// A parameter for the paper's signal, scaled to this one.
+    /// Scales a parameter for the paper's signal to this one.
     pub fn part(&self, value: f64) -> S {
         S::from_f64(value / Self::PAPER_RANGE * self.range)
     }
 
-    /// The means of `M` receptive fields over the range, which are not rounded to whole numbers.
+    /// Returns the means of `M` receptive fields over the range, not rounded to integers.
     pub fn means<const M: usize>(&self) -> [f32; M] {
         let min = self.min.to_f64();
         core::array::from_fn(|i| {

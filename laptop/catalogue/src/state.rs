@@ -1,10 +1,10 @@
-//! Operations of visitors on the states of a scheme.
+//! The trait of states that visitors can write and read.
 
-/// A state that can be written and read back with the feature `serde`; every state without.
+/// A state that can be written and read back; with the feature `serde`.
 #[cfg(feature = "serde")]
 pub trait State: serde::Serialize + serde::de::DeserializeOwned {}
 
-/// A state that can be written and read back with the feature `serde`; every state without.
+/// Any state; without the feature `serde`, states cannot be written.
 #[cfg(not(feature = "serde"))]
 pub trait State {}
 

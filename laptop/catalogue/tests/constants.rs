@@ -1,4 +1,4 @@
-//! A scheme as a constant in Rust: what is written compiles, and spikes as what the settings build.
+//! Rust constants of schemes: what is written compiles, and gives the same spikes as the settings.
 
 #![cfg(feature = "run")]
 #![allow(clippy::unreadable_literal)] // as they are written
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use catalogue::run::{Asked, Calibrated, Event, Known, SampleType};
 use spikewire::{Code, NeuronSpike, Output, Sample, Start};
 
-/// Every constant, by its scheme, sample type and options: as it is written, and as the compiler takes it.
+/// Lists constants by scheme, sample type and options, both as text and as code for the compiler.
 macro_rules! constants {
     ($($name:literal $sample:literal [$($option:literal: $text:literal),*] $scheme:ty = $value:expr;)*) => {
         fn every(mut check: impl FnMut(&'static str)) {
@@ -125,7 +125,8 @@ constants! {
         spikewire::timing::Burst<f32, 19> = spikewire::timing::Burst::new(-2.5..=2.5, 5, 2..=4);
 }
 
-/// What options are written as, without the spaces, and the spikes of the constant beside those of the settings.
+/// Compares the text that options are written as, without spaces, and the spikes of the constant with those of the
+/// settings.
 fn compare<P: Start>(
     name: &str,
     sample: &str,
@@ -174,7 +175,7 @@ fn compare<P: Start>(
     assert_eq!(own_events.collect::<Vec<_>>(), events, "{name}");
 }
 
-/// All but those that take a generator, which is the user's.
+/// All schemes are tested except those that need a random generator, which the user supplies.
 #[test]
 fn constants_spike_as_their_settings() {
     let mut seen = BTreeSet::from(["bernoulli", "grf-prob"]);

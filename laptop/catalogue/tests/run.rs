@@ -1,5 +1,5 @@
-//! Every scheme of the catalogue at run time: its parameters are whole, it runs in every sample type with the paper's
-//! settings, and its file of spikes says all that decoding needs.
+//! Every scheme of the catalogue at run time: its parameters are complete, it runs in every sample type with the
+//! paper's values, and its file of spikes contains all that decoding needs.
 
 #![cfg(feature = "run")]
 
@@ -17,7 +17,7 @@ fn signal() -> Vec<f64> {
         .collect()
 }
 
-/// The signal in the unit of a type that has a fraction, and in larger numbers where it has none.
+/// Returns the signal in the unit of a type with fractional bits, or scaled to larger numbers for a type without.
 fn signal_for(sample: SampleType) -> Vec<f64> {
     let scale = if sample.step() == 1.0 { 1000.0 } else { 1.0 };
     signal().into_iter().map(|value| value * scale).collect()
@@ -37,7 +37,7 @@ fn resolve(scheme: &dyn RunTime, options: &Asked, sample: SampleType) -> Result<
     scheme.resolve(sample, options, &known)
 }
 
-/// What a scheme makes of the signal: events, and the values that they decode to.
+/// Encodes the signal with a scheme, and decodes it; returns events and values.
 fn there_and_back(
     scheme: &dyn RunTime,
     settings: &Settings,
@@ -61,7 +61,7 @@ fn there_and_back(
     (events, values)
 }
 
-/// Names and colours tell schemes apart.
+/// Names and colours of schemes are distinct.
 #[test]
 fn schemes_differ() {
     for (place, info) in catalogue::INFO.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Writes a log of each kind that is made byte by byte, for checks in other languages.
+//! Writes one hand-made log of each kind, for checks in other languages.
 
 use flight_logs::made as logs;
 use std::{env, fs, io, path::Path};
@@ -9,5 +9,8 @@ fn main() -> io::Result<()> {
     for kind in logs::KINDS {
         write(kind.name(), kind.log(kind.packings().last().unwrap_or(&"none")))?;
     }
+    write("log.bin", logs::dataflash())?;
+    write("log.log", logs::dataflash_text().into_bytes())?;
+    write("log.tlog", logs::tlog())?;
     write("log.bbl", logs::blackbox())
 }

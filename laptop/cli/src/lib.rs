@@ -1,4 +1,4 @@
-//! The laptop program: arguments in, text out. What it does is in `lab`.
+//! The command line of the laptop program: reads arguments and prints text. The work itself is done in `lab`.
 
 mod commands;
 mod inputs;
@@ -38,10 +38,10 @@ enum Command {
     Emit(commands::emit::Emit),
 }
 
-/// The exit status of a command that fails, the same as for wrong options.
+/// Exit status of a command that fails, the same as for wrong options.
 const FAILURE: u8 = 2;
 
-/// Runs the program with the arguments that it was started with.
+/// Runs the program with the arguments of the process.
 pub fn run() -> ExitCode {
     let command = Program::parse().command;
     let done = stop::handle().and_then(|()| match command {

@@ -1,4 +1,4 @@
-//! A line of counts that grow, on a terminal.
+//! A status line on the terminal whose counts grow while events arrive.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::events::Stream;
@@ -6,23 +6,23 @@ use std::fmt::Write;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
-/// The time from one display of the counts to the next.
+/// Time between two updates of the line.
 const PERIOD: Duration = Duration::from_millis(500);
-/// The most addresses whose rates are shown.
+/// Maximum number of addresses whose rates are shown.
 const ADDRESSES: usize = 6;
 
-/// A line of counts on standard error; nothing where that is no terminal, or where the output itself
-/// goes to one.
+/// A status line on standard error. It shows nothing if standard error is no terminal, or if the output goes to the
+/// same terminal.
 pub(crate) struct Live {
     line: Option<ProgressBar>,
     shown: Instant,
-    /// The counts of the addresses at the last display.
+    /// Number of events of each address at the last update.
     counts: Vec<u64>,
     bytes: u64,
 }
 
 impl Live {
-    /// A line that shows nothing yet.
+    /// Makes an empty line; `is_output_shown` says that the output goes to standard output.
     pub(crate) fn new(is_output_shown: bool) -> Self {
         let is_wanted =
             io::stderr().is_terminal() && !(is_output_shown && io::stdout().is_terminal());
@@ -34,7 +34,7 @@ impl Live {
         Self { line, shown: Instant::now(), counts: Vec::new(), bytes: 0 }
     }
 
-    /// Shows the counts, if it is time to.
+    /// Shows the counts, if the last update is long enough ago.
     pub(crate) fn update(&mut self, stream: &Stream) {
         let elapsed = self.shown.elapsed();
         if let Some(line) = self.line.as_ref().filter(|_| elapsed >= PERIOD) {
@@ -45,7 +45,7 @@ impl Live {
         }
     }
 
-    /// Takes the line away.
+    /// Removes the line from the terminal.
     pub(crate) fn clear(&self) {
         if let Some(line) = &self.line {
             line.finish_and_clear();

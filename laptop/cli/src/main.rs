@@ -1,4 +1,4 @@
-//! Spikes from recordings and back, and the benchmark of the paper.
+//! The program `spikewire`: encodes recordings as spikes, decodes them, and repeats the paper's benchmark.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! The parameters of the catalogue's schemes as options.
+//! Command-line options made from the catalogue's descriptions of parameters.
 
 use crate::words;
 use anyhow::{Result as Checked, bail};
@@ -13,40 +13,40 @@ use std::fmt::{Display, Write as _};
 use std::io::Write as _;
 use std::str::FromStr;
 
-/// The scheme to run and its settings: from the command line, and from a file if that leaves some open.
+/// The scheme to run and its settings, from the command line; a file completes what is not given there.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Coding {
-    /// The scheme, unless --params says which
+    /// Scheme; may be left out if --params names it
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
-    /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
+    /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8; default: f32
     #[arg(long)]
     sample: Option<SampleType>,
-    /// File of parameters, TOML, as `tune --emit toml` writes it; options override it
+    /// File of parameters (TOML), as `tune --emit toml` writes it; options on the command line override it
     #[arg(long, value_name = "FILE", value_parser = read)]
     params: Option<File>,
     #[command(flatten)]
     parameters: SchemeOptions,
 }
 
-/// Reads a whole number, 0 or more.
+/// Parses a whole number, 0 or more.
 pub(crate) fn whole<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| "must be a whole number, 0 or more".to_owned())
 }
 
-/// The value of `--params`.
+/// Parses the value of `--params`: reads the file at this path.
 pub(crate) fn read(path: &str) -> Result<File, String> {
     File::read(path).map_err(|error| words::of_lab(&error))
 }
 
-/// A scheme if one was named, the sample type, and the parameters given.
+/// The scheme if one was named, the sample type, and the parameters given.
 pub(crate) type Chosen = (Option<Scheme>, SampleType, Asked);
 
 impl Coding {
-    /// The scheme, if one is named, the sample type and the parameters.
+    /// Returns the scheme if one is named, the sample type and the parameters.
     ///
     /// # Errors
-    /// The file is of another scheme.
+    /// Returns an error if the file is for another scheme than the one named.
     pub(crate) fn chosen(&self) -> Checked<Chosen> {
         let Self { scheme, sample, params, parameters } = self;
         let mut chosen = (*scheme, sample.unwrap_or_default(), parameters.0.clone());
@@ -58,10 +58,10 @@ impl Coding {
         Ok(chosen)
     }
 
-    /// The same where a scheme must be named.
+    /// Returns the scheme, the sample type and the parameters.
     ///
     /// # Errors
-    /// None is, or the file is of another.
+    /// Returns an error if no scheme is named, or if the file is for another one.
     pub(crate) fn one(&self) -> Checked<(Scheme, SampleType, Asked)> {
         let (scheme, sample, parameters) = self.chosen()?;
         let Some(scheme) = scheme else {
@@ -71,16 +71,16 @@ impl Coding {
         Ok((scheme, sample, parameters))
     }
 
-    /// Whether a scheme is named.
+    /// Returns whether a scheme is named.
     pub(crate) fn is_named(&self) -> bool {
         self.scheme.is_some() || self.params.is_some()
     }
 }
 
-/// The scheme of a file, if that is the one named.
+/// Returns the scheme of a file.
 ///
 /// # Errors
-/// Another one is.
+/// Returns an error if `named` is another scheme.
 pub(crate) fn agreed(file: &File, named: Option<Scheme>) -> Checked<Scheme> {
     match named {
         Some(named) if named != file.scheme => {
@@ -90,7 +90,7 @@ pub(crate) fn agreed(file: &File, named: Option<Scheme>) -> Checked<Scheme> {
     }
 }
 
-/// Takes the name of a scheme.
+/// Parses the name of a scheme.
 pub(crate) fn schemes() -> MapValueParser<PossibleValuesParser, fn(String) -> Scheme> {
     let values = catalogue::INFO.iter().map(|info| PossibleValue::new(info.name).help(info.words));
     PossibleValuesParser::new(values.collect::<Vec<_>>()).map(|name| {
@@ -99,7 +99,7 @@ pub(crate) fn schemes() -> MapValueParser<PossibleValuesParser, fn(String) -> Sc
     })
 }
 
-/// Makes a type that holds [`Asked`] a group of options: how they are declared, and how they are read.
+/// Turns a type that holds [`Asked`] into a group of clap options: declares them, and reads them.
 macro_rules! option_group {
     ($name:ident, $declare:expr, $read:expr) => {
         impl clap::Args for $name {
@@ -129,7 +129,7 @@ macro_rules! option_group {
 }
 pub(crate) use option_group;
 
-/// The parameters of any scheme that a user gave.
+/// The parameters that a user gave, for any scheme.
 #[derive(Clone, Debug)]
 pub(crate) struct SchemeOptions(pub Asked);
 
@@ -150,7 +150,7 @@ option_group!(
 const PARAMETERS: &str = "Parameters";
 const CALIBRATION: &str = "Instead of calibration";
 
-/// Adds an option for each of these parameters, where several schemes have it for all of them.
+/// Adds an option for each parameter that `is_taken` accepts; schemes that share a parameter's name share the option.
 pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) -> Command {
     for (name, owners) in parameters(is_taken) {
         let Some(&(_, parameter)) = owners.first() else { continue };
@@ -175,7 +175,7 @@ pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) ->
     command
 }
 
-/// Those of these parameters that were given.
+/// Returns the parameters that were given, of those that `is_taken` accepts.
 pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> Asked {
     let mut asked = Asked::default();
     for (name, owners) in parameters(is_taken) {
@@ -190,7 +190,7 @@ pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> A
     asked
 }
 
-/// The value of an option; `tune` also takes a filter whose taps are free.
+/// Parses the value of an option. `tune` also accepts [`FREE`] for a filter.
 fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     if parameter.kind == Kind::Filter && text == FREE {
         return Ok(FREE.into());
@@ -198,7 +198,7 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     parameter.read(text).map_err(|error| error.without_subject().spelled(words::option).to_string())
 }
 
-/// The filter that asks for the taps themselves.
+/// The word for a filter whose taps themselves are searched.
 pub(crate) const FREE: &str = "free";
 
 /// The name of an option, and each scheme that has a parameter of this name, with that parameter.
@@ -217,7 +217,7 @@ fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
     all
 }
 
-/// The help of an option: `sf, mw: its meaning, in the signal's unit, such as 0.1. tbr: its meaning there`.
+/// Returns the help of an option: `sf, mw: its meaning, in the signal's unit, such as 0.1. tbr: its meaning there`.
 fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
     let mut meanings: Vec<(Vec<&str>, String)> = Vec::new();
     for (info, parameter) in owners {
@@ -255,7 +255,7 @@ fn meaning(parameter: &Parameter) -> String {
 /// Writes an answer to standard output.
 ///
 /// # Errors
-/// It cannot be written.
+/// Returns an error if standard output cannot be written.
 pub(crate) fn answer(text: impl Display) -> Checked<()> {
     let mut output = Output::to(None)?;
     write!(output, "{text}")?;

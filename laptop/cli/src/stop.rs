@@ -1,4 +1,5 @@
-//! Ctrl-C: a command without an end of its own stops and keeps what it has so far; any other leaves no half-written file.
+//! Handles Ctrl-C: a command that runs until it is stopped ends in order and keeps its output; any other is ended at
+//! once, and leaves no half-written file.
 
 use anyhow::{Context, Result};
 use lab::output::abandon;
@@ -8,15 +9,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 static IS_WANTED: AtomicBool = AtomicBool::new(false);
-/// Whether the command ends by itself once Ctrl-C was pressed.
+/// Whether the running command has a [`Stop`], so that it ends by itself after Ctrl-C.
 static IS_AWAITED: AtomicBool = AtomicBool::new(false);
 
-/// Handles Ctrl-C: a command that has a [`Stop`] ends by itself; any other, and any at the second Ctrl-C, is ended at once.
+/// Installs the handler for Ctrl-C. A command that has a [`Stop`] ends by itself; any other is ended at once, and so is
+/// any command at the second Ctrl-C.
 ///
 /// # Errors
-/// The system refuses.
+/// Returns an error if the system refuses the handler.
 pub(crate) fn handle() -> Result<()> {
-    /// The exit status that shells give a program that Ctrl-C ended.
+    /// Exit status that shells give a program that Ctrl-C ended.
     const INTERRUPTED: i32 = 130;
     ctrlc::set_handler(|| {
         if IS_WANTED.swap(true, Ordering::Relaxed) || !IS_AWAITED.load(Ordering::Relaxed) {
@@ -27,30 +29,30 @@ pub(crate) fn handle() -> Result<()> {
     Ok(())
 }
 
-/// Tells a command that goes on for ever when to stop.
+/// Tells a command that would run for ever when to stop.
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,
 }
 
 impl Stop {
-    /// Stops on Ctrl-C, or after this many seconds if they are given; a second Ctrl-C ends the program at once.
+    /// Arranges to stop on Ctrl-C, or after `seconds` if they are given. A second Ctrl-C ends the program at once.
     ///
     /// # Errors
-    /// The number is not above 0.
+    /// Returns an error unless `seconds` is above 0.
     pub(crate) fn new(seconds: Option<f64>) -> Result<Self> {
         let after = seconds.map(duration).transpose()?;
         IS_AWAITED.store(true, Ordering::Relaxed);
         Ok(Self { start: Instant::now(), after })
     }
 
-    /// Whether it is time to stop.
+    /// Returns whether it is time to stop.
     pub(crate) fn is_due(&self) -> bool {
         IS_WANTED.load(Ordering::Relaxed)
             || self.after.is_some_and(|after| self.start.elapsed() >= after)
     }
 
-    /// The time since the start, in µs as ticks have it.
+    /// Returns the time since the start as a tick, in µs.
     pub(crate) fn tick(&self) -> Tick {
         Tick::from_micros(self.start.elapsed().as_micros() as u64)
     }

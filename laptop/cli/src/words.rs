@@ -1,4 +1,4 @@
-//! Errors and notes in the words of the command line, where a setting is an option.
+//! Words the library's errors and notes for the command line, where a setting is called by its option.
 
 use anyhow::Error;
 use catalogue::run::Worded;
@@ -6,12 +6,12 @@ use lab::ErrorKind;
 use lab::input::LogKind;
 use std::io;
 
-/// The option of a setting.
+/// Returns the option that sets a setting.
 pub(crate) fn option(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
-/// An error with all that led to it.
+/// Words an error, followed by its causes.
 pub(crate) fn of(error: &Error) -> String {
     let mut words = Vec::new();
     for cause in error.chain() {
@@ -28,7 +28,7 @@ pub(crate) fn of(error: &Error) -> String {
     words.join(": ")
 }
 
-/// An error of the library, with the command that helps.
+/// Words an error of the library, followed by the option or command that helps.
 pub(crate) fn of_lab(error: &lab::Error) -> String {
     let help = match *error.kind {
         ErrorKind::Log(LogKind::NeedsChannel) => "; `spikewire info` lists them",
@@ -40,7 +40,7 @@ pub(crate) fn of_lab(error: &lab::Error) -> String {
     error.spelled(option).to_string() + help
 }
 
-/// Whether the output has been closed by who reads it.
+/// Returns whether the error is that the reader of the output closed it.
 pub(crate) fn is_closed_pipe(error: &Error) -> bool {
     let is_pipe = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
     error.downcast_ref::<lab::Error>().is_some_and(lab::Error::is_closed_pipe)

@@ -1,11 +1,11 @@
-//! `advise`: what a log is like, and which scheme suits it, or why nothing does.
+//! `advise`: describes a log and names the scheme that suits it, or says why none does.
 
 mod common;
 
 use common::{file, flight, good, ran, refused, spikewire, table};
 use serde_json::Value;
 
-/// A budget that a test build gets through in a few seconds.
+/// A budget small enough for a debug build to finish in a few seconds.
 const SHORT: &str = "--evaluations 60";
 
 #[test]
@@ -35,8 +35,8 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg "));
 }
 
-/// At 100 samples a second 20° of 5 Hz are a sample. The signal jumps every 25 samples, further than step forward does when
-/// it is tuned for few spikes.
+/// At 5 Hz and 100 samples a second, a phase of 20° is about one sample. The signal jumps every 25 samples, further
+/// than step forward follows once it is tuned for few spikes.
 #[test]
 fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     let sample = |place: u32| {
@@ -86,7 +86,7 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     refused(&unknown, "", &["--loop-bandwidth needs the rate of x"]);
 }
 
-/// Of two channels that move apart, each by itself would take another count of spikes, or another scheme.
+/// The two channels move apart: tuned alone, one would get another number of spikes a sample, or another scheme.
 #[test]
 fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
     let row = |place: u32| {
@@ -139,8 +139,8 @@ fn more_lost_frames_than_were_flown_are_refused() {
     refused(&format!("advise {log} --rate 100 --frame-loss 11"), "", refusal);
 }
 
-/// A flight on which motors shake the sensor moves little more than its noise, and is no noise: deviation 0.206, noise
-/// 0.124.
+/// Motors shake the sensor so much that the flight itself moves little more than the noise (deviation 0.206, noise
+/// 0.124); the log must not be mistaken for noise.
 #[test]
 fn a_shaken_flight_is_advised_on() {
     let text = std::fs::read_to_string(flight("hexarotor.csv")).unwrap();
@@ -169,7 +169,7 @@ fn a_shaken_flight_is_advised_on() {
     assert!(!told["channels"][0]["reaching"].as_array().unwrap().is_empty());
 }
 
-/// A verdict, and no scheme.
+/// Such a log gets a verdict and no scheme.
 #[test]
 fn a_log_on_the_ground_or_too_short_has_a_verdict() {
     let rest = spikewire(&format!("advise {} {SHORT}", flight("vtol_at_rest.csv")), "");

@@ -1,4 +1,4 @@
-//! What is refused, with which words, and that nothing half-written stays behind.
+//! Bad input is refused with words that name the fault, and leaves no half-written file.
 
 mod common;
 

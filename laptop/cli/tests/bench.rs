@@ -1,4 +1,4 @@
-//! A smaller run of the paper's benchmark: it agrees with the paper, and it is the run of yesterday.
+//! A smaller run of the paper's benchmark agrees with the paper, and repeats figures recorded earlier.
 
 #![expect(clippy::unreadable_literal, reason = "figures as they are printed")]
 
@@ -26,8 +26,8 @@ fn the_last_line_says_how_many_means_agree() {
     assert_eq!(told.lines().last(), Some("24 of 24 means within sampling error"));
 }
 
-/// Means of the schemes in the order of [`SCHEMES`], by table and seconds. The statistics above cannot
-/// see a rule that is broken a little; these figures see any spike that is gone or new.
+/// Recorded means of the schemes in the order of [`SCHEMES`], by table and seconds. The paper's statistics would not
+/// reveal a rule that is slightly wrong; these figures change with a single spike.
 #[rustfmt::skip]
 const BEFORE: [(&str, u64, [f64; 8]); 6] = [
     ("efficiency", 1, [37.900000, 29.975000, 75.100000, 45.800000, 73.675000, 62.275000, 0.000000, -223.700000]),
@@ -56,7 +56,7 @@ fn every_spike_is_where_it_was() {
     }
 }
 
-/// With two signals a case some seed gives a mean that is too far off.
+/// With two signals a case, there is a seed whose mean lies too far off.
 #[test]
 fn a_benchmark_that_differs_is_an_error() {
     let differing = (1..200).find_map(|seed| {

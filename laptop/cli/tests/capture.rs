@@ -1,4 +1,4 @@
-//! What can be said of a capture without a probe.
+//! `capture` as far as it can be tested without a probe.
 
 mod common;
 

@@ -1,7 +1,7 @@
-//! Networks on the controller: files and spikes of other programs, by each program's rule.
+//! Networks on the controller, held against files and spikes of other programs, by each program's rule.
 //!
-//! Of `peers/nir`, `lif`, `braille` and their spikes are from the repository of NIR (BSD 3-Clause, 2023, NIR Team); `peers/
-//! frameworks.py` wrote the others.
+//! In `peers/nir`, `lif`, `braille` and their spikes are from the repository of NIR (BSD 3-Clause, 2023, NIR Team);
+//! `peers/frameworks.py` wrote the others.
 
 mod common;
 
@@ -34,14 +34,15 @@ fn by(framework: Framework) -> Asked {
     Asked { framework: Some(framework), ..Asked::default() }
 }
 
-/// How many of the steps times neurons differ.
+/// Counts the pairs of step and neuron in which two trains differ.
 fn differing(one: &Trains, other: &Trains) -> usize {
     let only = |a: &[u16], b: &[u16]| a.iter().filter(|neuron| !b.contains(neuron)).count();
     assert_eq!(one.len(), other.len());
     one.iter().zip(other).map(|(one, other)| only(one, other) + only(other, one)).sum()
 }
 
-/// Two recurrent networks that read Braille, against the spikes of their hidden layer that the authors published.
+/// Two recurrent networks that read Braille are compared with the spikes of their hidden layer that the authors
+/// published.
 #[test]
 fn networks_that_snntorch_trained_fire_as_was_published() {
     let inputs = trains("braille.txt");
@@ -64,7 +65,7 @@ fn networks_that_snntorch_trained_fire_as_was_published() {
     }
 }
 
-/// One neuron that each program stepped 1000 times, with the potentials that it wrote down.
+/// One neuron, stepped 1000 times by each program, is compared with the potentials that the program wrote.
 #[test]
 fn one_neuron_has_the_potentials_that_were_published() {
     let table = text("lif.csv");
@@ -96,7 +97,8 @@ fn one_neuron_has_the_potentials_that_were_published() {
     }
 }
 
-/// Networks that three frameworks wrote, against 200 steps of themselves: every spike, and the outputs' potentials.
+/// Networks that three frameworks wrote are compared with 200 steps in those frameworks: every spike, and the
+/// potentials of the outputs.
 #[test]
 fn networks_fire_as_their_frameworks_do() {
     use Reset::{SubtractLate, SubtractNoDelay, ToValue, ToValueLate};
@@ -186,7 +188,7 @@ fn what_a_reader_would_do_with_a_file_is_told() {
     assert!(told.contains("a gain of 0.040000, where snnTorch writes 1"), "{told}");
 }
 
-/// The firmware `trained` compiles it for every core: `cargo verify network`.
+/// The firmware `trained` compiles this module for every core: `cargo verify network`.
 #[test]
 fn a_network_becomes_the_module_of_the_firmware() {
     let options = "--as snntorch --reset subtract-no-delay";
@@ -212,7 +214,7 @@ fn a_network_becomes_the_module_of_the_firmware() {
     assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.told);
 }
 
-/// JSON says its rule; potentials of outputs that never fire are read.
+/// JSON contains its rule; the potentials of outputs that never fire are compared too.
 #[test]
 fn json_goes_onto_the_controller_and_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 5.5}], "readout": {"weights": [[1, -2]]}}"#;

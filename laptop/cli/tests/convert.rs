@@ -1,11 +1,11 @@
-//! Events in every format, there and back, and what a format cannot hold.
+//! Events in every format, converted there and back, and the limits of each format.
 
 mod common;
 
 use common::{file, good_bytes, ran, refused, spikewire_bytes};
 use std::fmt::Write;
 
-/// Formats that hold any event of 14 bits of address whose time rises by little.
+/// Formats that can hold any event with an address of 14 bits, if time rises in small steps.
 const FORMATS: [&str; 12] = [
     "link",
     "link,period=5000,channels=6,jitter=5",
@@ -21,7 +21,7 @@ const FORMATS: [&str; 12] = [
     "csv",
 ];
 
-/// A table of events.
+/// Returns a table of events.
 fn table(events: impl IntoIterator<Item = (u32, u16, i8)>) -> String {
     let mut table = "tick,address,polarity\n".to_owned();
     for (tick, address, polarity) in events {
@@ -30,7 +30,7 @@ fn table(events: impl IntoIterator<Item = (u32, u16, i8)>) -> String {
     table
 }
 
-/// Some events: several at a time, of addresses up to 16 383.
+/// Returns 1499 events, several at each tick, with addresses up to 16 383.
 fn events() -> String {
     table((1..1500_u32).map(|i| {
         let address = (i * 7919 % 16_384) as u16;
@@ -42,7 +42,7 @@ fn convert(from: &str, to: &str, input: &[u8]) -> common::RanBytes {
     good_bytes(&format!("convert --from {from} --to {to}"), input)
 }
 
-/// The events alone.
+/// Returns the table without its comments.
 fn rows(table: &[u8]) -> String {
     let text = str::from_utf8(table).unwrap();
     text.lines()

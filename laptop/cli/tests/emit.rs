@@ -1,4 +1,4 @@
-//! `emit c`: a crate of exactly the codecs that fly.
+//! `emit c` writes a crate with exactly the codecs that fly.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! A flight's file at both ends: what its module sends is heard in the channels' units, by that file alone.
+//! One flight's file describes both ends: what its module sends is decoded in the channels' units, by that file alone.
 
 mod common;
 
@@ -20,13 +20,13 @@ impl Put for Items<'_> {
     }
 }
 
-/// A sensor's counts: a wave of 1.5 units.
+/// Returns a sensor's count: a wave of amplitude 1.5 units.
 fn count(channel: usize, place: usize) -> i16 {
     let value = 1.5 * (place as f64 * 0.02 * (channel as f64 + 1.0)).sin();
     (value * flight::COUNTS[channel]).round() as i16
 }
 
-/// The frames of a vehicle, and the values that its far end holds after the last.
+/// Returns the frames of a vehicle, and the values that its receiver holds after the last of them.
 fn flown() -> (Vec<u8>, Vec<f64>) {
     let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(3)));
     let (mut bytes, mut items, mut buffer) = (Vec::new(), Vec::new(), [0; MAX_FRAME]);
@@ -82,7 +82,7 @@ fn what_a_flight_sends_is_heard_by_its_file() {
     );
 }
 
-/// A filter is part of what both ends must have in common.
+/// A flight with a filter, which both ends must have in common.
 mod shaken {
     include!("../../flight/tests/flights/sf.rs");
 }
@@ -122,7 +122,7 @@ fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
     }
 }
 
-/// A table in the channels' units is coded in counts, as the vehicle does.
+/// A table in the channels' units is encoded in counts, as on the vehicle.
 #[test]
 fn a_recording_is_coded_as_the_vehicle_does() {
     let names = flight::NAMES.join(",");

@@ -10,13 +10,13 @@ use yule_log::builder::ULogParserBuilder;
 use yule_log::model::inst::{FieldValue, Format};
 use yule_log::model::msg::UlogMessage;
 
-/// A log in the making.
+/// A log to which messages are appended.
 struct Log(Vec<u8>);
 
 const SCHEME: &str = "encode --scheme sf --threshold 0.5 --topic armed";
 
 impl Log {
-    /// A topic `armed` of 9 bytes and padding, and one with text.
+    /// Begins a log with a topic `armed` of 9 bytes and padding, and a topic that holds text.
     fn new() -> Self {
         let mut log = Self([b"ULog\x01\x12\x35\x01".as_slice(), &[0; 8]].concat());
         log.add(b'F', b"armed:uint64_t timestamp;bool on;uint8_t[7] _padding0;");
@@ -38,7 +38,7 @@ impl Log {
         self.add(b'D', &[&[1, 0], &time.to_le_bytes()[..], &[on]].concat())
     }
 
-    /// Ten samples, 0 and 1 by turns.
+    /// Appends ten samples that alternate between 0 and 1.
     fn armed_ten(&mut self, start: u64) {
         for sample in start..start + 10 {
             self.armed(sample * 5000, (sample % 2) as u8);
@@ -192,7 +192,7 @@ fn a_compressed_log_is_read() {
     ran!("{SCHEME} --field on {path}");
 }
 
-/// What another reader makes of a log: by topic and field, a number for each sample.
+/// The content of a log as another reader gives it: by topic and field, a number for each sample.
 type Columns = BTreeMap<String, BTreeMap<String, Vec<f64>>>;
 
 #[test]

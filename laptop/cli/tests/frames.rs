@@ -1,17 +1,18 @@
-//! Videos: the same brightness gives the same events, however the file holds it.
+//! Videos: equal brightness gives equal events, in every file format.
 
 mod common;
 
 use common::{file, ran};
 
-/// Grey levels that limited range holds too, so that both ranges show the same pictures.
+/// Makes frames of grey levels that the limited range can hold too, so that videos of both ranges show the same
+/// pictures.
 fn frames(level: impl Fn(u32) -> u8) -> Vec<Vec<u8>> {
     let frame =
         |frame: u32| (0..64 * 48).map(|pixel| level((pixel * 7 + frame * 61) % 220)).collect();
     (0..8).map(frame).collect()
 }
 
-/// The events of a video with this header; a frame of colour has its chroma behind its brightness.
+/// Returns the events of a video with this header; each frame is followed by `chroma` bytes of colour.
 fn events(header: &str, chroma: usize, frames: &[Vec<u8>]) -> String {
     let mut video = format!("YUV4MPEG2 W64 H48 F25:1 {header}\n").into_bytes();
     for frame in frames {

@@ -1,4 +1,4 @@
-//! Help: each command has an example, and offers only what it takes.
+//! Help: each command has an example, and lists only options that it accepts.
 
 mod common;
 

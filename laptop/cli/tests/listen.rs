@@ -1,4 +1,4 @@
-//! What a board sends, to the values that it holds itself: from files, pipes and serial ports.
+//! `listen` decodes what a board sends to the values that the board holds: from files, pipes and serial ports.
 
 mod common;
 
@@ -19,7 +19,7 @@ use std::time::Duration;
 
 const CHANNELS: usize = 3;
 
-/// A board's frames, and the values that its own decoders hold after each event.
+/// The frames of a board, and the values of its own decoders after each event.
 struct Board<S> {
     frames: Vec<Vec<u8>>,
     values: Vec<(u32, u16, S)>,
@@ -42,12 +42,12 @@ impl Sender {
     }
 }
 
-/// The samples of three channels: waves.
+/// Returns a sample of each of three channels, which are waves.
 fn waves<S: Sample>(sample: u32) -> [S; CHANNELS] {
     [0.05, 0.07, 0.11].map(|pace: f64| S::from_f64((f64::from(sample) * pace).sin() * 100.0))
 }
 
-/// A list that a bank puts its items into.
+/// A list that collects a bank's items.
 #[derive(Default)]
 struct Items(Vec<Item>);
 
@@ -57,7 +57,7 @@ impl Put for &mut Items {
     }
 }
 
-/// A board that encodes waves, with a keyframe every 100 samples.
+/// Runs a board that encodes waves, with a keyframe every 100 samples.
 fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     let mut bank = Bank::<_, CHANNELS>::per_channel(schemes.each_ref());
     let mut decoders = schemes.each_ref().map(P::decoder);
@@ -90,13 +90,13 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     Board { frames: sender.1, values }
 }
 
-/// A board whose code is decoded a sample at a time: its values after each sample, by the address of each channel.
+/// Runs a board whose code decodes to a value for each sample; the values have the first address of their channel.
 fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
     // Sub-timesteps take heartbeats by which the pace of samples can be measured.
     board_since_boot(scheme, slot_ticks, 0, if slot_ticks > 0 { 20 } else { 100 })
 }
 
-/// The same so many µs after its boot, with a heartbeat every so many samples.
+/// Runs such a board, which booted `uptime` µs ago and sends a heartbeat every `beat` samples.
 fn board_since_boot<P: Start>(
     scheme: &P,
     slot_ticks: u32,
@@ -123,7 +123,7 @@ fn board_since_boot<P: Start>(
     Board { frames: sender.1, values }
 }
 
-/// All exact values are the board's; returns the lines.
+/// Asserts that all exact values are the board's; returns the lines.
 fn assert_sampled<S: Sample>(board: &Board<S>, frames: &[Vec<u8>], options: &str) -> Vec<Line> {
     let heard = good_bytes(&format!("listen {options}"), &frames.concat());
     let lines = values(&heard.output);
@@ -144,7 +144,7 @@ fn three_floats() -> Board<f32> {
 
 const THREE: &str = "--scheme sf --thresholds 7.5,3.1,12.7";
 
-/// A line of values.
+/// A line of output with a value.
 #[derive(Debug, PartialEq)]
 struct Line {
     tick: u32,
@@ -172,7 +172,7 @@ fn values(table: &[u8]) -> Vec<Line> {
         .collect()
 }
 
-/// All values of events are the board's, exactly.
+/// Asserts that the values of all events are exactly the board's.
 fn assert_exact<S: Sample>(board: &Board<S>, one: f64, options: &str) {
     let heard = good_bytes(&format!("listen {options}"), &board.frames.concat());
     let heard: Vec<Line> =
@@ -379,7 +379,7 @@ fn keyframes_of_step_forward_tell_wrong_parameters() {
     assert!(!told.contains("contradict"), "{told}");
 }
 
-/// However long a board has been on, its sub-timesteps are those that it sends, or it is told why there are none.
+/// After any uptime of the board its sub-timesteps are decoded, or the output says why not.
 #[test]
 fn slots_are_heard_after_any_uptime() {
     let scheme = Slots::<f32, 15, 10>::new(-100.0..=100.0, 1.5);
@@ -425,7 +425,8 @@ fn what_no_link_holds_is_refused() {
     assert!(foreign.told.contains("generic events"), "{}", foreign.told);
 }
 
-/// A serial line: the board's end, and the name of the laptop's, which does not hang up while the file is open.
+/// Opens a serial line: returns the board's end, and the name of the laptop's end, which stays open while the last file
+/// does.
 fn serial_line() -> (File, String, File) {
     let board = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
     grantpt(&board).unwrap();
@@ -438,7 +439,7 @@ fn serial_line() -> (File, String, File) {
     (board.into(), name, open)
 }
 
-/// What a program says that ends well.
+/// Waits for a program to end well, and returns its messages.
 fn said(child: Child) -> String {
     let done = child.wait_with_output().unwrap();
     let told = String::from_utf8(done.stderr).unwrap();
@@ -456,7 +457,7 @@ fn spawn(arguments: &str, told: impl Into<Stdio>) -> Child {
         .unwrap()
 }
 
-/// Waits until the program has written so many lines.
+/// Waits until the program has written `count` lines.
 fn lines(child: &mut Child, count: usize) -> String {
     let (mut said, mut byte) = (Vec::new(), [0]);
     for _ in 0..count {
@@ -532,7 +533,7 @@ fn ctrl_c_keeps_what_was_heard() {
     assert_eq!(fs::read(&path).unwrap(), b"tick,address,polarity\n9,130,1\n");
 }
 
-/// Until the program hears: its file, beside its place, comes last.
+/// Waits until the program listens: it creates its temporary output file last.
 fn wait_for_file(directory: &Path) {
     for _ in 0..1000 {
         if fs::read_dir(directory).unwrap().count() > 0 {
@@ -543,7 +544,7 @@ fn wait_for_file(directory: &Path) {
     panic!("no file in 10 s");
 }
 
-/// Ctrl-C, and what the program says then.
+/// Sends Ctrl-C, and returns the messages that follow.
 fn interrupt(child: Child) -> String {
     let id = child.id().to_string();
     assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());

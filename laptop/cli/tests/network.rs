@@ -1,4 +1,5 @@
-//! Networks onto chips: from NIR and JSON to the constant, what it costs, and what is refused.
+//! Networks from NIR and JSON become constants for chips; tests of the constants, of the reported cost, and of what is
+//! refused.
 
 mod common;
 
@@ -8,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// How `roll.nir` was trained, if it had been.
+/// The code for which `roll.nir` would have been trained; its weights were computed, not trained.
 const CODE: &str = "--scheme position --neurons 20 --min -2 --max 2 --column gyro_x";
 
 fn peers(name: &str) -> PathBuf {
@@ -19,17 +20,17 @@ fn network(file: &str) -> String {
     format!("network {file} {CODE} {AS_THE_CHIP} --reset zero {}", flight("hexarotor.csv"))
 }
 
-/// As the chip compares, tuned on all of the recording.
+/// Neurons compare after each spike, as the chip does by itself, and the whole recording is tuned on.
 const AS_THE_CHIP: &str = "--compare spike --no-held-out";
 
-/// The figures of a line of the report.
+/// Returns the numbers in the line of the report that begins with `start`.
 fn figures(told: &str, start: &str) -> Vec<f64> {
     let line = told.lines().find_map(|line| line.strip_prefix(start)).expect(start);
     let numbers = line.split([' ', ',', ';', '%', ':']);
     numbers.filter_map(|number| number.parse().ok()).collect()
 }
 
-/// The firmware `rate-loop` compiles it for every core, and flies it in QEMU.
+/// The firmware `rate-loop` compiles this constant for every core, and flies it in QEMU.
 #[test]
 fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     let ran = good(&network(&peers("roll.nir").display().to_string()), "");
@@ -46,15 +47,15 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     assert!(winners[0] > 80.0, "{}", ran.told);
 }
 
-/// A network in JSON that step forward drives, and the command that brings it onto the chip.
+/// Writes a network in JSON that step forward drives; returns the file and the command that brings it onto the chip.
 fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
     let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
     let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
     (directory, format!("network {path} {options} {sf} {}", flight("hexarotor.csv")))
 }
 
-/// Networks of the chips' own numbers: with thresholds between what weights add up to nothing is rounded. One spike a
-/// sample reaches one neuron after the other, so that neither order nor sums within a step play a part.
+/// The weights fit the chips, and thresholds lie between the sums that weights can reach: nothing is rounded. One spike
+/// a sample reaches one neuron at a time, so the order and the sums within a step do not matter.
 #[test]
 fn networks_that_a_chip_can_hold_cost_nothing() {
     let three = r#"{"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
@@ -178,8 +179,8 @@ fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
     assert!(held_out.starts_with("layer 1: 2, ") && !low.contains("--held-out"), "{low}");
 }
 
-/// A line of spikes is a step: each weight is added, and the neuron fires at 12. The line that comes later is answered
-/// as the chip does it, which keeps its potentials.
+/// Each line of spikes is a step: its weights are added, and the neuron fires at 12. Later lines are answered by the
+/// chip's model, which keeps its potentials between steps.
 #[test]
 fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 11.5}]}"#;
@@ -205,8 +206,8 @@ fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
     refused(&reckon, "0\n", &["only tinyODIN"]);
 }
 
-/// Rises and falls cancel within a step, which the chip's neurons see one after the other. Rows and rungs see to it that
-/// they compare once a step; then nothing is lost, and what holds better is taken.
+/// Within a step a rise and a fall cancel, but the chip's neurons see one after the other. Extra rows and rungs make
+/// neurons compare only once a step; then nothing is lost, and this variant is chosen.
 #[test]
 fn neurons_compare_once_a_step_where_that_holds_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},
@@ -230,7 +231,7 @@ fn neurons_compare_once_a_step_where_that_holds_better() {
     assert_eq!(ran.output.lines().count(), 3, "{}", ran.output);
 }
 
-/// snnTorch writes the same file for every reset: its own spikes tell which it was.
+/// snnTorch writes the same file for every reset; only its spikes show which reset it used.
 #[test]
 fn resets_are_asked_for_and_compared_with_the_frameworks_own_spikes() {
     let at = |name: &str| peers("nir").join(name).display().to_string();
@@ -262,7 +263,7 @@ fn resets_are_asked_for_and_compared_with_the_frameworks_own_spikes() {
     refused(&short, "", &["1 steps", "200"]);
 }
 
-/// `ReckOn` subtracts a threshold behind its leak; before it, by weights of its own.
+/// `ReckOn` subtracts a threshold after the leak. The network subtracts it before, which weights of its own reproduce.
 #[test]
 fn reckon_subtracts_where_the_network_does() {
     let json = r#"{"layers": [{"name": "one", "weights": [[127, -20], [60, 50]], "keep": 0.9,
@@ -279,8 +280,8 @@ fn reckon_subtracts_where_the_network_does() {
     }
 }
 
-/// `on_chip.py`, an example of the Python package, trained this network in tinyODIN's arithmetic, with comparisons once a
-/// step, on the first half of the flight. Double precision here has no floor at -2048, which the chip has.
+/// `on_chip.py`, an example of the Python package, trained this network in tinyODIN's arithmetic, with one comparison a
+/// step, on the first half of the flight. The double-precision run has no floor at -2048, unlike the chip.
 #[test]
 fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let network = peers("on_chip.json").display().to_string();
@@ -294,7 +295,7 @@ fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     assert!(share >= 90.0 && active > 50.0, "{}", ran.told);
 }
 
-/// How `turns.py` trains: of the roll rates every third stretch of 250 is held out.
+/// Returns the roll rates that `turns.py` trains on, or holds out: every third stretch of 250 samples is held out.
 fn stretches(is_held_out: bool) -> String {
     let flight = fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let rows: Vec<&str> = flight.lines().skip(1).collect();
@@ -307,8 +308,8 @@ fn stretches(is_held_out: bool) -> String {
     table
 }
 
-/// `turns.py` says how often its neurons fire; double precision fires as often here, and the chip almost. The firmware
-/// `rate-loop` has the constant.
+/// `turns.py` prints how often its neurons fire; the double-precision run fires as often, and the chip nearly so. The
+/// firmware `rate-loop` has this constant.
 #[test]
 fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     let (_trained, trained) = file("trained.csv", stretches(false));
@@ -350,7 +351,7 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
-/// As snnTorch and Norse write layers: graphs in the graph, one that leads back to itself.
+/// snnTorch and Norse write layers as nested graphs, of which one is recurrent.
 #[test]
 fn nested_and_recurrent_graphs_are_taken() {
     let whole = good(&network(&peers("roll.nir").display().to_string()), "");
@@ -381,7 +382,7 @@ fn nested_and_recurrent_graphs_are_taken() {
     assert!(spikes > 1_000.0 && (spikes - on_chip).abs() < 0.1 * spikes, "{}", recurrent.told);
 }
 
-/// A damaged file is refused, or is another network; the program never breaks down.
+/// A damaged file is refused or read as another network; the program never panics.
 #[test]
 fn damaged_files_are_refused() {
     let whole = fs::read(peers("roll.nir")).unwrap();

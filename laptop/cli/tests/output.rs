@@ -1,4 +1,4 @@
-//! Files that are written: whole or not at all, whatever ends the program, and errors with their name.
+//! Output files are written whole or not at all, however the program ends, and errors name the file.
 #![cfg(unix)]
 
 mod common;
@@ -60,7 +60,7 @@ fn a_full_disk_is_told_with_the_file() {
     }
 }
 
-/// A table of 100 000 columns is told by the first of them.
+/// For a table of 100 000 columns the message lists only the first names.
 #[test]
 fn a_message_is_short_though_names_are_many() {
     let names: Vec<String> = (0..100_000).map(|own| format!("c{own}")).collect();

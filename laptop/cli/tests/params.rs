@@ -1,4 +1,4 @@
-//! `--params FILE`: every command that takes a scheme reads it, and its options override it.
+//! `--params FILE`: read by every command that takes a scheme; options on the command line override it.
 
 mod common;
 

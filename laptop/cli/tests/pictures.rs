@@ -1,4 +1,4 @@
-//! Pictures: PNG as SVG, thinned to what can be seen, and told what they show.
+//! Pictures: PNG and SVG show the same, long curves are thinned, and texts say what is shown.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::fs;
 use tiny_skia::Pixmap;
 
-/// Draws, and gives the picture's bytes.
+/// Draws a plot, and returns the bytes of the picture.
 fn plot(options: &str, ending: &str) -> (Vec<u8>, String) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("picture").with_extension(ending);
@@ -22,7 +22,7 @@ fn svg(options: &str) -> String {
 /// The colour of the decoded curve.
 const DECODED: [u8; 3] = [0xe8, 0x7d, 0x1e];
 
-/// The corners of the curve of a colour in an SVG.
+/// Returns the corners of the curves of this colour in an SVG.
 fn curve(svg: &str, colour: &str) -> Vec<(f64, f64)> {
     let lines = svg.lines().filter(|line| line.contains("<polyline") && line.contains(colour));
     let points = |line: &str| -> Vec<(f64, f64)> {

@@ -1,4 +1,4 @@
-//! There and back: every scheme and sample type, from tables and from flight logs.
+//! Encodes and decodes with every scheme and sample type, from tables and from flight logs.
 
 mod common;
 

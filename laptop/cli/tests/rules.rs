@@ -1,10 +1,10 @@
-//! What the program adds to the rules of the schemes, which `host-tests` hold.
+//! Rules that the program adds to those of the schemes, which `host-tests` checks.
 
 mod common;
 
 use common::{events, good, table, values};
 
-/// The earlier a spike, the nearer its neuron; `floor` leaves out the last.
+/// The earlier a spike, the nearer the value to its neuron; `floor` suppresses the latest slots.
 #[test]
 fn slots_come_in_their_order() {
     for (floor, neurons) in [("", &[1, 0, 2][..]), ("--floor 16", &[1, 0])] {

@@ -1,21 +1,22 @@
-//! What the program says: the tables in `said`, a case a line.
+//! Runs the program on the cases in `said`, one on each line, and checks its words.
 //!
-//! `command << input => words | words`: refused with these words, on standard error. `->` in place of `=>`: goes well, with
-//! these words on either output, and without those behind a `!`. `==`: goes well, and writes exactly this. Behind `|>` stands
-//! a command that takes what the one before it wrote. `\n`, `\r`, `\t` and `\\` are escapes. `NAME := text` gives a text a name,
-//! `@NAME := text` writes it to a file whose path the name is; `{NAME}` stands for either.
+//! `command << input => words | words`: the command is refused, with these words on standard error. With `->` in place
+//! of `=>` it succeeds, with these words on either output, and without those that follow a `!`. With `==` it succeeds
+//! and writes exactly this text. ` |> ` pipes the output of one command into the next. `\n`, `\r`, `\t` and `\\` are
+//! escapes. `NAME := text` defines a name for a text; `@NAME := text` writes the text to a file, and the name is its
+//! path; `{NAME}` inserts it.
 
 mod common;
 
 use common::{RanBytes, flight, flight_logs, good_bytes, spikewire_bytes, table};
-use flight_logs::made::{KINDS, blackbox};
+use flight_logs::made::{KINDS, blackbox, dataflash, dataflash_text, tlog};
 use std::fs;
 use std::path::Path;
 
-/// What names stand for, the last first.
+/// Names and the texts they stand for, the last defined first.
 type Names = Vec<(String, String)>;
 
-/// The names that every table has.
+/// Returns the names that every table may use.
 fn names(directory: &Path) -> Names {
     let wave = |size: f64| -> Vec<f64> {
         (0..500).map(|sample| (f64::from(sample) * 0.05).sin() * size).collect()
@@ -37,10 +38,13 @@ fn names(directory: &Path) -> Names {
         write(kind.name(), &kind.log("none"));
     }
     write("log.bbl", &blackbox());
+    write("log.bin", &dataflash());
+    write("log.log", dataflash_text().as_bytes());
+    write("log.tlog", &tlog());
     names
 }
 
-/// With names and escapes replaced.
+/// Replaces the names in a text.
 fn plain(text: &str, names: &Names) -> String {
     let mut text = text.to_owned();
     for (name, value) in names.iter().rev() {
@@ -54,7 +58,7 @@ fn unescaped(text: &str) -> String {
     text.replace(r"\t", "\t").replace('\0', r"\")
 }
 
-/// What is wrong with what a case says.
+/// Runs a case, and returns a description of its fault, if there is one.
 fn fault(case: &str, names: &Names) -> Option<String> {
     let parts = ["=>", "->", "=="].into_iter().filter_map(|sign| {
         let (start, words) = case.split_once(&format!(" {sign}"))?;

@@ -1,4 +1,4 @@
-//! Clocks that run over or start anew: times go on behind 32 bits, and nothing joins what a reboot parts.
+//! Clocks that wrap or restart: times continue beyond 32 bits, and nothing is joined across a reboot.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{file, good, ran};
 use flight_logs::made::Kind;
 use std::fmt::Write;
 
-/// A table of times in µs and a wave.
+/// Returns a table of these times in µs and a wave.
 fn table(times: impl Iterator<Item = i64>) -> String {
     let mut table = "time_us,x\n".to_owned();
     for (sample, time) in times.enumerate() {
@@ -16,7 +16,7 @@ fn table(times: impl Iterator<Item = i64>) -> String {
     table
 }
 
-/// The row of step forward, and its spikes a second.
+/// Returns step forward's row of the scores, and its spikes a second.
 fn spikes_a_second(path: &str) -> (String, f64) {
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
     let rows: serde_json::Value = ran.json();
@@ -50,7 +50,7 @@ fn a_reboot_starts_a_segment_of_its_own() {
     assert!((rate * seconds - spikes).abs() < 1e-6 && spikes > 100.0, "{rate}");
 }
 
-/// The second segment is encoded as if it were alone: from its own first sample on.
+/// The second segment is encoded from its own first sample, as if it stood alone.
 #[test]
 fn no_code_joins_two_segments() {
     let values = |offset: f64| (0..200).map(move |sample| offset + f64::from(sample).sin() * 0.05);
@@ -76,7 +76,7 @@ fn no_code_joins_two_segments() {
     assert!(svg.contains("\n1.5\n") && !svg.contains("\n-0.5\n"), "2 s from 0 on");
 }
 
-/// A bag whose messages stand in the file from the last to the first.
+/// The messages of this bag are stored in reverse order.
 #[test]
 fn an_unsorted_bag_has_a_length_and_a_rate() {
     let messages = (0..160).rev().map(|sample| Kind::Bag.record(sample));

@@ -1,4 +1,4 @@
-//! Tables as other programs write them, and files that are none.
+//! Tables as other programs write them, and files that are no tables.
 
 mod common;
 
@@ -57,7 +57,7 @@ fn other_encodings_and_compressed_tables_are_read() {
     assert_eq!(decoded, good("decode", &spikes).output.as_bytes());
 }
 
-/// As packers that run on several cores write them: frames with and without content.
+/// Packers that run on several cores write several frames, with and without content.
 #[test]
 fn all_frames_of_zstandard_are_read() {
     let skipped = b"\x5a\x2a\x4d\x18\x03\0\0\0abc";
@@ -81,7 +81,7 @@ fn all_frames_of_zstandard_are_read() {
 fn other_files_are_named() {
     for (start, words) in [
         (&b"PK\x03\x04\x14\x00\x06\x00\x08\x00\x00\x00\x21\x00"[..], "spreadsheet"),
-        (b"\xa3\x95\x80\x80\x59FMT\x00BBnNZ\x00\x00\x00\x00", "mavlogdump.py"),
+        (b"\xa3\x95\x80\x80\x59FMT\x00BBnNZ\x00\x00\x00\x00", "a log needs --topic and --field"),
         (b"#ROSBAG V2.0\nE", "a log needs --topic and --field"),
         (b"\x89MCAP0\r\n\x01\x00\x00", "a log needs --topic and --field"),
         (b"SQLite format 3\0\x10\0", "a log needs --topic and --field"),
@@ -108,7 +108,7 @@ fn a_binary_file_is_no_file_of_spikes() {
     }
 }
 
-/// However late the first value comes.
+/// The first value may come after any number of rows.
 #[test]
 fn missing_values_may_stand_first() {
     let late = [vec![f64::NAN; 20_000], vec![0.0, 1.0]].concat();

@@ -1,4 +1,4 @@
-//! Times: which column they are in, in which unit, and what is told of their steps.
+//! Times: the column and unit in which they are found, and the report on their steps.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! What ran, and whether it suits the signal, is told.
+//! The program reports which settings ran, and whether they suit the signal.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn scores_say_what_they_ran_with() {
     assert_eq!(hsa["parameters"]["taps"].as_array().unwrap().len(), 15);
 }
 
-/// Whole numbers that `f32` does not tell apart, and a wave far from 0.
+/// One column has whole numbers that `f32` cannot tell apart, the other a wave far from 0.
 #[test]
 fn columns_that_a_sample_type_loses_are_told() {
     let latitude: Vec<f64> =

@@ -1,4 +1,4 @@
-//! `tune`: settings that keep to what was asked for, checked on held-out blocks, and what it says where there are none.
+//! `tune`: finds settings within the limits, checks them on held-out blocks, and reports if there are none.
 
 mod common;
 
@@ -6,10 +6,10 @@ use common::{file, flight, good, ran, refused, spikewire, table};
 use serde_json::Value;
 use std::fmt::Write;
 
-/// A budget that a test build gets through in a few seconds.
+/// A budget small enough for a debug build to finish in a few seconds.
 const SHORT: &str = "--evaluations 100";
 
-/// The only channel's only row.
+/// Returns the only row of the only channel.
 fn row(arguments: &str) -> Value {
     let told: Value = ran!("tune --json {arguments}").json();
     let (_, rows) = told.as_object().unwrap().iter().next().unwrap();
@@ -20,7 +20,7 @@ fn number(row: &Value, path: &str) -> f64 {
     row.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path}: {row:#}"))
 }
 
-/// Ten seconds of the paper's signal.
+/// Returns ten seconds of the paper's signal.
 fn paper_signal() -> (tempfile::TempDir, String) {
     file("signal.csv", good("signal --seconds 10 --seed 3", "").output)
 }
@@ -41,7 +41,7 @@ fn each_goal_is_reached_and_beats_the_paper() {
     assert!(number(&row, "/tuned_on/rmse") <= 0.4 && number(&row, "/tuned_on/efficiency") > 80.0);
 }
 
-/// The step codes' lists of outcomes leave nothing out: no threshold on a grid is better than the one found.
+/// For step codes the search lists all outcomes: no threshold on a grid is better than the one found.
 #[test]
 fn no_threshold_on_a_grid_is_better() {
     let (_directory, signal) = paper_signal();
@@ -63,7 +63,7 @@ fn no_threshold_on_a_grid_is_better() {
     }
 }
 
-/// A goal that a setting meets to the last spike is met, whatever its percentage is rounded to.
+/// A goal that settings meet to the last spike counts as met, however its percentage is rounded.
 #[test]
 fn settings_exactly_at_the_goal_are_found() {
     let flight = flight("hexarotor.csv");
@@ -81,7 +81,7 @@ fn settings_exactly_at_the_goal_are_found() {
     }
 }
 
-/// A search that time ends says so, and never that it has compared everything.
+/// A search that ran out of time says so, and never claims to have compared everything.
 #[test]
 fn what_time_ended_is_said() {
     let flight = flight("hexarotor.csv");
@@ -92,8 +92,8 @@ fn what_time_ended_is_said() {
     assert!(whole.contains("all of") && !whole.contains("cut short"), "{whole}");
 }
 
-/// Steps in the blocks that are tuned on, waves in those held out: few large steps fit the one and not the other, which
-/// the paper's many small ones follow.
+/// The tuned blocks hold steps, the held-out blocks waves: settings with few large steps fit only the former, while the
+/// paper's many small steps follow both.
 #[test]
 fn an_overfit_is_said_though_the_papers_settings_have_more_spikes() {
     let before = |block: usize| (block as f64 * 0.3 + 0.35).floor();
@@ -115,8 +115,9 @@ fn an_overfit_is_said_though_the_papers_settings_have_more_spikes() {
     assert!(steps.contains("not to be relied on in another flight"), "{steps}");
 }
 
-/// Coded block by block, a code that drifts would start from the right value in each. The first half of the flight: 0.034
-/// where it was tuned, and on the blocks between, 0.03 if each were coded by itself.
+/// If each block were coded by itself, a drifting code would start each block from the right value. On the first half
+/// of the flight the error is 0.034 where it is tuned, and would be 0.03 on the blocks between if each were coded by
+/// itself.
 #[test]
 fn held_out_blocks_are_coded_within_the_flight_and_drift_is_said() {
     let text = std::fs::read_to_string(flight("hexarotor.csv")).unwrap();
@@ -135,8 +136,8 @@ fn held_out_blocks_are_coded_within_the_flight_and_drift_is_said() {
     }
 }
 
-/// More spikes a sample than 16 come nearer than 0.103 to a flight with an impact, and are found; what the signal never
-/// comes to is not asked for.
+/// A flight with an impact needs more than 16 spikes a sample to come nearer than 0.103, and they are found; counts
+/// that the signal never reaches are not tried.
 #[test]
 fn as_many_spikes_a_sample_are_tried_as_there_may_be() {
     let flight = flight("hexarotor.csv");
@@ -155,7 +156,7 @@ fn as_many_spikes_a_sample_are_tried_as_there_may_be() {
     assert!((17..=2 * needed).contains(&spikes), "{spikes} of {needed}");
 }
 
-/// An end of the search is told as one, if the scheme goes on behind it.
+/// The report mentions that a setting lies at the end of its search, if the scheme itself allows more.
 #[test]
 fn where_a_search_ends_is_said() {
     let flight = flight("hexarotor.csv");
@@ -190,7 +191,7 @@ fn the_same_seed_gives_the_same_settings() {
     assert_eq!(tuned(7)["parameters"], tuned(7)["parameters"]);
 }
 
-/// What is written comes back through `--params` with the very figures.
+/// The settings written, read back by `--params`, give exactly the same figures.
 #[test]
 fn what_is_emitted_is_what_was_scored() {
     let (_directory, signal) = paper_signal();
@@ -271,7 +272,7 @@ fn several_logs_are_tuned_on_together() {
     );
 }
 
-/// A verdict, and never a figure.
+/// Such a log gets a verdict, and never a figure.
 #[test]
 fn what_says_nothing_is_refused() {
     let noise = |count: u64| -> Vec<f64> {

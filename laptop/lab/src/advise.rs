@@ -1,4 +1,4 @@
-//! Advice on a recording: the character of each channel, and the scheme that suits it.
+//! Advice on recordings: describes each channel, and names the scheme that suits it.
 
 mod bank;
 mod flown;
@@ -25,57 +25,58 @@ use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
 
-/// The most phase that a code's latency may take from a control loop at its bandwidth, in degrees: a third of a margin of
-/// 60°. In the flights of `docs/loop.md` codes that take 18° stray, and those that take 80° lose the drone.
+/// Largest phase, in degrees, that a code's latency may cost a control loop at its bandwidth: a third of a phase margin
+/// of 60°. In the flights of `docs/loop.md` the drone strays with codes that cost 18°, and is lost with those that cost
+/// 80°.
 const PHASE: f64 = 20.0;
 
-/// The part of a log's samples at which step forward may fall behind. In those flights a threshold that does so at 0.9 %
-/// flies, and one that does so at 3.9 % loses steps and flips.
+/// Largest share of a log's samples at which step forward may fall behind the signal. In the flights of `docs/loop.md`
+/// a threshold that falls behind at 0.9 % of the samples flies; one that does at 3.9 % loses steps and flips.
 const STEEP: f64 = 0.02;
 
-/// Samples that a control loop takes in a period of its bandwidth at least. Two are Nyquist's, with which nobody controls
+/// Fewest samples that a control loop needs in one period of its bandwidth. Nyquist's two are too few to control
 /// anything.
 const FEWEST: f64 = 4.0;
 
-/// The latency in samples that a loop of this bandwidth bears.
+/// Returns the largest latency, in samples, that a loop of this bandwidth tolerates.
 fn borne(bandwidth: f64, rate: f64) -> f64 {
     (PHASE / 360.0 * rate / bandwidth).floor()
 }
 
-/// Recordings and what a scheme may cost, for [`advise`].
+/// The recordings to advise on, and limits on what a scheme may cost, for [`advise`].
 pub struct AdviseRequest {
-    /// The channels, each of which gets advice of its own.
+    /// The channels; each is also judged by itself.
     pub recordings: Vec<Recording>,
     /// Sample type of the codecs.
     pub sample: SampleType,
-    /// The RMSE that the control loop bears, in the signal's unit; a fifth of the signal's deviation unless given.
+    /// Largest RMSE that the control loop tolerates, in the signal's unit; a fifth of the standard deviation if `None`.
     pub max_rmse: Option<f64>,
-    /// Number of samples at most until a code comes out.
+    /// Maximum delay of the code, in samples.
     pub max_latency: Option<f64>,
-    /// The frequency up to which the control loop acts that is to fly on the code, in Hz, a quarter of the rate at most. Codes that are too late for it, or
-    /// that fall behind the signal, are not advised.
+    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate.
+    /// Codes that are too late for it, or that cannot keep up with the signal, are not advised.
     pub loop_bandwidth: Option<f64>,
-    /// Percent of the frames that the link loses, 0 to 10. With a loop, codes are not advised that a simulated drone did
-    /// not fly on well at this loss.
+    /// Share of frames that the link loses, in percent, 0 to 10. With a control loop, a code is not advised if a
+    /// simulated drone flew badly on it at this loss.
     pub frame_loss: f64,
-    /// Core of the measured table that tells instructions.
+    /// Core whose measured instruction counts apply.
     pub core: String,
-    /// Number of settings of each scheme and channel to score, 1 or more.
+    /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
-    /// Seconds after which the search ends, which makes the advice depend on the machine's speed.
+    /// Seconds after which the search stops; the advice then depends on the machine's speed.
     pub seconds: Option<f64>,
     /// Seed of the search.
     pub seed: u64,
 }
 
 impl AdviseRequest {
-    /// Settings of each scheme and channel to score unless said otherwise.
+    /// Default number of settings to score for each scheme and channel.
     pub const EVALUATIONS: usize = 300;
 
-    /// Percent of the frames that are lost unless said otherwise.
+    /// Default share of frames that are lost, in percent.
     pub const FRAME_LOSS: f64 = 1.0;
 
-    /// Asks for advice on recordings, in `f32`, for a fifth of the deviation.
+    /// Requests advice in `f32`, with a fifth of the standard deviation as the allowed RMSE.
     pub fn new(recordings: Vec<Recording>) -> Self {
         Self {
             recordings,
@@ -96,40 +97,40 @@ impl AdviseRequest {
 #[derive(Debug, Serialize)]
 pub struct Advice {
     look: Look,
-    /// The reason that nothing is advised, if so.
+    /// The reason that no scheme is advised, if none is.
     objection: Option<String>,
     max_rmse: f64,
-    /// The schemes that reach it, the advised one first.
+    /// The schemes that reach the allowed RMSE, the advised one first.
     reaching: Vec<Candidate>,
-    /// The schemes that do not, each with the reason.
+    /// The schemes that miss it, each with the reason.
     others: Vec<String>,
-    /// Whether a search ended before its budget of settings.
+    /// Whether a search stopped before it had scored all its settings.
     is_cut_short: bool,
-    /// The latency in samples that the control loop bears, if its bandwidth is known.
+    /// Largest latency in samples that the control loop tolerates, if its bandwidth is known.
     loop_latency: Option<f64>,
-    /// Bytes a second that raw samples would take on a wire.
+    /// Bytes a second that the raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,
     #[serde(skip)]
     sample: SampleType,
     #[serde(skip)]
     core: String,
-    /// Whether other channels are to share its scheme.
+    /// Whether the bank has other channels, which must share its scheme.
     #[serde(skip)]
     is_one_of_many: bool,
 }
 
-/// A filter that fits the rate of a recording.
+/// A filter whose corner is possible at the recording's sample rate.
 #[derive(Clone, Copy)]
 struct Filtered {
     filter: Filter,
     sample: SampleType,
     rate: f32,
-    /// By how many samples a slow signal comes late.
+    /// Delay of slow signals, in samples.
     delay: f64,
 }
 
 impl Filtered {
-    /// `None` if its corner does not fit the rate.
+    /// Prepares a filter; `None` if its corner is not possible at this rate.
     fn new(filter: Filter, sample: SampleType, rate: f64) -> Option<Self> {
         let rate = rate as f32;
         drop(filter.start(sample, rate).ok()?);
@@ -143,11 +144,11 @@ impl Filtered {
     }
 }
 
-/// What a search of one scheme on one channel came to.
+/// The outcome of tuning one scheme on one channel.
 enum Tuning {
-    /// Settings within the error.
+    /// Settings within the allowed RMSE.
     Reached(Box<Candidate>),
-    /// The reason that there are none, behind the scheme's name.
+    /// The reason that there are none, to be written after the scheme's name.
     Missed(String),
 }
 
@@ -160,10 +161,10 @@ struct Candidate {
     scheme: Option<Scheme>,
 }
 
-/// Looks at each recording, tunes all schemes on it, and says which suits it.
+/// Describes each recording, tunes all schemes on it, and ranks those that suit it.
 ///
 /// # Errors
-/// A recording is too short to hold something out, or there is no setting to score.
+/// Returns an error if a recording is too short to hold a part of it out, or if no settings may be scored.
 pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     if request.evaluations == 0 {
         return Err(RequestKind::NotAboveZero.of(Given::new("evaluations", 0)));
@@ -206,14 +207,14 @@ pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
 }
 
 impl Advice {
-    /// The scheme advised and its settings, if there is one.
+    /// Returns the advised scheme and its settings, if there is one.
     pub fn best(&self) -> Option<(Scheme, &Row)> {
         let best = self.reaching.first()?;
         Some((best.scheme?, &best.row))
     }
 
     fn new(request: &AdviseRequest, recording: &Recording) -> Result<Self> {
-        /// 14 dB.
+        /// Default RMSE as a share of the standard deviation: a signal-to-noise ratio of 14 dB.
         const PART: f64 = 0.2;
         let look = Look::at(recording);
         let objection = look.objection().filter(|_| look.verdict != Verdict::Clipped);
@@ -253,7 +254,7 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme for a moment, unless it is known not to fly.
+    /// Tunes a scheme briefly, unless it is known to fly badly.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -279,7 +280,7 @@ impl Advice {
         Ok(())
     }
 
-    /// Tunes a scheme for a moment, with these parameters fixed.
+    /// Tunes a scheme briefly, with the parameters in `fixed` given.
     fn tuned(
         &self,
         request: &AdviseRequest,
@@ -288,7 +289,7 @@ impl Advice {
         fixed: &Asked,
         budget: &Budget,
     ) -> Result<Tuning> {
-        /// A chance difference between blocks is no failure.
+        /// How far the RMSE on held-out blocks may exceed the allowed one: blocks differ by chance.
         const MARGIN: f64 = 1.25;
         let filtered = self.filter(scheme, request.sample);
         let own;
@@ -349,27 +350,27 @@ impl Advice {
         Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
     }
 
-    /// The filter before a scheme in a loop: that with which it flew, if it fits the rate.
+    /// Returns the filter with which the scheme flew in a loop, if it is possible at this rate.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;
         Filtered::new(filter, sample, self.look.rate?)
     }
 
-    /// The settings of a scheme that reach the error, if some do.
+    /// Returns the settings of a scheme, if they reach the allowed RMSE.
     fn row(&self, scheme: Scheme) -> Option<&Row> {
         let own = self.reaching.iter().find(|own| own.scheme == Some(scheme));
         own.map(|own| &own.row)
     }
 
-    /// The fewest bytes first, or events where no rate is known.
+    /// Sorts the schemes by bytes a second, or by events if the rate is unknown; the fewest come first.
     fn rank(&mut self) {
         let cost =
             |one: &Candidate| one.link_bytes_per_second.unwrap_or(one.row.whole.spikes as f64);
         self.reaching.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     }
 
-    /// The reason that nothing is advised.
+    /// Returns the reason that no scheme is advised.
     pub fn why_not(&self) -> String {
         self.objection.clone().unwrap_or_else(|| {
             format!(
@@ -380,7 +381,7 @@ impl Advice {
         })
     }
 
-    /// The advice as a page for people.
+    /// Formats the advice for reading.
     pub fn page(&self) -> String {
         let Look { name, samples, seconds, rate, jitter_ms, gaps, rejected, .. } = &self.look;
         let unit = known_unit(name).map_or(String::new(), |unit| format!(" {unit}"));
@@ -477,10 +478,11 @@ impl Advice {
     }
 }
 
-/// Bytes that all events take on the crate's link, in full frames, with a keyframe a second where a decoder needs them.
+/// Returns the number of bytes that all events take on the crate's link, in full frames, with a keyframe a second if a
+/// decoder needs them.
 ///
 /// # Errors
-/// The link cannot hold the rate or the events.
+/// Returns an error if the link cannot express the rate or the events.
 pub fn link_bytes(trial: &Trial, rate: f64) -> Result<f64> {
     let period = (1e6 / rate).round().max(1.0);
     let format: Format = format!("link,period={period}").parse()?;

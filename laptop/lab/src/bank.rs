@@ -5,20 +5,20 @@ use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use catalogue::run::{Codec, Event, Settings};
 
-/// Codecs of one scheme. The neurons of the second channel are numbered on from those of the first.
+/// Codecs of one scheme, one for each channel. The neurons of a second channel are numbered on from those of the first.
 pub struct Bank {
     codecs: Vec<Codec>,
     neurons: u16,
-    /// The events of one channel.
+    /// Events of one channel; a buffer.
     own: Vec<Event>,
 }
 
 impl Bank {
-    /// A codec for each channel, as they start on a recording. Codes by chance draw from a stream of its own for each
-    /// channel.
+    /// Makes a codec for each channel, in the state in which a recording begins. Codes that draw by chance get a
+    /// separate stream of random numbers for each channel.
     ///
     /// # Errors
-    /// A parameter that makes no sense, or too many neurons in all.
+    /// Returns an error if a parameter is invalid, or if there are too many neurons in all.
     pub fn new(scheme: Scheme, channels: &[Settings]) -> Result<Self> {
         let neurons = match channels.first() {
             Some(settings) => scheme.shape(settings)?.neurons,
@@ -35,17 +35,17 @@ impl Bank {
         Ok(Self { codecs, neurons: neurons as u16, own: Vec::new() })
     }
 
-    /// How many neurons each channel has.
+    /// Returns the number of neurons of each channel.
     pub fn neurons(&self) -> usize {
         self.neurons.into()
     }
 
-    /// How many samples after its own the code of a sample comes out.
+    /// Returns the latency: how many samples after a sample its code comes out.
     pub fn latency(&self) -> usize {
         self.codecs.first().map_or(0, Codec::latency)
     }
 
-    /// Takes the next samples of all channels, all finite, and adds the events that they bring about.
+    /// Encodes the next samples of all channels, which must be finite, and appends their events.
     pub fn encode(&mut self, columns: &[Vec<f64>], events: &mut Vec<Event>) {
         let mut columns = columns.iter();
         self.collect(events, |codec, own| {
@@ -55,12 +55,12 @@ impl Bank {
         });
     }
 
-    /// Adds the events of the samples that still wait for their look-ahead.
+    /// Encodes the samples that still wait for their look-ahead, and appends their events.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         self.collect(events, Codec::finish);
     }
 
-    /// The events of all channels by sample, and within one by slot and channel.
+    /// Sorts the events of all channels by sample, then by slot and channel.
     fn collect(
         &mut self,
         events: &mut Vec<Event>,
@@ -79,10 +79,10 @@ impl Bank {
         events[before..].sort_by_key(|event| (event.sample, event.slot));
     }
 
-    /// Decodes the next samples of all channels from the events that belong to them.
+    /// Decodes the next samples of all channels from their events.
     ///
     /// # Errors
-    /// The first event of a sample whose events no encoder emits together.
+    /// Returns the first event of a sample if no encoder could emit the sample's events together.
     pub fn decode(
         &mut self,
         samples: usize,
@@ -109,7 +109,7 @@ mod tests {
     use super::{Bank, Scheme};
     use catalogue::run::{Asked, Known, SampleType};
 
-    /// Four channels of one value, by chance: had they the same draws, they would fire together.
+    /// Four channels have the same value and code it by chance: with the same draws they would fire together.
     #[test]
     fn channels_draw_apart() {
         for name in ["bernoulli", "grf-prob"] {

@@ -1,8 +1,8 @@
-//! Parameters in few words, for tables and pictures.
+//! Parameters in short form, for tables and pictures.
 
 use catalogue::run::Value;
 
-/// `threshold=0.1 start=0.001`; a filter by its length and sum.
+/// Formats parameters as `threshold=0.1 start=0.001`; a filter is given by its length and sum.
 pub fn brief(parameters: &[(&'static str, Value)]) -> String {
     let words = parameters.iter().map(|(key, value)| match list(value) {
         Some(taps) if *key == "taps" => {
@@ -21,7 +21,7 @@ fn list(value: &Value) -> Option<Vec<f64>> {
     value.number().map(|number| vec![number]).or_else(|| value.numbers().map(<[f64]>::to_vec))
 }
 
-/// Writes a number with at most six significant digits.
+/// Formats a number with at most six significant digits.
 pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value + 0.0);
@@ -35,7 +35,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A parameter for programs: a number, a list of numbers, or a word.
+/// Converts a parameter to JSON: a number, a list of numbers, or a word.
 pub(crate) fn json(value: &Value) -> serde_json::Value {
     let text = value.to_string();
     let numbers: Option<Vec<serde_json::Value>> =

@@ -1,4 +1,4 @@
-//! A flight's bank and its writer in C: a header beside those of its codecs.
+//! Writes a flight's bank and its writer in C: a header to go with those of its codecs.
 
 use crate::Result;
 use crate::flight::Flight;
@@ -7,7 +7,7 @@ use catalogue::run::{Constant, SampleType, Settings};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Channels in a row whose parameters are the same: a codec of the library each.
+/// Consecutive channels with equal parameters, which share one codec of the library.
 struct Run {
     /// The codec's name in C: `flight_0` gives `sw_flight_0_encode`.
     name: String,
@@ -23,6 +23,8 @@ pub(crate) struct CBank<'a> {
 }
 
 impl<'a> CBank<'a> {
+    /// Prepares the bank of a flight.
+    ///
     /// # Errors
     /// Returns an error if the library has no such scheme or sample type.
     pub(crate) fn new(flight: &'a Flight) -> Result<Self> {
@@ -57,12 +59,12 @@ impl<'a> CBank<'a> {
         Ok(Self { flight, codecs, runs, sample })
     }
 
-    /// The codecs: name, settings and constant.
+    /// Returns the codecs: name, settings and constant.
     pub(crate) fn codecs(&self) -> &[(String, &'a Settings, Constant)] {
         &self.codecs
     }
 
-    /// The header, beside that of the crate in this directory.
+    /// Returns the header's text; `directory` is that of the crate whose header it includes.
     pub(crate) fn header(&self, directory: &Path) -> String {
         let Self { flight, runs, sample, .. } = self;
         let codecs =

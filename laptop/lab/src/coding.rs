@@ -1,4 +1,4 @@
-//! A scheme with what is asked of its parameters, and files of that: TOML, as tuning writes it.
+//! A scheme with some of its parameters given, and the TOML files that tuning writes of it.
 
 use crate::error::At;
 use crate::scheme::Scheme;
@@ -10,7 +10,7 @@ use std::fs;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table};
 
-/// A scheme, the sample type that it runs in, and what is asked of its parameters.
+/// A scheme, its sample type, and the parameters given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coding {
     /// The scheme.
@@ -22,22 +22,22 @@ pub struct Coding {
 }
 
 impl Coding {
-    /// The coding that gives these settings again.
+    /// Makes the coding that results in these settings.
     pub fn of_settings(scheme: Scheme, settings: &Settings) -> Self {
         Self { scheme, sample: settings.sample, asked: settings.to_asked(scheme.info()) }
     }
 
-    /// Reads a file.
+    /// Reads a file of parameters.
     ///
     /// # Errors
-    /// Returns an error, with file and line, if the file is missing, is no TOML, names no scheme, or holds what the
-    /// scheme does not take.
+    /// Returns an error, with file and line, if the file is missing, is not TOML, names no scheme, or has an entry that
+    /// the scheme does not accept.
     pub fn read(path: &str) -> Result<Self> {
         let text = fs::read_to_string(path).map_err(|error| Error::open(path, error))?;
         Self::parse(path, &text)
     }
 
-    /// Reads the text of a file, whose name is for errors.
+    /// Parses the text of a file of parameters; `file` is its name in errors.
     ///
     /// # Errors
     /// See [`read`](Self::read).
@@ -105,7 +105,8 @@ impl Coding {
         Ok(coding)
     }
 
-    /// Builds the scheme where nothing is left to options or to a recording: what then fails is a value's fault.
+    /// Builds the scheme if no parameter is left to options or to a recording, so that an invalid value is found in the
+    /// file.
     fn built_alone(&self) -> Result<()> {
         let Self { scheme, sample, asked } = self;
         let is_open = |own: &Parameter| {
@@ -126,7 +127,7 @@ impl Coding {
         })
     }
 
-    /// The text of a file, below these comments.
+    /// Formats the coding as a file of parameters, with these comments at its start.
     pub fn to_toml(&self, comments: &[String]) -> String {
         let mut table = Table::new();
         for (name, value) in self.asked.iter() {
@@ -151,7 +152,7 @@ impl Coding {
     }
 }
 
-/// A value of a file; `None` where a flag is off.
+/// Reads a value from a file; `None` for a flag that is off.
 fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>> {
     let number = |value: &DeValue| -> Result<f64> {
         let number = match value {
@@ -177,7 +178,7 @@ fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>
     Ok(Some(parameter.check(value)?))
 }
 
-/// A whole number without a point.
+/// Converts a number to TOML; a whole number is written without a decimal point.
 fn number(value: f64) -> toml::Value {
     match value.to_string().parse::<i64>() {
         Ok(whole) => whole.into(),

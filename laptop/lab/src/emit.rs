@@ -1,4 +1,4 @@
-//! Sources for firmware: a constant in Rust, a file of parameters, a crate that makes the library for C.
+//! Writes source code for firmware: a constant in Rust, a file of parameters, or a crate that builds the C library.
 
 use crate::c_bank::CBank;
 use crate::coding::Coding;
@@ -13,23 +13,23 @@ use catalogue::run::{Constant, ErrorKind, Known, Settings};
 use std::path::Path;
 use std::{fs, io};
 
-/// Writes a constant in Rust of this name, below these comments.
+/// Writes a Rust constant of this name, with these comments before it.
 ///
 /// # Errors
-/// A parameter is missing or makes no sense, or the scheme has no constant.
+/// Returns an error if a parameter is missing or invalid, or if the scheme cannot be written as a constant.
 pub fn rust(coding: &Coding, name: &str, comments: &[String]) -> Result<String> {
     emit::rust(comments, name, coding.scheme, &settings(coding)?)
 }
 
-/// Writes a file of parameters, below these comments.
+/// Writes a file of parameters, with these comments at its start.
 ///
 /// # Errors
-/// A parameter is missing or makes no sense.
+/// Returns an error if a parameter is missing or invalid.
 pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
     Ok(emit::toml(comments, coding.scheme, &settings(coding)?))
 }
 
-/// Resolves a coding as it flies: where a signal begins is no parameter of it.
+/// Resolves a coding to settings for flight, without the first value of a signal.
 fn settings(coding: &Coding) -> Result<Settings> {
     let Coding { scheme, sample, asked } = coding;
     let past = vec![0.0; scheme.looks_back(asked)];
@@ -41,7 +41,7 @@ fn settings(coding: &Coding) -> Result<Settings> {
     Ok(scheme.resolve(*sample, asked, &known)?)
 }
 
-/// A codec of the library for C.
+/// A codec of the C library.
 #[derive(Clone, Debug)]
 pub struct Codec {
     /// The codec's name in C: `roll` gives `sw_roll_encode`.
@@ -50,12 +50,12 @@ pub struct Codec {
     pub coding: Coding,
 }
 
-/// Writes a crate that makes the library for C of exactly these codecs, their parameters in flash, into a new
-/// directory. It is built with a checkout of spikewire, or with the published crates if there is none.
+/// Writes a crate that builds a C library of exactly these codecs, with their parameters in flash, into a new
+/// directory. It depends on the checkout at `spikewire`, or on the published crates if that is `None`.
 ///
 /// # Errors
-/// A parameter is missing or makes no sense, the library has no such scheme, two codecs share a name, or the
-/// directory is there.
+/// Returns an error if a parameter is missing or invalid, if the library has no such scheme, if two codecs share a
+/// name, or if the directory exists.
 pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> Result<()> {
     let mut all = Vec::new();
     for (place, codec) in codecs.iter().enumerate() {
@@ -69,11 +69,11 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     write(directory, &all, spikewire).map_err(unwritten)
 }
 
-/// Writes a crate that makes the library for C of a flight's codecs, as [`c_crate`] does, and `flight_bank.h` with its bank
+/// Writes a crate that builds a C library of a flight's codecs, as [`c_crate`] does, and `flight_bank.h` with its bank
 /// and its writer.
 ///
 /// # Errors
-/// Returns an error if the library has no such scheme or sample type, or the directory is there.
+/// Returns an error if the library has no such scheme or sample type, or if the directory exists.
 pub fn c_flight(flight: &Flight, directory: &Path, spikewire: Option<&Path>) -> Result<()> {
     let bank = CBank::new(flight)?;
     let scheme = Scheme::from(flight.run_time());
@@ -87,7 +87,7 @@ pub fn c_flight(flight: &Flight, directory: &Path, spikewire: Option<&Path>) -> 
     written.map_err(|error| OutputKind::Unwritten { error }.at(directory))
 }
 
-/// The declaration of a codec.
+/// Returns the declaration of a codec.
 fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     let Coding { scheme, sample, asked } = coding;
     let info = scheme.info();
@@ -107,7 +107,7 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
 }
 
-/// The declaration of a codec of this name and constant.
+/// Returns the declaration of a codec with this name and constant.
 fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
     let Constant { scheme: kind, value } = constant;
     let text = Coding::of_settings(scheme, settings).to_toml(&[]);

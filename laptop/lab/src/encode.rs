@@ -1,4 +1,4 @@
-//! A recording to a file of spikes, in constant memory.
+//! Encodes a recording to a file of spikes, in constant memory.
 
 use crate::Result;
 use crate::bank::Bank;
@@ -13,10 +13,10 @@ use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorde
 use crate::tune::RequestKind;
 use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
 
-/// Encodes the channels of a flight out of a recording, as its sender does; see [`encode`].
+/// Encodes the channels of a flight from a recording, as its sender does; see [`encode`].
 ///
 /// # Errors
-/// Returns an error if the recording lacks a channel, or the output is not good.
+/// Returns an error if the recording lacks a channel, or if the output cannot be written.
 pub fn encode_flight(
     flight: &Flight,
     input: &InputOptions,
@@ -30,11 +30,11 @@ pub fn encode_flight(
     encode_from(&open, &input, (scheme, sample, &asked), format, output)
 }
 
-/// Encodes channels of a recording into an output, which is opened once all else is known to be good. Without a format
-/// it is a table. Returns the output, to be finished, and what a user should know, a line each.
+/// Encodes channels of a recording. The output is opened last, once recording and parameters are known to be valid.
+/// Without a format it is a table. Returns the output, still to be finished, and notes for the user, a line each.
 ///
 /// # Errors
-/// The recording, the parameters or the output are not good.
+/// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.
 pub fn encode(
     input: &InputOptions,
     scheme: Scheme,
@@ -147,7 +147,7 @@ fn encode_from(
     Ok((output, notes))
 }
 
-/// The first samples: `enough` finite ones or more, or all if there are fewer.
+/// Reads the first samples: at least `enough` finite ones, or all if there are fewer.
 fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
     let mut finite = 0;
@@ -162,7 +162,7 @@ fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     Ok(all)
 }
 
-/// A pass over the recording.
+/// Reads the whole recording once, to calibrate on it.
 ///
 /// # Errors
 /// Returns an error if the input cannot be read.
@@ -182,7 +182,7 @@ fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
     }
 }
 
-/// The counts, in words.
+/// Formats the counts as notes.
 fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<String> {
     let Summary { samples, rejected, events } = *summary;
     let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };

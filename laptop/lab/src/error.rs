@@ -1,4 +1,4 @@
-//! Errors, as values that a program can act on and a front words with its own names of settings.
+//! Errors as values: a program can act on them, and each front end words them with its own names of settings.
 
 use crate::events::EventsKind;
 #[cfg(feature = "frames")]
@@ -13,85 +13,85 @@ use catalogue::run::{Given, Spell, Worded, quoted};
 use spikewire::ConfigError;
 use std::{error, fmt, io};
 
-/// The result of the laptop's work.
+/// The result of a function of this library.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// The error of a request, or of a file that it names.
+/// The error of a request, or of a file named in it.
 #[derive(Debug)]
 pub struct Error {
-    /// The setting at fault, if it is one alone.
+    /// The setting at fault, if it is a single one.
     pub parameter: Option<Given>,
-    /// Where it was found.
+    /// The place at which the fault was found.
     pub place: Place,
-    /// The reason.
+    /// The kind of fault, with its details.
     pub kind: Box<ErrorKind>,
 }
 
-/// The place of an error: a file by the name that it was given, and where in it.
+/// The place of a fault: a file, by the name that the user gave it, and a spot in it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// The file, or `standard input`.
+    /// Name of the file, or `standard input`.
     pub file: Option<String>,
-    /// Where in it.
+    /// The spot in the file.
     pub spot: Option<Spot>,
 }
 
-/// Where in a file.
+/// A spot in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Spot {
-    /// In a line, counted from 1.
+    /// A line, counted from 1.
     Line(u64),
-    /// At an entry of a file of settings, by its line.
+    /// An entry of a file of settings, given by its line.
     Entry(u64),
-    /// In a column of a line, counted from 1.
+    /// A column of a table, given by its line, counted from 1, and its name.
     Column(u64, String),
-    /// At a byte.
+    /// A byte, counted from 0.
     Byte(u64),
-    /// In a frame of a video, counted from 0.
+    /// A frame of a video, counted from 0.
     Frame(u64),
-    /// In a part that has a name, such as a layer of a network.
+    /// A named part, such as a layer of a network.
     Part(String),
 }
 
-/// The reason of an error, by what met it.
+/// The kind of an error, grouped by the part of the library that found it.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// A setting of a scheme.
+    /// A setting of a scheme is invalid.
     Setting(catalogue::run::ErrorKind),
-    /// A request that cannot be met.
+    /// A request cannot be met.
     Request(RequestKind),
-    /// A table of samples.
+    /// A table of samples cannot be read.
     Table(TableKind),
-    /// A flight log.
+    /// A flight log cannot be read.
     Log(LogKind),
-    /// A stream of events.
+    /// A stream of events cannot be read or written.
     Events(EventsKind),
-    /// A file of spikes.
+    /// A file of spikes cannot be read or written.
     Spikes(SpikesKind),
-    /// A file that is written.
+    /// An output file cannot be written.
     Output(OutputKind),
-    /// A video or a picture of it.
+    /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
-    /// A trained network.
+    /// A trained network cannot be read, or does not fit.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
-    /// A serial port.
+    /// A serial port cannot be read.
     #[cfg(all(feature = "ports", not(target_family = "wasm")))]
     Port(crate::port::PortKind),
-    /// A board at a debug probe.
+    /// A board at a debug probe cannot be read.
     #[cfg(any(test, feature = "capture"))]
     Capture(crate::rtt::CaptureKind),
-    /// A file that cannot be opened.
+    /// A file cannot be opened.
     Open(io::Error),
-    /// A file, stream or device that cannot be read or written.
+    /// A file, stream or device cannot be read or written.
     Io(io::Error),
-    /// An error of a library, in its own words.
+    /// An error of another library, in that library's words.
     Other(Box<dyn error::Error + Send + Sync>),
 }
 
-/// Lets the kinds of a room become errors.
+/// Implements the conversions from a module's error kinds to [`Error`].
 macro_rules! room {
     ($kinds:ty, $variant:ident) => {
         impl From<$kinds> for $crate::Error {
@@ -105,13 +105,13 @@ macro_rules! room {
         }
 
         impl $kinds {
-            /// The error of a setting.
+            /// Makes an error of this kind, about a setting.
             #[allow(dead_code)]
             pub(crate) fn of(self, parameter: catalogue::run::Given) -> $crate::Error {
                 $crate::Error { parameter: Some(parameter), ..self.into() }
             }
 
-            /// The error at a place.
+            /// Makes an error of this kind, at a place.
             #[allow(dead_code)]
             pub(crate) fn at(self, place: impl Into<$crate::Place>) -> $crate::Error {
                 $crate::Error { place: place.into(), ..self.into() }
@@ -121,9 +121,9 @@ macro_rules! room {
 }
 pub(crate) use room;
 
-/// An error that is told where it was found.
+/// Adds to an error the place at which it was found.
 pub(crate) trait At<T> {
-    /// Adds the place, as far as it is not known more closely.
+    /// Adds the place, unless the error already has a more precise one.
     fn at<P: Into<Place>>(self, place: impl FnOnce() -> P) -> Result<T>;
 }
 
@@ -134,7 +134,7 @@ impl<T, E: Into<Error>> At<T> for Result<T, E> {
 }
 
 impl Error {
-    /// Adds the place, as far as it is not known more closely.
+    /// Adds the place, unless the error already has a more precise one.
     #[must_use]
     pub fn at(mut self, place: impl Into<Place>) -> Self {
         let Place { file, spot } = place.into();
@@ -148,18 +148,18 @@ impl Error {
         self
     }
 
-    /// The error about a setting.
+    /// Sets the setting at fault.
     #[must_use]
     pub fn about(self, parameter: Given) -> Self {
         Self { parameter: Some(parameter), ..self }
     }
 
-    /// The error of a file that cannot be opened.
+    /// Makes the error of a file that cannot be opened.
     pub(crate) fn open(file: impl Into<String>, error: io::Error) -> Self {
         Self { parameter: None, place: Place::of(file), kind: Box::new(ErrorKind::Open(error)) }
     }
 
-    /// The error of a library.
+    /// Wraps an error of another library.
     pub(crate) fn other(error: impl Into<Box<dyn error::Error + Send + Sync>>) -> Self {
         Self {
             parameter: None,
@@ -168,13 +168,13 @@ impl Error {
         }
     }
 
-    /// The reason alone, for a front that has named the setting and its value already.
+    /// Removes the setting and its value, for a front end that has named them already.
     #[must_use]
     pub fn without_subject(self) -> Self {
         Self { parameter: None, ..self }
     }
 
-    /// The file that it is about, by the name that it was given.
+    /// Returns the file at fault, by the name that the user gave it.
     pub fn file(&self) -> Option<&str> {
         match &*self.kind {
             ErrorKind::Log(LogKind::Unread { error }) => Some(&error.file),
@@ -182,7 +182,7 @@ impl Error {
         }
     }
 
-    /// The setting that would go on over it, if there is one.
+    /// Returns the setting that would let the work go on despite the fault, if there is one.
     pub fn remedy(&self) -> Option<&'static str> {
         match &*self.kind {
             ErrorKind::Table(TableKind::Missing { .. } | TableKind::NotFinite { .. })
@@ -198,14 +198,14 @@ impl Error {
         }
     }
 
-    /// Whether what is written to has been closed by who reads it.
+    /// Returns whether the error is that the reader of the output closed it.
     pub fn is_closed_pipe(&self) -> bool {
         matches!(&*self.kind, ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 }
 
 impl ErrorKind {
-    /// The kind's name, for programs.
+    /// Returns the name of the kind, for programs.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Setting(kind) => kind.name(),
@@ -231,17 +231,17 @@ impl ErrorKind {
 }
 
 impl Place {
-    /// A file.
+    /// Makes the place of a whole file.
     pub fn of(file: impl Into<String>) -> Self {
         Self { file: Some(file.into()), spot: None }
     }
 
-    /// A spot of a file.
+    /// Makes the place of a spot in a file.
     pub fn spot(file: impl Into<String>, spot: Spot) -> Self {
         Self { file: Some(file.into()), spot: Some(spot) }
     }
 
-    /// A line of a file, counted from 1.
+    /// Makes the place of a line in a file, counted from 1.
     pub fn line(file: impl Into<String>, line: u64) -> Self {
         Self::spot(file, Spot::Line(line))
     }
@@ -277,7 +277,7 @@ impl From<Spot> for Place {
     }
 }
 
-/// The place, and what leads over to the reason.
+/// Writes the place, followed by the punctuation that leads over to the kind.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(file) = &self.file {
@@ -369,7 +369,7 @@ impl From<io::Error> for Error {
     }
 }
 
-/// Lets errors of libraries stand in their own words.
+/// Converts errors of other libraries, which keep their own words.
 macro_rules! foreign {
     ($($(#[$when:meta])* $error:ty),* $(,)?) => {$(
         $(#[$when])*

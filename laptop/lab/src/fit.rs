@@ -1,4 +1,4 @@
-//! Whether a sample type and the parameters suit a recording.
+//! Checks whether a sample type and parameters suit a recording.
 
 use crate::Error;
 use crate::brief::short;
@@ -8,7 +8,7 @@ use crate::tune::RequestKind;
 use catalogue::run::{SampleType, Settings};
 use std::fmt::Write;
 
-/// The range of a channel's samples, and how many of them a type cannot hold or a code not reach.
+/// The range of a channel's samples, and the number of samples that the type cannot hold or the code cannot reach.
 pub struct Fit {
     scheme: Scheme,
     sample: SampleType,
@@ -22,7 +22,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The fit of a channel that has no samples yet.
+    /// Starts with a channel that has no samples yet.
     pub fn new(scheme: Scheme, settings: &Settings) -> Self {
         // A rate code adds up its filters on its shift.
         let reach = settings
@@ -44,7 +44,7 @@ impl Fit {
         }
     }
 
-    /// Takes the next samples, all finite.
+    /// Adds the next samples, which must be finite.
     pub fn observe(&mut self, values: &[f64]) {
         let (low, high) = self.sample.range();
         let reach = self.reach.unwrap_or(f64::INFINITY);
@@ -58,7 +58,7 @@ impl Fit {
         self.resolution.observe(values);
     }
 
-    /// The notes for the user, a line each.
+    /// Returns notes for the user, a line each.
     pub fn notes(&self, settings: &Settings, spikes: u64) -> String {
         let mut notes = String::new();
         // Writing to a string cannot fail.
@@ -67,7 +67,7 @@ impl Fit {
     }
 
     fn write(&self, notes: &mut String, settings: &Settings, spikes: u64) -> std::fmt::Result {
-        /// A signal of fewer steps is mostly rounding.
+        /// Fewest quantisation steps in a signal's range; below this it is mostly rounding.
         const STEPS: f64 = 16.0;
         let Self { sample, min, max, samples, saturated, .. } = *self;
         if samples == 0 {
@@ -109,19 +109,19 @@ impl Fit {
     }
 }
 
-/// The threshold of a code that spikes on changes.
+/// Returns the threshold of a code that spikes on changes.
 fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
     settings.number("threshold").ok().filter(|_| scheme.info().has_first_value())
 }
 
-/// A sentence on how many samples the sample type could not hold, if any.
+/// Describes in a sentence how many samples the sample type cut off, if any.
 pub fn cut(sample: SampleType, count: u64) -> Option<String> {
     let (low, high) = sample.range();
     (count > 0)
         .then(|| format!("{count} samples were cut to the range of {sample}, {low} to {high}"))
 }
 
-/// A sentence on what the sample type has rounded.
+/// Describes in a sentence what the sample type rounded, if anything.
 pub fn rounding(settings: &Settings) -> Option<String> {
     let (mut told, mut lists) = (Vec::new(), Vec::new());
     for (name, asked) in &settings.rounded {
@@ -142,7 +142,7 @@ pub fn rounding(settings: &Settings) -> Option<String> {
     (!told.is_empty()).then(|| format!("in {}, {}", settings.sample, told.join(", ")))
 }
 
-/// An error of settings that a column gives, with why where the sample type does not hold the column's steps.
+/// Extends an error about settings from a column: adds the reason if the sample type cannot hold the column's steps.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

@@ -1,4 +1,4 @@
-//! A flight's file on the laptop: its channels out of a recording, and the values of its frames.
+//! A flight's file on the laptop: reads its channels from a recording, and decodes its frames to values.
 
 use crate::Result;
 use crate::coding::Coding;
@@ -23,31 +23,47 @@ impl From<FlightError> for crate::Error {
 }
 
 impl Coding {
-    /// The scheme of a flight, with the parameters of all its channels.
+    /// Makes the coding of a flight, with the parameters of all its channels.
     pub fn of_flight(flight: &Flight) -> Self {
         let scheme = Scheme::from(flight.run_time());
         Self { scheme, sample: flight.sample, asked: flight.asked_of_all() }
     }
 }
 
-/// The flight of tuned channels: their name, scheme and settings, in samples of this type and rate. A keyframe comes 20
-/// times a second.
+/// Makes a flight of tuned channels, each with its name, scheme and settings, for samples of this type and rate. A
+/// keyframe is sent 20 times a second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, they have several schemes or differ in more than numbers, or the rate has
-/// no period in µs.
+/// Returns an error if there are no channels, if their schemes differ or they differ in more than numbers, or if the
+/// rate's period cannot be expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
-    const KEYFRAMES: f64 = 20.0;
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
         return Err(RequestKind::SeveralSchemes.into());
     }
-    let channels = rows.iter().map(|(name, scheme, row)| Channel {
-        name: (*name).to_owned(),
-        source: (*name).to_owned(),
-        unit: known_unit(name).unwrap_or_default().to_owned(),
+    let asked = |(name, _, row): &(&str, Scheme, &Row)| {
+        ((*name).to_owned(), row.settings.to_asked(scheme.info()))
+    };
+    of_settings(*scheme, sample, rate, rows.iter().map(asked))
+}
+
+/// The flight of channels by their names and what is asked of their parameters. A keyframe comes 20 times a second.
+///
+/// # Errors
+/// Returns an error if there are no channels, they differ in more than numbers, or the rate has no period in µs.
+pub fn of_settings(
+    scheme: Scheme,
+    sample: SampleType,
+    rate: f64,
+    channels: impl Iterator<Item = (String, Asked)>,
+) -> Result<Flight> {
+    const KEYFRAMES: f64 = 20.0;
+    let channels = channels.map(|(name, asked)| Channel {
+        source: name.clone(),
+        unit: known_unit(&name).unwrap_or_default().to_owned(),
         counts: 1.0,
-        asked: row.settings.to_asked(scheme.info()),
+        name,
+        asked,
     });
     Ok(Flight::new(Parts {
         scheme: scheme.info(),
@@ -61,27 +77,27 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
     })?)
 }
 
-/// By how many millionths the time from sample to sample may differ from the period unless somebody knows better: as much as
-/// a sensor's own oscillator.
+/// Default tolerance of the time between samples, in millionths of the period: as much as a sensor's own oscillator may
+/// be off.
 pub(crate) const CLOCK_PPM: u32 = 20_000;
 
-/// The time from sample to sample, in µs.
+/// Returns the time between samples, in µs.
 ///
 /// # Errors
-/// Returns an error if the link has no such period.
+/// Returns an error if the link cannot express the period.
 pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
     let period = NonZeroU16::new((1e6 / rate).round().clamp(0.0, 65_535.0) as u16);
     period.ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
 }
 
-/// The recording of these options, of which a flight's channels are read.
+/// Returns options that read a flight's channels from the recording in `options`.
 pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     let mut own = options.clone();
     own.channel.columns = flight.channels.iter().map(|own| own.source.clone()).collect();
     own
 }
 
-/// A recording as a flight's sender has it: in counts, and filtered.
+/// A recording as the flight's sender sees it: in counts, and filtered.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,
@@ -126,22 +142,21 @@ impl Source for Sampled<'_> {
 /// Makes the receiver of a flight, whose values are in the channels' units, and passes it to `then`.
 ///
 /// # Errors
-/// Returns an error of `then`.
+/// Returns the error of `then`.
 pub fn with_receiver<'a>(
     flight: &'a Flight,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
 ) -> Result<()> {
     let slot_ticks = Some(flight.slot_ticks()).filter(|ticks| *ticks > 0);
     let scheme = Scheme::from(flight.run_time());
-    let filter = flight.filter.map(|own| own.fingerprint(flight.sample, flight.rate() as f32));
-    let filter = filter.transpose()?;
-    let link = values::Link { slot_ticks, filter };
+    let (fingerprint, clock_ppm) = (Some(flight.fingerprint()), Some(flight.clock_ppm));
+    let link = values::Link { slot_ticks, fingerprint, clock_ppm };
     values::with_receiver(scheme, flight.sample, flight.settings(), link, move |values| {
         then(Box::new(InUnits { flight, values }))
     })
 }
 
-/// Values in the channels' units, from those in counts.
+/// Converts decoded values from counts to the channels' units.
 struct InUnits<'a, 'b> {
     flight: &'a Flight,
     values: Box<dyn Values + 'b>,

@@ -1,6 +1,7 @@
-//! The laptop's library: recordings in; spikes, scores, parameters, advice, pictures and networks out.
+//! The library of the laptop programs: reads recordings, and makes spikes, scores, parameters, advice, pictures and
+//! networks of them.
 //!
-//! It knows no command line and prints nothing: the program `spikewire` and the Python bindings are built on it.
+//! It has no command line and prints nothing. The program `spikewire` and the Python bindings are built on it.
 
 pub mod advise;
 pub mod bank;

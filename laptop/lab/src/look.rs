@@ -1,4 +1,4 @@
-//! A channel before anything is encoded: rate, noise, bandwidth, range, and whether it is worth tuning.
+//! Examines a channel before it is encoded: rate, noise, bandwidth, range, and whether it is fit for tuning.
 
 use crate::brief::short;
 use crate::trial::Recording;
@@ -6,22 +6,22 @@ use crate::tune::figures::power;
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// A channel at a glance.
+/// A summary of a channel.
 #[derive(Clone, Debug, Serialize)]
 pub struct Look {
     /// Name of the channel.
     pub name: String,
     /// Number of finite samples.
     pub samples: usize,
-    /// Samples that were missing or not finite.
+    /// Number of samples that were missing or not finite.
     pub rejected: usize,
     /// Length in seconds, if known.
     pub seconds: Option<f64>,
     /// Samples a second.
     pub rate: Option<f64>,
-    /// The deviation of the time from sample to sample, in ms, gaps left out.
+    /// Standard deviation of the time between samples, in ms, without gaps.
     pub jitter_ms: Option<f64>,
-    /// Steps in time above one and a half usual ones.
+    /// Number of steps in time above one and a half usual ones.
     pub gaps: usize,
     /// Smallest sample.
     pub min: f64,
@@ -29,51 +29,53 @@ pub struct Look {
     pub max: f64,
     /// The standard deviation.
     pub deviation: f64,
-    /// The deviation of changes from sample to sample without order, where the channel is quietest.
+    /// Standard deviation of the noise, measured where the channel is quietest.
     pub noise: f64,
     /// Frequency in Hz below which 99 % of the power around the mean lies.
     pub bandwidth: Option<f64>,
-    /// Percent of the samples that stand at the lowest or highest value at least three in a row.
+    /// Percentage of samples at the lowest or highest value, in runs of three or more.
     pub clipped: f64,
-    /// The range where it is quiet.
+    /// Range of the samples while the channel is quiet.
     pub rest: Option<[f64; 2]>,
-    /// The range where it is not.
+    /// Range of the samples while it is not quiet.
     pub flight: Option<[f64; 2]>,
-    /// Percent of the samples where it is quiet.
+    /// Percentage of samples during which the channel is quiet.
     pub resting: f64,
-    /// The reason not to tune on it, if there is one.
+    /// Whether the channel is fit for tuning, or why not.
     pub verdict: Verdict,
 }
 
-/// The judgement of a channel: worth tuning on, or why not.
+/// Whether a channel is fit for tuning, or why not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Nothing speaks against it.
+    /// Fit for tuning.
     Good,
-    /// Too few samples.
+    /// There are too few samples.
     TooShort,
     /// All samples are equal.
     Constant,
-    /// The channel moves no more than its own noise, which is white: all on the ground, or no signal at all.
+    /// The channel moves no more than its own noise, which is white: the drone never flew, or there is no signal at
+    /// all.
     OnlyNoise,
-    /// More is missing than a fifth.
+    /// More than a fifth of the samples are missing.
     FullOfHoles,
-    /// More stands at the ends of the range than a fiftieth.
+    /// More than a fiftieth of the samples lie at the ends of the range.
     Clipped,
 }
 
-/// Fewer samples say nothing.
+/// Fewest samples that a verdict needs.
 const FEWEST: usize = 200;
-/// A signal moves by more than so many times its noise, or is not white.
+/// How far a signal must move to count, in multiples of its noise, unless it is not white.
 const ABOVE_NOISE: f64 = 2.0;
-/// Spectral flatness from which a channel is white: sensors at rest have 0.67 to 0.95, flights with vibration 0.2 to 0.33.
+/// Spectral flatness from which a channel counts as white: sensors at rest have 0.67 to 0.95, flights with vibration
+/// 0.2 to 0.33.
 const WHITE: f64 = 0.6;
-/// Samples of a window in which it is looked at for noise and movement.
+/// Number of samples in a window over which noise and movement are measured.
 const WINDOW: usize = 64;
 
 impl Look {
-    /// Examines a recording with one sample at least.
+    /// Examines a recording, which must have at least one sample.
     pub fn at(recording: &Recording) -> Self {
         let values = &recording.values;
         let samples = values.len();
@@ -131,7 +133,7 @@ impl Look {
         }
     }
 
-    /// The reason not to tune on it, if there is one.
+    /// Returns the reason not to tune on the channel, if there is one.
     pub fn objection(&self) -> Option<String> {
         let Self { name, samples, min, rejected, deviation, noise, clipped, .. } = self;
         match self.verdict {
@@ -160,7 +162,7 @@ impl Look {
     }
 }
 
-/// The unit that a field's name in PX4 logs tells.
+/// Returns the unit of a field of PX4 logs, by its name.
 pub fn known_unit(name: &str) -> Option<&'static str> {
     let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
     units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
@@ -171,8 +173,8 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// The deviation of the noise, from second differences, which are near 0 in a slow signal and √6 times the noise in white
-/// noise: their mean over the quietest tenth of the windows.
+/// Estimates the standard deviation of the noise from second differences, averaged over the quietest tenth of the
+/// windows. A slow signal has second differences near 0; white noise has √6 times its own deviation.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));
@@ -184,8 +186,9 @@ fn noise(values: &[f64]) -> f64 {
     all.get(all.len() / 10).copied().unwrap_or_default()
 }
 
-/// Spectral flatness: the geometric over the arithmetic mean of the power by frequency, as windows have it on average.
-/// White noise comes near 1; motors and manoeuvres, whose power stands at few frequencies, near 0.
+/// Returns the spectral flatness: the ratio of the geometric to the arithmetic mean of the power over frequency,
+/// averaged over windows. It is near 1 for white noise, and near 0 for motors and manoeuvres, whose power lies at few
+/// frequencies.
 fn flatness(values: &[f64]) -> f64 {
     let mut sums = vec![0.0; WINDOW / 2];
     for start in (0..).step_by(WINDOW / 2) {
@@ -205,7 +208,7 @@ fn flatness(values: &[f64]) -> f64 {
     if arithmetic > 0.0 { logarithm.exp() / arithmetic } else { 1.0 }
 }
 
-/// For each window, whether it moves as little as where the channel is quietest: the channel rests there.
+/// Returns for each window whether it moves as little as the quietest ones, that is, whether the channel rests there.
 fn quiet(values: &[f64]) -> Vec<bool> {
     const QUIET: f64 = 4.0;
     let deviations: Vec<f64> = values.chunks(WINDOW).map(deviation).collect();
@@ -215,14 +218,14 @@ fn quiet(values: &[f64]) -> Vec<bool> {
     deviations.into_iter().map(|own| own <= QUIET * least).collect()
 }
 
-/// Percent that stand at an end of the range three in a row or more.
+/// Returns the percentage of samples at an end of the range, in runs of three or more.
 fn clipped(values: &[f64], min: f64, max: f64) -> f64 {
     let is_same_end = |a: &f64, b: &f64| a == b && (*a == min || *a == max);
     let runs = values.chunk_by(is_same_end).map(<[f64]>::len).filter(|length| *length >= 3);
     100.0 * runs.sum::<usize>() as f64 / values.len() as f64
 }
 
-/// The part of the rate below which 99 % of the power around the mean lie.
+/// Returns the frequency, as a share of the sample rate, below which 99 % of the power around the mean lies.
 fn bandwidth(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let around: Vec<f64> = values.iter().map(|own| own - mean).collect();
@@ -236,7 +239,7 @@ fn bandwidth(values: &[f64]) -> f64 {
     bin.unwrap_or_default() as f64 / values.len() as f64
 }
 
-/// The deviation of the steps in ms without gaps, and how many gaps there are.
+/// Returns the standard deviation of the steps in ms, without gaps, and the number of gaps.
 fn steps(times: &[i64]) -> (Option<f64>, usize) {
     let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
     let mut sorted = steps.clone();
@@ -259,7 +262,7 @@ mod tests {
         (0..count).map(next).collect()
     }
 
-    /// Even numbers in a unit have a deviation of √(1/12).
+    /// Rounding to whole numbers adds noise with a deviation of √(1/12).
     #[test]
     fn noise_is_found_under_a_wave() {
         let noisy = white(6400);

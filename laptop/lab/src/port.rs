@@ -1,4 +1,4 @@
-//! Sources of captured bytes: a serial port, a file, standard input.
+//! Reads captured bytes from a serial port, a file or standard input.
 
 use crate::error::room;
 use crate::{Error, Result};
@@ -18,30 +18,30 @@ kinds! {
 }
 room!(PortKind, Port);
 
-/// A source of bytes that may have none just now.
+/// A source of bytes that arrive over time.
 pub struct Port {
     bytes: Box<dyn Read>,
     name: String,
     is_file: bool,
 }
 
-/// The result of reading from a port.
+/// The outcome of a read.
 pub enum Bytes {
-    /// This many bytes.
+    /// Bytes were read; holds their number.
     Some(usize),
-    /// No bytes yet.
+    /// No bytes have arrived yet.
     NotYet,
-    /// The end of the bytes.
+    /// There will be no more bytes.
     End,
 }
 
 impl Port {
-    /// A serial port if there is a baud rate, else a file, or `-` for standard input.
+    /// Opens a serial port if `baud` is given, or else a file; `-` is standard input.
     ///
     /// # Errors
-    /// Returns an error if the port cannot be opened.
+    /// Returns an error if the source cannot be opened.
     pub fn open(path: &Path, baud: Option<u32>) -> Result<Self> {
-        /// How long a read waits: the display goes on meanwhile.
+        /// Longest time that a read waits, so that the display is updated meanwhile.
         const PATIENCE: Duration = Duration::from_millis(100);
         let name = path.display().to_string();
         if let Some(baud) = baud {
@@ -61,20 +61,20 @@ impl Port {
         Ok(Self { bytes, name, is_file: true })
     }
 
-    /// The source's name, for errors.
+    /// Returns the source's name, for errors.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Whether all bytes are there already.
+    /// Returns whether all bytes are available from the start.
     pub fn is_file(&self) -> bool {
         self.is_file
     }
 
-    /// Reads what there is.
+    /// Reads the bytes that have arrived.
     ///
     /// # Errors
-    /// The port failed, or is gone.
+    /// Returns an error if the port failed or was disconnected.
     pub fn read(&mut self, buffer: &mut [u8]) -> Result<Bytes> {
         use io::ErrorKind::{BrokenPipe, Interrupted, TimedOut, WouldBlock};
         match self.bytes.read(buffer) {

@@ -1,17 +1,17 @@
-//! Whether a sample type holds a column's own steps, and which types do.
+//! Checks whether a sample type can resolve a column's steps, and finds the types that can.
 
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// A type that changes the steps from sample to sample by more than this part of them loses them.
+/// Share of the steps by which rounding may change them, on average; a type that changes them more loses them.
 const PART: f64 = 0.1;
 
-/// The steps of a column from sample to sample, and what a sample type makes of them.
+/// The steps between the samples of a column, and how a sample type changes them.
 pub struct Resolution {
     sample: SampleType,
     previous: Option<f64>,
     steps: u64,
-    /// The magnitudes of all steps, and of what they are off by in the type and in `f32`.
+    /// Sum of the steps' magnitudes; `off` and `off_single` are the sums of their errors in the type, and in `f32`.
     moved: f64,
     off: f64,
     off_single: f64,
@@ -21,7 +21,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// A column without samples.
+    /// Starts with a column without samples.
     pub fn new(sample: SampleType) -> Self {
         let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
         Self {
@@ -37,14 +37,14 @@ impl Resolution {
         }
     }
 
-    /// A column of these samples.
+    /// Examines a column of samples.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
         own
     }
 
-    /// Takes the next samples, all finite.
+    /// Adds the next samples, which must be finite.
     pub fn observe(&mut self, values: &[f64]) {
         for &value in values {
             if let Some(previous) = self.previous.filter(|previous| *previous != value) {
@@ -62,12 +62,12 @@ impl Resolution {
         }
     }
 
-    /// Whether the type changes any step.
+    /// Returns whether the type changes any step.
     pub fn is_rounded(&self) -> bool {
         self.off > 0.0
     }
 
-    /// A sentence on the column's steps that the type loses, and on the types that hold them.
+    /// Describes in a sentence the steps that the type loses, and the types that hold them; `None` if it loses none.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -81,7 +81,7 @@ impl Resolution {
         })
     }
 
-    /// The names of the types that hold the steps.
+    /// Lists the types that hold the steps.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()
@@ -107,8 +107,8 @@ impl Resolution {
         (self.off_single <= PART * self.moved).then_some(SampleType::F32)
     }
 
-    /// The fixed point of the fewest bits whose range holds the column, and whose step its steps; whole numbers are
-    /// held as they are.
+    /// Returns the fixed-point type of the fewest bits whose range holds the column and whose resolution holds its
+    /// steps; a column of whole numbers needs a type that holds them exactly.
     fn fixed(&self) -> Option<SampleType> {
         let holds = |own: &SampleType| {
             let (low, high) = own.range();
@@ -124,14 +124,14 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Whether the column's own steps survive rounding to steps of this length, which moves two values by a third of it or
-    /// somewhat more on average.
+    /// Returns whether the column's steps survive rounding to multiples of `step`. The bound is half a step; the mean
+    /// error of a difference of two rounded values is a third.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }
 }
 
-/// A value as a type holds it, cut to its range.
+/// Rounds a value to a sample type, and clamps it to the type's range.
 pub(crate) fn held(sample: SampleType, value: f64) -> f64 {
     let (low, high) = sample.range();
     match sample.step() {
@@ -162,7 +162,7 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// The sample type that is named holds the column's steps, for columns of any size and step.
+    /// For columns of any size and step, the type that is named holds the steps.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {

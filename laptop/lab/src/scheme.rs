@@ -9,17 +9,17 @@ use std::ops::Deref;
 pub struct Scheme(&'static dyn RunTime);
 
 impl Scheme {
-    /// All of them, in the order of the catalogue.
+    /// Returns all schemes, in the order of the catalogue.
     pub fn all() -> impl Iterator<Item = Self> {
         catalogue::ALL.iter().map(|scheme| Self(*scheme))
     }
 
-    /// Returns the scheme of this name in options and files.
+    /// Returns the scheme of this name, as in options and files.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|scheme| scheme.name() == name)
     }
 
-    /// The name in options and files.
+    /// Returns the name, as in options and files.
     pub fn name(self) -> &'static str {
         self.info().name
     }

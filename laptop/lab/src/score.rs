@@ -1,4 +1,4 @@
-//! Scores a trial: how few spikes it has, and how near they come to the signal.
+//! Scores a trial: counts its spikes, and measures how near they decode to the signal.
 
 use crate::brief::{brief, json};
 use crate::steep::Steep;
@@ -16,21 +16,21 @@ pub struct Figures {
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percent of samples without a spike, where each has one at most.
+    /// Percentage of samples without a spike, for a code that has at most one each; see [`Trial::efficiency`].
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
-    /// Signal to noise in dB: variance of the signal to mean square of the error.
+    /// Signal-to-noise ratio in dB: the signal's variance over the mean square of the error.
     pub snr: f64,
     /// Spikes a second, if the length is known.
     pub spikes_per_second: Option<f64>,
-    /// The parameters that ran.
+    /// The parameters that were used.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// The signal's slope beside what step forward follows; `None` for other schemes.
+    /// The signal's slope compared with the code's largest; `None` if the code has no such limit.
     pub slope: Option<Steep>,
     /// Notes for the user.
     pub notes: Vec<String>,
-    /// The parameters in a few words.
+    /// The parameters in short form.
     #[serde(skip)]
     pub brief: String,
 }

@@ -1,4 +1,4 @@
-//! Whether a code that climbs by a step a sample at most keeps up with a recording.
+//! Checks whether a code keeps up with a recording, for codes that climb by at most one step for each sample.
 
 use crate::brief::short;
 use crate::scheme::Scheme;
@@ -6,28 +6,28 @@ use crate::trial::Recording;
 use catalogue::run::Settings;
 use serde::Serialize;
 
-/// The slope of a recording, beside that which the code follows.
+/// The slopes of a recording, compared with the largest that the code can follow.
 #[derive(Clone, Debug, Serialize)]
 pub struct Steep {
-    /// The scheme.
+    /// Name of the scheme.
     #[serde(skip)]
     scheme: &'static str,
-    /// Whether no step from sample to sample is larger than the threshold.
+    /// Whether no change between samples exceeds the threshold.
     follows: bool,
-    /// The number of steps that are larger.
+    /// Number of changes between samples that exceed the threshold.
     steps_above_threshold: usize,
-    /// That number as a part of the samples.
+    /// `steps_above_threshold` as a share of the samples.
     part: f64,
-    /// Threshold times rate, or the threshold where no rate is known.
+    /// Largest slope of the code: threshold times rate, or the threshold if no rate is known.
     fastest: f64,
-    /// The steepest slope of the signal, likewise.
+    /// Largest slope of the signal, in the same unit.
     steepest: f64,
-    /// The unit of both slopes' denominator: `second` or `sample`.
+    /// What both slopes are counted per: `second` or `sample`.
     per: &'static str,
 }
 
 impl Steep {
-    /// The slopes of a code that climbs by a step a sample at most; `None` for others.
+    /// Measures the slopes; `None` for a code that can climb by more than a step a sample.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;
         let segments = recording.segments.iter().map(|own| &recording.values[own.clone()]);
@@ -45,12 +45,12 @@ impl Steep {
         })
     }
 
-    /// The part of the samples at which the signal takes a larger step than the code can.
+    /// Returns the share of samples at which the signal changes by more than the code can follow.
     pub fn part(&self) -> f64 {
         self.part
     }
 
-    /// A sentence on both slopes.
+    /// Describes both slopes in a sentence.
     pub fn words(&self) -> String {
         const FEW: f64 = 0.1;
         let Self { scheme, steps_above_threshold: above, part, per, .. } = self;

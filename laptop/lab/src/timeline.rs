@@ -1,34 +1,34 @@
-//! The times of samples, from those of some of them.
+//! Interpolates the times of samples between those that are known.
 
 use std::collections::VecDeque;
 
-/// Times of samples in order, those not known evenly spaced between those that are.
+/// The times of consecutive samples; unknown ones are spaced evenly between known ones.
 pub struct Timeline {
-    /// The usual step from sample to sample, in µs.
+    /// Usual time between samples, in µs.
     step: f64,
     before: Option<(u64, i64)>,
     ahead: VecDeque<(u64, i64)>,
 }
 
 impl Timeline {
-    /// A timeline that knows no time yet. Before the first and after the last known one, samples come at this rate.
+    /// Starts without known times. Samples before the first known time and after the last are spaced by `rate`.
     pub fn new(rate: Option<f64>) -> Self {
         Self { step: rate.map_or(0.0, |rate| 1e6 / rate), before: None, ahead: VecDeque::new() }
     }
 
-    /// Takes the time of a sample. They come in order.
+    /// Sets the time of a sample; samples must come in order.
     pub fn learn(&mut self, sample: u64, time: i64) {
         if self.ahead.back().is_none_or(|&(last, _)| last < sample) {
             self.ahead.push_back((sample, time));
         }
     }
 
-    /// The number of times that are known and were not asked for yet.
+    /// Returns the number of known times that have not been asked for yet.
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }
 
-    /// The time of a sample. Samples must be asked for in order.
+    /// Returns the time of a sample; samples must be asked for in order.
     pub fn at(&mut self, sample: u64) -> i64 {
         while let Some(&known) = self.ahead.front().filter(|(known, _)| *known <= sample) {
             self.before = Some(known);

@@ -1,4 +1,4 @@
-//! A recording there and back, for looking at and for scoring.
+//! Encodes and decodes a recording, for pictures and scores.
 
 use crate::Result;
 use crate::brief::short;
@@ -14,25 +14,26 @@ use std::ops::Range;
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// Their times in µs, if recorded. Where the clock started anew, a segment follows the one before it after a usual step.
+    /// Their times in µs, if recorded. If the clock restarted, a new segment follows the one before it after a usual
+    /// step.
     pub times: Vec<i64>,
-    /// The samples of each segment, from one start of the clock to the next.
+    /// The samples of each segment, that is between restarts of the clock.
     pub segments: Vec<Range<usize>>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
-    /// Its name.
+    /// Name of the recording.
     pub name: String,
-    /// How many samples were not finite.
+    /// Number of samples that were not finite.
     rejected: usize,
     clock: Clock,
-    /// How it was read.
+    /// Notes on how it was read.
     notes: Vec<Words>,
 }
 
 impl Recording {
-    /// A recording of samples in memory, all finite, evenly spaced.
+    /// Makes a recording of evenly spaced samples in memory, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// No step is longer than another.
+        /// Bound of gaps; it has no effect, as all steps are equal.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -40,19 +41,19 @@ impl Recording {
         Self { values, times, segments, rate, name, rejected: 0, clock, notes }
     }
 
-    /// Reads all of its one channel.
+    /// Reads a recording of one channel.
     ///
     /// # Errors
-    /// Returns an error if the input cannot be read, has several channels, or no finite sample.
+    /// Returns an error if the input cannot be read, has several channels, or has no finite sample.
     pub fn read(input: &InputOptions) -> Result<Self> {
         input.single("this command")?;
         Self::read_all(input)?.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
     }
 
-    /// Reads all of every channel asked for.
+    /// Reads a recording of every channel asked for.
     ///
     /// # Errors
-    /// Returns an error if the input cannot be read, or no row is finite in all columns.
+    /// Returns an error if the input cannot be read, or if no row is finite in all columns.
     pub fn read_all(input: &InputOptions) -> Result<Vec<Self>> {
         let mut source = input.open()?;
         let all = source.rest()?;
@@ -89,7 +90,8 @@ impl Recording {
             .collect()
     }
 
-    /// This recording with a function of each sample in its place, which starts anew in each segment.
+    /// Returns the recording with each sample replaced by a function's value; `start` makes the function anew for each
+    /// segment.
     #[must_use]
     pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
         let mut values = self.values.clone();
@@ -111,7 +113,7 @@ impl Recording {
         }
     }
 
-    /// Notes for the user on the recording.
+    /// Returns notes for the user on the recording.
     pub fn notes(&self) -> Vec<Words> {
         let mut notes = self.notes.clone();
         if self.rejected > 0 {
@@ -123,12 +125,12 @@ impl Recording {
         notes
     }
 
-    /// How many samples were missing or not finite.
+    /// Returns the number of samples that were missing or not finite.
     pub fn rejected(&self) -> usize {
         self.rejected
     }
 
-    /// How long it is in seconds, if that is known; the unknown time between two segments does not count.
+    /// Returns the duration in seconds, if it is known; the unknown time between segments does not count.
     pub fn seconds(&self) -> Option<f64> {
         if self.times.is_empty() {
             return Some(self.values.len() as f64 / self.rate?);
@@ -137,14 +139,14 @@ impl Recording {
     }
 }
 
-/// The segments of so many samples, of which those after the first start here.
+/// Returns the segments of `samples` samples; `bounds` are the first samples of all but the first.
 fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.insert(0, 0);
     bounds.push(samples);
     bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-/// Times of which each segment follows the one before it after a usual step.
+/// Moves the times of each segment so that it follows the one before it after a usual step.
 fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     let mut all: Vec<i64> = Vec::with_capacity(times.len());
     let mut latest: Option<i64> = None;
@@ -158,21 +160,21 @@ fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     all
 }
 
-/// The result of a scheme on a recording.
+/// A scheme's spikes and decoded values for a recording.
 pub struct Trial {
     /// The scheme.
     pub scheme: Scheme,
-    /// Its parameters, as they ran.
+    /// The parameters that were used.
     pub settings: Settings,
-    /// How many neurons and sub-timesteps it has.
+    /// Numbers of neurons and sub-timesteps.
     pub shape: Shape,
-    /// How many samples after its own the code of a sample comes out.
+    /// How many samples after a sample its code comes out.
     pub latency: usize,
-    /// Notes for the user on how the parameters suit the recording.
+    /// Notes for the user on whether the parameters suit the recording.
     pub notes: Vec<String>,
     /// The spikes.
     pub events: Vec<Event>,
-    /// The decoded values, one a sample.
+    /// The decoded values, one for each sample.
     pub decoded: Vec<f64>,
 }
 
@@ -180,7 +182,7 @@ impl Trial {
     /// Encodes and decodes the recording.
     ///
     /// # Errors
-    /// The parameters make no sense.
+    /// Returns an error if a parameter is invalid.
     pub fn new(
         scheme: Scheme,
         asked: &Asked,
@@ -222,13 +224,13 @@ impl Trial {
         Ok(Self { scheme, settings, shape, latency, notes, events, decoded })
     }
 
-    /// `(1 - spikes / samples) * 100`.
+    /// Returns `(1 - spikes / samples) * 100`.
     pub fn efficiency(&self) -> f64 {
         (1.0 - self.events.len() as f64 / self.decoded.len() as f64) * 100.0
     }
 }
 
-/// A note if the decoded values are off on the whole, by more than the signal itself moves.
+/// Returns a note if the decoded values have an offset that is larger than the signal's own movement.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

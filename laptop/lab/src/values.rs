@@ -1,4 +1,4 @@
-//! Decodes frames to values, with the receiver that runs on boards, in any sample type.
+//! Decodes frames to values in any sample type, with the receiver that runs on boards.
 
 use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
@@ -10,37 +10,39 @@ use spikewire::link::{Received, Receiver};
 use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
-/// The most channels of a code of one neuron.
+/// Maximum number of channels, for codes with one neuron for each.
 const MOST: usize = 256;
 
-/// The most channels of any code: with 1024 neurons each they have all addresses.
+/// Maximum number of channels, for all other codes: with 1024 neurons each they fill all addresses.
 const FEWER: usize = 64;
 
-/// The most events of one sample, over all channels.
+/// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function that uses a receiver.
+/// The function that uses a receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
-/// What a sender has beside its schemes.
+/// Properties of a sender besides its schemes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Link {
-    /// The length of its sub-timesteps in µs, if it has some.
+    /// Length of the sub-timesteps in µs, if there are any.
     pub slot_ticks: Option<u32>,
-    /// The fingerprint of the filter before its schemes, if there is one.
-    pub filter: Option<Fingerprint>,
+    /// Fingerprint of the sender's frames; unless given, that of the schemes alone, for as many channels as match the sender's.
+    pub fingerprint: Option<Fingerprint>,
+    /// How far the time between samples may differ from the period, in millionths of it; a sensor's tolerance unless given.
+    pub clock_ppm: Option<u32>,
 }
 
 impl From<Option<u32>> for Link {
     fn from(slot_ticks: Option<u32>) -> Self {
-        Self { slot_ticks, filter: None }
+        Self { slot_ticks, ..Self::default() }
     }
 }
 
-/// Makes a receiver with these settings, one for each channel, or one for all, and passes it to `then`.
+/// Makes a receiver with these settings, one set for each channel or one for all, and passes it to `then`.
 ///
 /// # Errors
-/// A parameter out of its range, too many channels, or an error of `then`.
+/// Returns an error if a parameter is out of its range, or if there are too many channels; or the error of `then`.
 pub fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
@@ -83,9 +85,10 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 }
 
 impl Receive<'_> {
-    /// Makes a receiver of `N` channels for this scheme.
+    /// Makes a receiver of up to `N` channels.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
-        let Self { scheme, sample, settings, link: Link { slot_ticks, filter }, then } = self;
+        let Self { scheme, sample, settings, link, then } = self;
+        let Link { slot_ticks, fingerprint, clock_ppm } = link;
         if settings.len() > N {
             let (channels, scheme) = (settings.len(), scheme.name());
             return Err(RequestKind::Channels { channels, scheme, most: N }.into());
@@ -109,6 +112,9 @@ impl Receive<'_> {
         if let Some(length) = slot_ticks {
             receiver = receiver.with_slot_ticks(length);
         }
+        if let Some(millionths) = clock_ppm {
+            receiver = receiver.with_clock_tolerance(millionths);
+        }
         then(Box::new(Receiving {
             receiver,
             channels,
@@ -117,20 +123,18 @@ impl Receive<'_> {
             end: None,
             unused_keyframes: 0,
             one: sample.one(),
-            kind: kind(sample),
+            kind: sample.into(),
             outside: 0,
             slot_ticks: slot_ticks.unwrap_or(0),
-            schemes: given
-                .iter()
-                .map(|own| filter.map_or(own.fingerprint(), |filter| filter.and(own.fingerprint())))
-                .collect(),
+            known: fingerprint,
+            schemes: given.iter().map(Scheme::fingerprint).collect(),
             has_exact: false,
             decoded: Vec::new(),
         }))
     }
 }
 
-/// Hands a scheme on by itself.
+/// A visitor that returns the scheme built.
 struct Boxed;
 
 impl<S: Sample> Visit<S> for Boxed {
@@ -145,19 +149,10 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// The sample type's name on a link.
-fn kind(sample: SampleType) -> SampleKind {
-    match sample {
-        SampleType::F32 => SampleKind::F32,
-        SampleType::Fixed16 { fraction } => SampleKind::Fixed16 { fraction },
-        SampleType::Fixed32 { fraction } => SampleKind::Fixed32 { fraction },
-    }
-}
-
-/// A scheme whose decoders start from a given value. Only the decoding half is of use.
+/// A scheme whose decoders start from a given value. It serves only for decoding.
 struct Started<P: Scheme> {
     scheme: P,
-    /// Whether there is such a channel; false for what stands in its place beyond the last one.
+    /// Whether the channel exists; false for the placeholder after the last one.
     is_given: bool,
     start: Option<P::Sample>,
 }
@@ -224,32 +219,35 @@ impl<P: Scheme> Scheme for Started<P> {
 struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     receiver: Receiver<[&'a Started<P>; N], N, EVENTS>,
     channels: usize,
-    /// How many neurons a channel has.
+    /// Number of neurons of each channel.
     neurons: usize,
-    /// The channels that have values: those of temporal codes, and others from their first event on.
+    /// Which channels have values: all of a temporal code; others from their first event on.
     has_fired: [bool; N],
-    /// A tick at which the last sample heard is over.
+    /// A tick by which the last sample received is over.
     end: Option<Tick>,
-    /// Keyframes for a code that has none.
+    /// Number of keyframes received for a code that has none.
     unused_keyframes: u64,
-    /// The value of 1 in the unit of the decoders.
+    /// The number that represents 1 in the decoders' unit.
     one: f64,
-    /// The sample type of the sender.
+    /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of events outside, beside those that the receiver counts.
+    /// Number of events for channels that do not exist, besides those that the receiver counts.
     outside: u64,
-    /// The length of a sub-timestep in µs, or 0.
+    /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
-    /// The fingerprint of each channel's scheme, or of the one of all channels, however many the sender has.
+    /// The sender's fingerprint, if it is known.
+    known: Option<Fingerprint>,
+    /// Fingerprint of each channel's scheme; or of the one scheme that all channels share, however many there are.
     schemes: Vec<Fingerprint>,
-    /// Whether a value was exact.
+    /// Whether any value so far was exact.
     has_exact: bool,
     decoded: Vec<(u16, Tick, P::Sample)>,
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// The frame with keyframes of the sender's type as those of the decoders, which run all fixed point of one width
-    /// as one type; keyframes of any other type stay another.
+    /// Relabels keyframes of the sender's sample type as the decoders': these treat all fixed-point types of one width
+    /// alike. Keyframes of the decoders' type, if that is not the sender's, are relabelled too, so that they count as
+    /// misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -262,7 +260,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         Received { frame, ..*received }
     }
 
-    /// For each channel, whether it is exact.
+    /// Returns for each channel whether its value is exact.
     fn exact(&self) -> [bool; N] {
         std::array::from_fn(|channel| self.receiver.exact(channel as u16).is_some())
     }
@@ -279,9 +277,10 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Adds the values decoded, of which the first so many are keyframes.
+    /// Appends the decoded values as items; the first `keyframes` of them are keyframes.
     ///
-    /// A sample becomes exact amid a frame. Its values are called exact from the next frame on, so that no estimate is.
+    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on, so
+    /// that no estimate is marked exact.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
@@ -305,8 +304,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// The fingerprint that a sender of these channels has, in its own sample type: that of as many channels as make it
-    /// the sender's where one scheme is given for all.
+    /// Returns the fingerprint that a sender of these channels has, in its own sample type. If all channels share one
+    /// scheme, tries each number of channels until one gives `sender`.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {
@@ -323,7 +322,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P,
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
         let received = &self.in_our_type(received);
         if let Some(sender) = received.frame.fingerprint() {
-            let own = self.fingerprint(sender);
+            let own = self.known.unwrap_or_else(|| self.fingerprint(sender));
             if own != self.receiver.fingerprint() {
                 self.receiver = self.receiver.clone().with_fingerprint(own);
             }

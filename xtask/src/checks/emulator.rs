@@ -1,5 +1,5 @@
-//! Images flown from their reset vector, with a sensor that breaks in every way that it can: a Pico's in rp2040js, those
-//! for a Cortex-M4F in Unicorn with peripherals of `examples/boards/emulator`.
+//! Flies images from their reset vector, with a sensor that fails in every way that it can: a Pico's image in rp2040js,
+//! those for a Cortex-M4F in Unicorn with peripherals from `examples/boards/emulator`.
 
 use crate::common::{command, output, paths, run, shell};
 use crate::figures::bench::{cycles, cycles::Cycles, cycles::Model, listing::Instruction};
@@ -19,21 +19,22 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// From the beginning to the first fate, and from one to the next, in ms.
+/// Time of the first fault, and time from one fault to the next, in ms.
 const FIRST: u64 = 600;
 const EACH: u64 = 700;
-/// From a fate to its mend, in ms.
+/// Duration of a fault, in ms.
 const LASTS: u64 = 250;
-/// How long the far end may take to know everything again, with most sensors, in ms: the page says 0.3 s.
+/// Time within which the far end must be exact on all channels again, with most sensors, in ms: the documentation says
+/// 0.3 s.
 const BACK: u64 = 300;
-/// How long a code of one spike a sample takes to follow a jump over the whole signal, in µs.
+/// Time within which a code with one spike a sample follows a jump over the whole range of the signal, in µs.
 const FOLLOWS: u64 = 20_000;
-/// How far a sample's tick may be from its time, in µs.
+/// Largest difference between a sample's tick and its time, in µs.
 const JITTER: u64 = 20;
-/// What an nRF52840's slow crystal takes to start, in ms, which a reset stops.
+/// Start-up time of an nRF52840's slow crystal, which a reset stops, in ms.
 const SLOW_CRYSTAL: u64 = 250;
 
-/// What the emulator in Python needs.
+/// Python packages that the emulator needs.
 const PYTHON: [&str; 2] = ["unicorn==2.1.3", "quickjs==1.19.4"];
 const FILES: [&str; 13] = [
     "elf.mjs",
@@ -51,7 +52,7 @@ const FILES: [&str; 13] = [
     "test_board.py",
 ];
 
-/// What breaks, and what mends it.
+/// The faults, each with the event that ends it.
 const BREAKS: [(&str, &str); 9] = [
     ("miso-cut", "mend"),
     ("miso-noise", "mend"),
@@ -64,14 +65,14 @@ const BREAKS: [(&str, &str); 9] = [
     ("freeze-accelerometer", "thaw"),
 ];
 
-/// What an emulation has seen.
+/// The emulator's observations.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Seen {
     starts: Vec<Start>,
     instructions: u64,
     cycles: u64,
-    /// In ns.
+    /// Shortest pause between transfers, in ns; `shortest_guard` is the shortest time before one.
     shortest_pause: f64,
     shortest_guard: f64,
     spi_hz: u32,
@@ -79,48 +80,49 @@ struct Seen {
     clk_sys: u32,
     configured: bool,
     pulled_up: bool,
-    /// Whether the watchdog stands still at a breakpoint.
+    /// Whether the watchdog pauses at a breakpoint.
     pauses_on_halt: bool,
-    /// Where the firmware ended, if it did.
+    /// Place at which the firmware faulted, if it did.
     fault: Option<String>,
 }
 
 #[derive(Deserialize)]
 struct Start {
-    /// In ms.
+    /// Time of the reset, in ms.
     at: f64,
-    /// 1: the watchdog.
+    /// Reason of the reset: 1 is the watchdog.
     reason: u32,
-    /// When the clock of the ticks started, in µs; a Pico's goes on in rp2040js.
+    /// Time at which the clock of the ticks started, in µs; that of a Pico keeps running in rp2040js.
     ticks: Option<f64>,
 }
 
-/// What the far end knew.
+/// What the far end received.
 struct Heard {
-    /// Times in ms at which all channels became exact, or ceased to be.
+    /// Times in ms at which all channels became exact (true), or were no longer exact (false).
     exact: Vec<(u64, bool)>,
-    /// Times in ms of each start of the sender that a frame told of.
+    /// Time in ms of each start of the sender that a frame reported.
     starts: Vec<u64>,
-    /// Frames that tell of items that the queue dropped.
+    /// Number of frames that report items dropped by the queue.
     after_loss: u32,
-    /// Values that were exact and further than a threshold from the sensor's sample.
+    /// Values that were marked exact but differ from the sensor's sample by more than a threshold.
     wrong: Vec<(u32, u16, i16)>,
     values: u32,
 }
 
-/// A sensor's name, the limits of its timing in ns and Hz, and how soon a dead one is told, in ms.
+/// Limits for a sensor: timing in ns and Hz, and the time within which a dead sensor must be reported, in ms.
 struct Limits {
     sensor: &'static str,
     pause: f64,
     guard: f64,
     spi_hz: u32,
     noticed: u64,
-    /// How long the far end may take to know everything again after a mend, in ms.
+    /// Time within which the far end must be exact again after a fault, in ms.
     back: u64,
     samples_a_second: usize,
 }
 
-/// Twenty samples at 800 Hz, 5 ms to gather, and the line.
+/// Limits for a BMI323. A dead one is noticed after twenty samples at 800 Hz, 5 ms for gathering, and the time on the
+/// line.
 const BMI323_LIMITS: Limits = Limits {
     sensor: "bmi323",
     pause: 2_000.0,
@@ -130,7 +132,8 @@ const BMI323_LIMITS: Limits = Limits {
     back: BACK,
     samples_a_second: 800,
 };
-/// On I2C nothing is selected. A start that hung on a bus held low is given up first, which takes longer.
+/// Limits for a BMI088. On I2C there is no select line. A start that hangs because the bus is held low is given up
+/// first, which takes longer.
 const BMI088_LIMITS: Limits = Limits {
     sensor: "bmi088",
     pause: 0.0,
@@ -150,7 +153,7 @@ const ICM42688P_LIMITS: Limits = Limits {
     samples_a_second: 8_000,
 };
 
-/// Flies the image, and looks at all that it did.
+/// Flies the image, and checks what it did.
 pub fn fly(part: &Part, image: &Path) -> Result<()> {
     let limits = match part.listen {
         BMI323 => BMI323_LIMITS,
@@ -162,7 +165,7 @@ pub fn fly(part: &Part, image: &Path) -> Result<()> {
     without_a_crystal(part, image, &limits)
 }
 
-/// A second and a half in which nothing happens: clocks, configuration, rate, values.
+/// Checks a second and a half without faults: clocks, configuration, rate, values.
 fn whole(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
     let (seen, directory) = emulate(part, image, limits.sensor, 1.5, &[])?;
     ensure!(seen.clk_sys == core_hz(part)?, "the core runs at {} Hz", seen.clk_sys);
@@ -209,7 +212,7 @@ fn whole(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
     Ok(())
 }
 
-/// The clock that the board's firmware asks for.
+/// Returns the clock that the board's firmware configures.
 fn core_hz(part: &Part) -> Result<u32> {
     match part.part {
         "rp" => Ok(125_000_000),
@@ -220,7 +223,7 @@ fn core_hz(part: &Part) -> Result<u32> {
     }
 }
 
-/// Whether an emulator here has the part.
+/// Returns whether there is an emulator for the part.
 pub fn has(part: &Part) -> bool {
     core_hz(part).is_ok() && part.memory != "rp2350"
 }
@@ -229,7 +232,7 @@ fn is_pico(part: &Part) -> bool {
     part.part == "rp"
 }
 
-/// Bounds of the cycles that were executed, by the manual's table.
+/// Returns bounds of the cycles that were executed, by the manual's table.
 fn cycles(image: &Path, directory: &Path) -> Result<[i64; 2]> {
     let known = cycles_by_address(Model::M4, image)?;
     let mut all = [0, 0];
@@ -248,8 +251,8 @@ fn cycles_by_address(model: Model, image: &Path) -> Result<BTreeMap<i64, (Instru
     Ok(all.map(|(one, cycles)| (i64::from(one.address), (one, cycles))).collect())
 }
 
-/// Compares the cycles that rp2040js counts with those of the manual's table, instruction by instruction. What its buses
-/// take more is left out of both.
+/// Compares the cycles that rp2040js counts with those of the manual's table, instruction by instruction. Both leave
+/// out the waits of the buses.
 fn cycles_agree(image: &Path, directory: &Path) -> Result<()> {
     let known = cycles_by_address(Model::M0, image)?;
     let (mut all, mut fewer) = ([0, 0], 0);
@@ -279,7 +282,7 @@ fn cycles_agree(image: &Path, directory: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Everything that breaks, one after the other; then a queue that runs over, a hang and a second start.
+/// Causes all faults one after the other; then a queue overflow, a hang and a second start.
 fn broken(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
     let mut fates = Vec::new();
     let mut at = FIRST;
@@ -342,7 +345,7 @@ fn broken(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
     Ok(())
 }
 
-/// A crystal that does not start ends in resets until it does.
+/// Checks that a crystal that does not start leads to resets until it does.
 fn without_a_crystal(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
     let fates = [(0, "crystal-dead"), (700, "mend")];
     let (seen, directory) = emulate(part, image, limits.sensor, 1.6, &fates)?;
@@ -354,7 +357,7 @@ fn without_a_crystal(part: &Part, image: &Path, limits: &Limits) -> Result<()> {
     Ok(())
 }
 
-/// Runs an image, and returns what was seen and where the rest lies.
+/// Runs an image; returns the observations, and the directory with all other output.
 fn emulate(
     part: &Part,
     image: &Path,
@@ -383,19 +386,20 @@ fn emulate(
     Ok((seen, directory))
 }
 
-/// Runs small images on the emulated STM32F405: what is modelled works, and what is not ends the run.
+/// Runs small images on the emulated STM32F405: modelled peripherals must work, and access to any other must end the
+/// run.
 pub fn small_images() -> Result<()> {
     run(command(unicorn()?).arg(installed()?.join("test_board.py")))
 }
 
-/// The Python that has the emulator's packages.
+/// Returns the Python with the emulator's packages.
 fn unicorn() -> Result<PathBuf> {
     let python = python::environment("emulator-python")?;
     python::install(&python, &PYTHON)?;
     Ok(python)
 }
 
-/// The emulators beside the package that the Pico's needs.
+/// Copies the emulators beside the package that the Pico's needs.
 pub fn installed() -> Result<PathBuf> {
     let (from, home) =
         (paths::examples().join("boards/emulator"), paths::target().join("emulator"));
@@ -414,12 +418,12 @@ pub fn installed() -> Result<PathBuf> {
     Ok(home)
 }
 
-/// What `spikewire listen` makes of the UART's bytes.
+/// Returns what `spikewire listen` decodes from the UART's bytes.
 fn listened(part: &Part, directory: &Path) -> Result<String> {
     output(host::spikewire("listen")?.args(part.listen.split(' ')).arg(directory.join("uart")))
 }
 
-/// The log, in words.
+/// Returns the decoded log.
 fn log(image: &Path, directory: &Path) -> Result<String> {
     let mut decode = command(host::example("logging")?);
     output(decode.arg(image).stdin(File::open(directory.join("log"))?))
@@ -430,7 +434,7 @@ fn number(line: &str, after: &str) -> Option<u32> {
     rest.split(|at: char| !at.is_ascii_digit()).next()?.parse().ok()
 }
 
-/// Hears the bytes as they came, and compares each exact value with the sensor's sample.
+/// Decodes the bytes in the order of their arrival, and compares each exact value with the sensor's sample.
 fn hear(part: &Part, seen: &Seen, directory: &Path) -> Result<Heard> {
     if let BMI323 | BMI088 = part.listen {
         let threshold = if part.listen == BMI323 { 205 } else { 137 };
@@ -443,7 +447,7 @@ fn hear(part: &Part, seen: &Seen, directory: &Path) -> Result<Heard> {
     }
 }
 
-/// How long a far end takes a silence for life, in µs: the crate `far-end` derives it.
+/// Longest silence during which a far end assumes that the sender is alive, in µs; the crate `far-end` derives it.
 const SILENCE: u64 = 120_000;
 
 fn hear_with<P: Scheme<Sample = i16>>(
@@ -500,7 +504,8 @@ fn hear_with<P: Scheme<Sample = i16>>(
     Ok(heard)
 }
 
-/// The sensor's samples in the vehicle's axes: a SpeedyBee's sensor is turned by 90°, a Matek's upside down (`ALIGNMENT`).
+/// Rotates the sensor's samples to the vehicle's axes: a SpeedyBee's sensor is turned by 90°, a Matek's is upside down
+/// (`ALIGNMENT`).
 fn turned(part: &Part, samples: Vec<Vec<i64>>) -> Vec<Vec<i64>> {
     let turn = |sample: Vec<i64>| match (part.name, &sample[..]) {
         ("speedybee-f405", &[at, rx, ry, rz, ax, ay, az]) => vec![at, ry, -rx, rz, ay, -ax, az],
@@ -516,8 +521,8 @@ fn note(heard: &mut Heard, at: u64, is_exact: bool) {
     }
 }
 
-/// Whether a value is within two thresholds of what the sensor had at its tick: one that the code may be behind, and one for
-/// the noise and a sample's time.
+/// Returns whether a value is within two thresholds of the sensor's at its tick: one by which the code may lag, and one
+/// for noise and the time of the sample.
 fn is_near(
     (tick, channel, value): (u32, u16, i16),
     samples: &[Vec<i64>],
@@ -529,7 +534,7 @@ fn is_near(
     near.is_some_and(|&sample| sample.abs_diff(value.into()) <= 2 * u64::from(threshold))
 }
 
-/// A file's lines of numbers, separated by commas.
+/// Parses a file's lines of numbers, separated by commas.
 fn numbers(directory: &Path, name: &str) -> Result<Vec<Vec<i64>>> {
     let text = fs::read_to_string(directory.join(name))?;
     let line = |line: &str| line.split(',').map(str::parse).collect::<Result<Vec<i64>, _>>();

@@ -1,4 +1,4 @@
-//! The steps of `cargo verify`, one function each; `verify` lists them.
+//! The steps of `cargo verify`, one function for each; `verify` lists them.
 
 use crate::common::{cargo, output, paths, run};
 use crate::figures::{jumps, schemes};
@@ -22,7 +22,7 @@ pub fn fmt() -> Result<()> {
     run(&mut schemes)
 }
 
-/// The tests need all that is linted here of the host's code, compiled. Of the firmware one core stands for all.
+/// Lints the host's code, which compiles everything that the tests need, and the firmware for one core as an example.
 pub fn clippy() -> Result<()> {
     run(&mut tests("--no-run")?)?;
     image::lint_all(Board::with("M4F")?)
@@ -32,7 +32,8 @@ pub fn test() -> Result<()> {
     run(&mut tests("")?)
 }
 
-/// Each page with code is the documentation of an item in the `pages` of a crate, which exists for doctests only.
+/// Tests the code on each page of documentation: `pages` of a crate includes each as the documentation of an item, which
+/// exists only for this.
 pub fn readme() -> Result<()> {
     let said = output(&mut tests("--doc -- pages")?)?;
     print!("{said}");
@@ -64,7 +65,8 @@ pub fn each_feature() -> Result<()> {
     Ok(())
 }
 
-/// Each two features of a crate that flies. A pair of which one brings the other is that one alone, and compiles at once.
+/// Tests every pair of features of each crate that flies. If one feature enables the other, the pair equals that one
+/// alone and compiles at once.
 pub fn pairs() -> Result<()> {
     for own in CRATES.iter().filter(|own| own.flies) {
         let features = own.features()?;
@@ -79,8 +81,8 @@ pub fn pairs() -> Result<()> {
     Ok(())
 }
 
-/// The crates that fly, alone and with every feature for the core that has least, no compare-and-swap and no FPU. The firmware is
-/// compiled for all of them elsewhere; `cargo verify lints` has both on every core.
+/// Checks the crates that fly, without and with all features, for the smallest core: no compare-and-swap and no FPU.
+/// The firmware is compiled for all cores elsewhere; `cargo verify lints` does both for every core.
 pub fn targets() -> Result<()> {
     check_for(&TARGETS[..1])
 }
@@ -101,9 +103,10 @@ pub fn check_for(targets: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// The program has no panic handler: one path to a panic that the compiler cannot rule out, and it does not link. It
-/// links with overflow checks: no arithmetic can overflow unnoticed in a release build, or panic in a debug build. Here
-/// one core stands for all; `cargo verify panic-free` links it on two, and without those checks, which takes as long again.
+/// Links a program without a panic handler: it fails if there is a path to a panic that the compiler cannot rule out.
+/// The program has overflow checks, so no arithmetic can wrap unnoticed in a release build, or panic in a debug build.
+/// It is linked here for one core as an example; `cargo verify panic-free` links it for two, and without those checks,
+/// which takes as long again.
 pub fn no_panic() -> Result<()> {
     image::link_checked("no-panic", Board::with("M0")?)
 }
@@ -116,7 +119,7 @@ pub fn no_panic_all() -> Result<()> {
     Ok(())
 }
 
-/// The laptop program on the recorded flight, its hardest second, and the paper's tables in full.
+/// Runs the laptop program on the recorded flight and on its hardest second, and reproduces the paper's tables in full.
 pub fn laptop() -> Result<()> {
     let spikewire = |args: &str| output(&mut spikewire(args)?);
     let flight = "--column gyro_x data/hexarotor.csv";

@@ -1,12 +1,13 @@
-//! `cargo verify fifo`: a sensor at 8 kHz through its FIFO: its driver's tests, and what it costs an STM32F405's core.
+//! `cargo verify fifo`: tests the driver of a sensor at 8 kHz with a FIFO, and counts what it costs an STM32F405's
+//! core.
 
 use crate::common::{cargo, paths, run};
 use crate::programs::{boards::Board, host, image, qemu};
 use anyhow::{Context, Result, ensure};
 
 const PROGRAM: &str = "fifo-8khz";
-/// What the examples' README promises, in instructions a second: one for every 40 cycles of an STM32F405 at 168 MHz.
-/// Most instructions take more than one cycle: docs/costs.md has the cycles.
+/// Number of instructions a second that the examples' README promises: one for every 40 cycles of an STM32F405 at 168
+/// MHz. Most instructions take more than one cycle; docs/costs.md has the cycles.
 const PROMISED: u64 = 168_000_000 / 40;
 
 pub fn fifo() -> Result<()> {
@@ -15,7 +16,8 @@ pub fn fifo() -> Result<()> {
     count("M4F")
 }
 
-/// The program checks itself, and its exit status tells: all samples encoded, all frames decoded to the same values.
+/// Runs the program, which checks that all samples are encoded and all frames decode to the same values, and counts
+/// instructions.
 pub fn count(core: &str) -> Result<()> {
     let board = Board::with(core)?;
     let printed = qemu::run_counting(board, &image::build(PROGRAM, board)?)?;

@@ -1,4 +1,4 @@
-//! `cargo xtask firmware`: every example program on every emulated board, compared with the host.
+//! `cargo xtask firmware`: runs every example program on every emulated board, and compares its output with the host's.
 
 use crate::common::paths;
 use crate::figures::bits;
@@ -34,7 +34,7 @@ pub fn firmware(names: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Puts spike counts, and which bits agree, into the page of bits.
+/// Writes spike counts, and which bits agree, into docs/bits.md.
 pub fn write() -> Result<()> {
     needs::ensure_met()?;
     let mut flown = Vec::new();
@@ -45,8 +45,8 @@ pub fn write() -> Result<()> {
     bits::write(&bits::table(&flown))
 }
 
-/// A program is a directory of the firmware workspace with a `src/main.rs`. What is only linked, or prints
-/// too much for a table, calls it otherwise; what is for one part alone is a workspace of its own.
+/// Lists the programs: the directories of the firmware workspace with a `src/main.rs`. Those that are only linked, or
+/// print too much for a table, name it otherwise; those for a single part are workspaces of their own.
 fn programs() -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(paths::examples())? {
@@ -60,7 +60,7 @@ fn programs() -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// What one board did.
+/// The outcome of a program on one board.
 struct Outcome {
     board: &'static Board,
     image: PathBuf,
@@ -72,7 +72,7 @@ impl Outcome {
         self.printed.as_ref().is_ok_and(|printed| printed == host)
     }
 
-    /// The table's mark for one of the host's lines.
+    /// Returns the table's mark for one of the host's lines.
     fn mark(&self, line: &str) -> &'static str {
         match &self.printed {
             Ok(printed) if printed.lines().any(|printed| printed == line) => "=",
@@ -82,7 +82,7 @@ impl Outcome {
     }
 }
 
-/// Runs one program everywhere: what the host printed, and what became of it on the boards.
+/// Runs a program everywhere; returns the host's output, and the outcome on each board.
 fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
     let host = host::on_host(program)?;
     ensure!(!host.is_empty(), "{program} prints nothing on the host");
@@ -108,7 +108,7 @@ fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
     Ok((host, outcomes))
 }
 
-/// Prints what became of one program. True if every board agrees with the host.
+/// Prints the outcomes of a program; returns true if every board agrees with the host.
 fn compare(program: &str, host: &str, outcomes: &[Outcome]) -> Result<bool> {
     print_table(program, host, outcomes);
     for outcome in outcomes {
@@ -125,13 +125,13 @@ fn compare(program: &str, host: &str, outcomes: &[Outcome]) -> Result<bool> {
     Ok(agree)
 }
 
-/// The host's lines, each with its mark for every board.
+/// Returns the host's lines, each with its mark for every board.
 fn marked(host: &str, outcomes: &[Outcome]) -> Vec<(String, String)> {
     let marks = |line| outcomes.iter().map(|outcome| outcome.mark(line)).collect::<Vec<_>>();
     host.lines().map(|line| (line.to_owned(), marks(line).join(" "))).collect()
 }
 
-/// One row for each of the host's lines, one column for each board.
+/// Prints a row for each of the host's lines, with a column for each board.
 fn print_table(program: &str, host: &str, outcomes: &[Outcome]) {
     let width = host.lines().map(|line| label(line).len()).max().unwrap_or(0);
     let width = width.max(program.len());
@@ -150,12 +150,12 @@ fn print_table(program: &str, host: &str, outcomes: &[Outcome]) {
     println!();
 }
 
-/// The line without its two columns of hexadecimal, which are for the comparison.
+/// Returns the line without its two columns of hexadecimal, which serve only for the comparison.
 fn label(line: &str) -> &str {
     line.split_once(" rmse=").map_or(line, |(label, _)| label)
 }
 
-/// The lines on which board and host disagree, one below the other.
+/// Prints the lines in which board and host differ, one below the other.
 fn print_difference(host: &str, outcome: &Outcome) {
     let core = outcome.board.core;
     match &outcome.printed {

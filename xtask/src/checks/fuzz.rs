@@ -1,28 +1,29 @@
-//! Hostile bytes for all that reads bytes: `fuzz` replays the corpora, `fuzz-long` looks for new inputs with libFuzzer.
+//! Feeds hostile bytes to everything that reads bytes: `fuzz` replays the corpora, `fuzz-long` searches for new inputs
+//! with libFuzzer.
 
 use crate::common::{cargo, command, paths, run};
 use crate::programs::host::{tests, triple};
 use anyhow::{Context, Result, bail, ensure};
 use std::{env, fs, path::PathBuf, process::Command};
 
-/// Seconds that each target gets, unless `FUZZ_SECONDS` says otherwise.
+/// Seconds for each target, unless `FUZZ_SECONDS` gives others.
 const SECONDS: &str = "60";
 
-/// Longest inputs, in bytes: NIR graphs are longer, and change where their seeds do.
+/// Longest inputs, in bytes. NIR graphs are longer; they change only within their seeds.
 const LONGEST: &str = "8192";
 
-/// What lets libFuzzer see which code an input reaches: flags of LLVM that a stable compiler passes on.
+/// Flags of LLVM that let libFuzzer see which code an input reaches; a stable compiler passes them on.
 const WATCHED: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=4 --cfg=fuzzing";
 
-/// Every file of the corpora, and mutants of each from a fixed seed.
+/// Replays every file of the corpora, and mutants of each from a fixed seed.
 pub fn replay() -> Result<()> {
     run(&mut tests("--test replay -- --ignored --nocapture")?)
 }
 
-/// Runs every target, or the one that `FUZZ_TARGET` names, under libFuzzer. What it found is kept below `target/fuzz`, so
-/// that the next run goes on from there.
+/// Runs every target, or the one that `FUZZ_TARGET` names, under libFuzzer. New inputs are kept below `target/fuzz`, so
+/// that the next run continues from there.
 pub fn long() -> Result<()> {
     let engine = build()?;
     let seconds = env::var("FUZZ_SECONDS").unwrap_or_else(|_| SECONDS.into());
@@ -70,7 +71,7 @@ pub fn long() -> Result<()> {
     }
 }
 
-/// What libFuzzer said; it ends with an error where it found something.
+/// Returns the output of libFuzzer, which exits with an error if it found something.
 fn told(fuzzer: &mut Command) -> Result<String> {
     eprintln!("$ {fuzzer:?}");
     let output = fuzzer.output().context("the fuzzer does not start")?;
@@ -87,7 +88,7 @@ fn build() -> Result<PathBuf> {
     Ok(target.join(host).join("fuzz/engine"))
 }
 
-/// The targets, each of which has a corpus.
+/// Lists the targets, each of which has a corpus.
 fn targets() -> Result<Vec<String>> {
     let mut names: Vec<String> = fs::read_dir(paths::root().join("host-tests/fuzz/corpus"))?
         .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))

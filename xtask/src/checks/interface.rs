@@ -1,12 +1,12 @@
-//! `cargo verify interface`: what each published crate offers is what its `interface.txt` says, so that a change of it is
-//! seen by whoever reads a change.
+//! `cargo verify interface`: compares the public items of each published crate with its `interface.txt`, so that a
+//! reviewer sees each change of them.
 
 use crate::common::{cargo, paths, run};
 use crate::programs::published::{CRATES, Crate};
 use anyhow::{Context, Result, ensure};
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
-/// Compares every crate's interface with its page.
+/// Compares every crate's public items with its `interface.txt`.
 pub fn verify() -> Result<()> {
     for own in &CRATES {
         let (now, kept) = (of(own)?, fs::read_to_string(page(own)).unwrap_or_default());
@@ -28,7 +28,7 @@ pub fn verify() -> Result<()> {
     Ok(())
 }
 
-/// Writes every crate's page.
+/// Writes every crate's `interface.txt`.
 pub fn write() -> Result<()> {
     for own in &CRATES {
         fs::write(page(own), of(own)?)?;
@@ -40,8 +40,8 @@ fn page(own: &Crate) -> PathBuf {
     paths::root().join(own.directory).join("interface.txt")
 }
 
-/// All public items of a crate with all its features, a line each, without what every type implements and without the
-/// members of an implementation, which its trait names.
+/// Lists all public items of a crate with all its features, one on each line. Leaves out what every type implements,
+/// and the members of an implementation, which its trait determines.
 fn of(own: &Crate) -> Result<String> {
     const JSON: &str = "--lib --all-features -- -Z unstable-options --output-format json";
     let place = paths::target().join("interface");
@@ -82,7 +82,7 @@ fn lines(text: &str) -> BTreeSet<&str> {
     text.lines().collect()
 }
 
-/// How many structs, enums, unions, traits and aliases a crate offers.
+/// Counts the structs, enums, unions, traits and aliases of a crate.
 fn types(text: &str) -> usize {
     const KINDS: [&str; 5] = ["struct", "enum", "union", "trait", "type"];
     let declares = |line: &&str| {
@@ -95,7 +95,7 @@ fn types(text: &str) -> usize {
     text.lines().filter(declares).count()
 }
 
-/// Whether an item belongs to a type: the word before its own name is in capitals.
+/// Returns whether an item is a member of a type, that is, whether the word before its name is capitalised.
 fn is_member(line: &str) -> bool {
     const BEFORE: [&str; 6] = ["pub", "const", "unsafe", "fn", "type", "struct"];
     let path = line.split(' ').find(|word| !BEFORE.contains(word)).unwrap_or_default();

@@ -1,5 +1,5 @@
-//! `cargo verify link`: a flight over a serial line, from a board's interrupt to values on the host, and to commands of a
-//! second board and a companion computer.
+//! `cargo verify link`: a flight over a serial line, from a board's interrupt to values on the host, and to the
+//! commands of a second board and of a companion computer.
 
 use crate::common::{cargo, paths, run, shell};
 use crate::programs::{boards::Board, host, image, published, qemu};
@@ -9,14 +9,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// With the thresholds of the board's channels.
+/// Arguments that decode the board's channels, with their thresholds.
 const LISTEN: &str = "listen --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5";
 
-/// The companion computer's program.
+/// The program on the companion computer.
 const COMPANION: &str = "far-end-linux";
 
-/// The board sends frames out of its UART, `spikewire listen` decodes them: the values must be those that the board
-/// decoded itself, bit for bit.
+/// Lets the board send frames from its UART, and `spikewire listen` decode them: the values must equal, bit for bit,
+/// those that the board decoded itself.
 pub fn link() -> Result<()> {
     let board = Board::with("M4F")?; // its UART is the one that the program knows
     let image = image::build("link-uart", board)?;
@@ -40,8 +40,8 @@ pub fn link() -> Result<()> {
     far_ends(board, &captured, &digest(&heard, true)?)
 }
 
-/// A second microcontroller and a companion computer hear the same bytes: the values must be those, and the commands
-/// that both send back the same.
+/// Lets a second microcontroller and a companion computer receive the same bytes: both must decode these values, and
+/// send back the same commands.
 fn far_ends(board: &Board, heard: &Path, values: &str) -> Result<()> {
     run(cargo("test --quiet --manifest-path examples/Cargo.toml --package far-end")
         .env("CARGO_TARGET_DIR", paths::target()))?;
@@ -72,7 +72,7 @@ fn far_ends(board: &Board, heard: &Path, values: &str) -> Result<()> {
     Ok(())
 }
 
-/// The same bytes behind some noise: a USART that is not yet on hears nothing. The link's reader passes over it.
+/// Puts some noise before the bytes, which the link's reader must skip: a USART that is not on yet receives nothing.
 fn after_noise(heard: &Path) -> Result<PathBuf> {
     let mut bytes = vec![0; 16 * 1024];
     bytes.extend(fs::read(heard)?);
@@ -81,8 +81,8 @@ fn after_noise(heard: &Path) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// All values of a table that `spikewire listen` wrote, as the board prints its own: their number, and FNV-1a over
-/// channel, time and bits of each. Keyframes repeat what is known, and count where they are asked for.
+/// Digests all values in a table of `spikewire listen` as the board does with its own: their number, and FNV-1a over
+/// channel, time and bits of each. Keyframes repeat known values, and count only if asked for.
 fn digest(table: &str, with_keyframes: bool) -> Result<String> {
     let (mut values, mut hash) = (0, 0xcbf2_9ce4_8422_2325_u64);
     for line in table.lines().skip(1).filter(|line| *line != "# restart") {

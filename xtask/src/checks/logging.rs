@@ -1,4 +1,4 @@
-//! `cargo verify logging`: what emulated boards log by defmt, decoded on the host.
+//! `cargo verify logging`: decodes on the host what emulated boards log by defmt.
 
 use crate::common::{paths, shell};
 use crate::programs::{boards::Board, host, image, qemu};
@@ -7,12 +7,12 @@ use std::fs::{self, File};
 
 const PROGRAM: &str = "logging";
 
-/// The usual core stands for all; `cargo verify cores` has the smallest.
+/// Checks the log of the usual core; `cargo verify cores` checks that of the smallest.
 pub fn logging() -> Result<()> {
     on("M4F")
 }
 
-/// The log must be the text beside the program, which is what a reader of it would see.
+/// Compares the decoded log with the text file beside the program.
 pub fn on(core: &str) -> Result<()> {
     let expected = paths::examples().join("logging/expected.txt");
     let expected = fs::read_to_string(&expected).with_context(|| expected.display().to_string())?;

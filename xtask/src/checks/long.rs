@@ -1,4 +1,4 @@
-//! The checks of `cargo verify --long`, which take too long for every change.
+//! The steps of `cargo verify --long`, which take too long for every change.
 
 use crate::checks::{everyday::check_for, fifo, logging};
 use crate::common::{cargo, paths, run};
@@ -10,7 +10,7 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-/// The recordings, and what they are extracted into for the comparison.
+/// The recordings, and the files into which they are extracted for the comparison.
 const RECORDINGS: [&str; 2] = ["hexarotor.csv", "vtol_at_rest.csv"];
 
 /// Extracts the flights from the logs in two published crates, and compares them with the files in `data`.
@@ -31,8 +31,8 @@ pub fn recordings() -> Result<()> {
     Ok(())
 }
 
-/// Every test, optimised, with many more cases, drawn from a fresh seed unless `SWEEPS_SEED` is set. Those against
-/// other people's programs, and the flights with faults, have checks of their own.
+/// Runs every test, optimised, with many more cases, drawn from a fresh seed unless `SWEEPS_SEED` is set. Tests against
+/// other people's programs, and flights with faults, are steps of their own.
 pub fn sweeps() -> Result<()> {
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH)?;
     let seed = std::env::var("SWEEPS_SEED").unwrap_or_else(|_| since_1970.as_micros().to_string());
@@ -46,7 +46,7 @@ pub fn sweeps() -> Result<()> {
     run(catalogue.env("PROPTEST_CASES", "5120").env("PROPTEST_RNG_SEED", &seed))
 }
 
-/// Tests the codes with the loops of a core without vectors, which a Cortex-M runs and this machine does not.
+/// Tests the codes with the loops for a core without vectors, as on a Cortex-M; the host does not run these by default.
 pub fn scalar() -> Result<()> {
     let mut cargo = cargo("test --package host-tests --test codes");
     run(cargo
@@ -54,19 +54,19 @@ pub fn scalar() -> Result<()> {
         .env("CARGO_TARGET_DIR", paths::target().join("scalar")))
 }
 
-/// Explores the orders of memory of the queue without locks.
+/// Explores the memory orderings of the lock-free queue.
 pub fn loom() -> Result<()> {
     run(&mut cargo("test --package host-tests --features loom --test loom -- --test-threads 1"))
 }
 
-/// Prints how fast slices are beside another crate's, which compiles with less than the Rust that it asks for.
+/// Compares the speed of slices with another crate's, which compiles with an older Rust than it asks for.
 pub fn beside() -> Result<()> {
     let program =
         "run --release --quiet --ignore-rust-version --manifest-path host-tests/beside/Cargo.toml";
     run(cargo(program).arg("--target-dir").arg(paths::target().join("beside")))
 }
 
-/// What `clippy` and the builds of firmware lint, and what they leave out.
+/// Runs the lints that `clippy` and the builds of firmware leave out.
 pub fn lints() -> Result<()> {
     let warnings = ["--", "-D", "warnings"];
     run(cargo("clippy --workspace --all-targets --all-features").args(warnings))?;
@@ -79,12 +79,12 @@ pub fn lints() -> Result<()> {
     run(cargo_for("thumbv7em-none-eabihf", firmware)?.args(warnings))
 }
 
-/// Tests the part of the laptop program that a feature brings.
+/// Tests the part of the laptop program that needs the feature `capture`.
 pub fn capture() -> Result<()> {
     run(&mut cargo("test --package spikewire-cli --all-features --test capture"))
 }
 
-/// The counts of the cores that `cargo verify` leaves out are shown; there is no baseline of them.
+/// Counts on the cores that `cargo verify` leaves out; the counts are printed, as there is no baseline for them.
 pub fn cores() -> Result<()> {
     bench::bench(&[])?;
     logging::on("M0")?;

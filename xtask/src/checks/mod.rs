@@ -1,4 +1,4 @@
-//! The steps of `cargo verify`, as far as they belong to no figure and no product; `verify` lists them all.
+//! The steps of `cargo verify`, except those that belong to a figure or a product; `verify` lists all steps.
 
 mod emulator;
 pub mod everyday;

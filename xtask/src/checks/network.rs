@@ -1,4 +1,5 @@
-//! `cargo xtask network`: a network that `spikewire network` wrote, on five emulated cores and an RP2040, against the host.
+//! `cargo xtask network`: runs a network that `spikewire network` wrote on five emulated cores and an RP2040, and
+//! compares it with the host.
 
 use super::emulator;
 use crate::common::{cargo, command, output, paths, run, usage};
@@ -23,12 +24,12 @@ const RP2040: Board = Board {
     icount: 0,
 };
 
-/// The network whose spikes its authors published: snnTorch, and two layers of neurons with a current.
+/// Path of the network whose spikes its authors published: snnTorch, with two layers of neurons with a current.
 const PUBLISHED: &str = "laptop/cli/tests/peers/nir/braille_subtract.nir";
 const RULE: &str = "--on controller --as snntorch --reset subtract-no-delay";
 const SPIKES: &str = "laptop/cli/tests/peers/nir/braille.txt";
 
-/// Runs a network's module on a file of spikes, and prints what came of it.
+/// Runs a network's module on a file of spikes, and prints the outcome.
 pub fn network(args: &[String]) -> Result<()> {
     let [network, spikes] = args else {
         return Err(usage("cargo xtask network NETWORK.rs SPIKES.txt".to_owned()));
@@ -38,7 +39,8 @@ pub fn network(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// From the published files to spikes on both boards, in single precision and in integers; then instructions of a step.
+/// Checks the path from the published files to spikes on both boards, in single precision and in integers; then counts
+/// the instructions of a step.
 pub fn verify() -> Result<()> {
     let place = paths::target().join(PROGRAM);
     fs::create_dir_all(&place)?;
@@ -57,7 +59,7 @@ pub fn verify() -> Result<()> {
     counts("M0", &[("A,i8", 4778), ("D,i8", 31_985)])
 }
 
-/// The same network as a library for C: the same outputs, and the potentials' bits.
+/// Builds the network as a C library, and compares its outputs and the bits of its potentials.
 fn in_c(network: &Path, spikes: &Path, on_host: &str) -> Result<()> {
     let target = paths::target();
     let mut build = cargo("build --quiet --manifest-path examples/Cargo.toml --package network-c");
@@ -91,8 +93,8 @@ fn in_c(network: &Path, spikes: &Path, on_host: &str) -> Result<()> {
     Ok(())
 }
 
-/// Counts the steps of `examples/network` at 10 % of the neurons firing: an error if one takes 5 % more instructions than
-/// it did, or 10 % more than the C beside it.
+/// Counts the instructions of the steps of `examples/network`, with 10 % of the neurons firing. Fails if one takes 5 %
+/// more than it did, or 10 % more than the equivalent C.
 fn counts(core: &str, known: &[(&str, u32)]) -> Result<()> {
     let board = Board::with(core)?;
     let image = image::build_with("network", board, &[("PLAIN_C", "1")])?;
@@ -123,7 +125,7 @@ fn counts(core: &str, known: &[(&str, u32)]) -> Result<()> {
     Ok(())
 }
 
-/// What the host, the five emulated cores and an RP2040 print: an error if they differ.
+/// Returns the output, which the host, the five emulated cores and an RP2040 must have in common.
 pub(super) fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
     let variables = [("NETWORK", network), ("SPIKES", spikes)];
     let target = paths::target();

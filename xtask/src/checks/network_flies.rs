@@ -1,4 +1,5 @@
-//! `cargo verify net-flies`: a simulated drone on the committed network, which does what a cascade does.
+//! `cargo verify net-flies`: flies a simulated drone with the committed network, which replaces a cascade of
+//! controllers.
 
 use super::network::everywhere;
 use super::simulated_drone::{environment, program};
@@ -13,17 +14,17 @@ const MARKER: &str = "network";
 const EXPORT: &str = "network laptop/loop/network.nir --on controller --reset subtract --fires above --decay euler \
                       --current new --dt 0.002";
 
-/// What the page says of the network comes again from the committed graph.
+/// Checks that the table of the network in docs/loop.md comes again from the committed graph.
 pub fn verify() -> Result<()> {
     markdown::ensure_written(PAGE, MARKER, &flown()?, "cargo xtask write network-flies")
 }
 
-/// Flies all manoeuvres, and puts the table into the page.
+/// Flies all manoeuvres, and writes the table into docs/loop.md.
 pub fn write() -> Result<()> {
     markdown::write(PAGE, MARKER, &flown()?)
 }
 
-/// The table; and what a flip costs on two emulated boards, whose potentials have the host's bits.
+/// Returns the table, which includes the cost of a flip on two emulated boards, whose potentials have the host's bits.
 fn flown() -> Result<String> {
     let place = paths::target().join("network-flies");
     fs::create_dir_all(&place)?;

@@ -1,4 +1,4 @@
-//! `cargo verify nucleo`: the whole program on the page of boards compiles and links, with the HAL that it names.
+//! `cargo verify nucleo`: compiles and links the whole program in docs/firmware.md, with the HAL that it names.
 
 use crate::common::{paths, run};
 use crate::programs::published;

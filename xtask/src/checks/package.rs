@@ -1,4 +1,4 @@
-//! `cargo verify package`: what is published holds all that its pages show, and nothing else.
+//! `cargo verify package`: checks that the published files include all that the pages show, and nothing else.
 
 use crate::common::{cargo, output, paths};
 use crate::programs::published::CRATES;
@@ -8,10 +8,10 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-/// What a published file's path begins with.
+/// Beginnings of the paths that may be published.
 const PUBLISHED: [&str; 6] =
     ["src/", "docs/", "README.md", "CHANGELOG.md", "SAFETY.md", "LICENSE-"];
-/// What cargo adds.
+/// Files that cargo adds.
 const ADDED: [&str; 4] = ["Cargo.toml", "Cargo.toml.orig", "Cargo.lock", ".cargo_vcs_info.json"];
 
 pub fn package() -> Result<()> {
@@ -32,7 +32,7 @@ pub fn package() -> Result<()> {
     Ok(())
 }
 
-/// Follows the links of the pages among a crate's published files, and returns how many there are.
+/// Follows the links in a crate's published pages; returns their number.
 fn links(top: &Path, files: &[&str]) -> Result<usize> {
     let mut links = 0;
     for page in files.iter().filter(|file| file.ends_with(".md")) {
@@ -49,14 +49,14 @@ fn links(top: &Path, files: &[&str]) -> Result<usize> {
     Ok(links)
 }
 
-/// The targets of a page's links and pictures that lie in this repository, without what follows a `#`.
+/// Returns the targets of a page's links and pictures within this repository, without what follows a `#`.
 fn relative_links(text: &str) -> impl Iterator<Item = &str> {
     let ends = text.match_indices("](").map(|(at, mark)| &text[at + mark.len()..]);
     ends.filter_map(|rest| rest.split([')', '#', ' ']).next())
         .filter(|link| !link.is_empty() && !link.contains("://"))
 }
 
-/// The link's file, from the repository's top; none if it leads out of it.
+/// Returns a link's target as a path from the repository's top; `None` if it leads outside.
 fn target(page: &str, link: &str) -> Option<String> {
     let mut path = PathBuf::new();
     for part in Path::new(page).parent()?.join(link).components() {

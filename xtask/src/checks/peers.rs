@@ -1,11 +1,11 @@
-//! Other people's programs, to read what we write and write what we read.
+//! Checks against other people's programs: they read what is written here, and their output is read here.
 
 use crate::common::{cargo, command, paths, run};
 use crate::programs::{host::tests, python};
 use anyhow::Result;
 use std::{fs, path::PathBuf};
 
-/// Installs the Python packages in an environment of their own and runs the tests against them.
+/// Installs the Python packages in an environment of their own, and runs the tests that need them.
 pub fn peers() -> Result<()> {
     let python = environment("peers", "cameras/peers/requirements.txt")?;
     fs::create_dir_all(paths::target().join("tmp"))?; // cargo makes it where it compiles the tests
@@ -13,7 +13,7 @@ pub fn peers() -> Result<()> {
     run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
 }
 
-/// Logs of every kind, written and read by other people's programs.
+/// Checks logs of every kind with other people's programs, as writers and as readers.
 pub fn logs() -> Result<()> {
     let python = environment("logs", "laptop/cli/python/logs_requirements.txt")?;
     run(&mut cargo("build --package spikewire-cli"))?;
@@ -21,10 +21,14 @@ pub fn logs() -> Result<()> {
     let place = paths::target().join("logs-check");
     let recording = paths::root().join("data/hexarotor.csv");
     let check = paths::root().join("laptop/cli/python/logs_check.py");
-    run(command(&python).arg(check).args([program, recording, place]))
+    run(command(&python).arg(check).args([program, recording, place.clone()]))?;
+    run(&mut cargo("build --package flight-logs --example numbers"))?;
+    let numbers = paths::target().join("debug/examples/numbers");
+    let check = paths::root().join("laptop/cli/python/ardupilot_check.py");
+    run(command(&python).arg(check).args([numbers, place]))
 }
 
-/// `spikewire tune` beside other people's optimisers, at equal numbers of settings.
+/// Compares `spikewire tune` with other people's optimisers, at equal numbers of settings.
 pub fn tuner() -> Result<()> {
     let python = environment("tuner", "laptop/cli/python/tune_requirements.txt")?;
     run(&mut cargo("build --release --package spikewire-cli"))?;
@@ -35,7 +39,7 @@ pub fn tuner() -> Result<()> {
     run(command(&python).arg(check).args([program, recording, results]))
 }
 
-/// The Python of an environment of this name, with these packages.
+/// Returns the Python of an environment with these packages.
 fn environment(name: &str, requirements: &str) -> Result<PathBuf> {
     let python = python::environment(name)?;
     python::install(&python, &["--requirement", requirements])?;

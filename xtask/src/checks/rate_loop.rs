@@ -1,5 +1,5 @@
-//! `cargo verify loop`: a flight around a whole loop, with the models of tinyODIN and ReckOn in the firmware, board against
-//! host.
+//! `cargo verify loop`: flies a whole control loop, with the models of tinyODIN and ReckOn in the firmware, and
+//! compares board and host.
 
 use crate::common::paths;
 use crate::programs::{boards::Board, host, image, qemu};
@@ -8,20 +8,21 @@ use std::{fmt::Write, fs, path::PathBuf, process::Command};
 
 const PROGRAM: &str = "rate-loop";
 
-/// The first network of the firmware, from the file of its training: as `trained.rs` of the program encodes.
+/// Arguments that bring the first network of the firmware from the file of its training; its code is that in
+/// `trained.rs`.
 const ROLL: &str = "network laptop/cli/tests/peers/roll.nir --scheme position --neurons 20 --min -2 --max 2 \
                        --reset zero --compare spike --no-held-out --column gyro_x data/hexarotor.csv";
 
-/// The second, on ReckOn: as `recurrent.rs` of the program encodes. Behind it come the two tables.
+/// Arguments that bring the second network, on ReckOn; its code is that in `recurrent.rs`. The two tables follow them.
 const TURNS: &str = "network laptop/cli/tests/peers/turns.nir --chip reckon --scheme position --neurons 25 --min=-1.2 \
                      --max 1.2 --dt 0.005 --reset zero --column gyro_x";
 
-/// Samples of a stretch of the flight; every third is held out from the training of the second network.
+/// Number of samples in a stretch of the flight; every third stretch is held out from the training of the second
+/// network.
 const STRETCH: usize = 250;
 
-/// All that the host prints the board must print too, bit for bit; and the trained networks must fire on the board as
-/// often as `spikewire network` says they will. The board is the one with an STM32F405: tinyODIN's memories alone are
-/// 36 KiB.
+/// Compares the board's output with the host's, bit for bit, and the spikes of the trained networks with what
+/// `spikewire network` predicts. The board has an STM32F405: tinyODIN's memories alone take 36 KiB.
 pub fn rate_loop() -> Result<()> {
     let on_host = host::on_host(PROGRAM)?;
     ensure!(on_host.contains(" hash="), "{PROGRAM} tells no hash on the host");
@@ -44,7 +45,7 @@ pub fn rate_loop() -> Result<()> {
     Ok(())
 }
 
-/// Runs `spikewire network`, which must make the firmware's constant and say how often its neurons fire.
+/// Runs `spikewire network`, which must make the firmware's constant and predict how often its neurons fire.
 fn foretold(network: &mut Command, name: &str, on_host: &str) -> Result<()> {
     let said = network.output()?;
     let report = String::from_utf8_lossy(&said.stderr).into_owned();
@@ -61,7 +62,7 @@ fn foretold(network: &mut Command, name: &str, on_host: &str) -> Result<()> {
     Ok(())
 }
 
-/// A table of the stretches that the second network was trained on, or that were held out, as `turns.py` writes it.
+/// Writes a table of the stretches that the second network was trained on, or that were held out, as `turns.py` does.
 fn table(is_held_out: bool) -> Result<PathBuf> {
     let flight = fs::read_to_string(paths::root().join("data/hexarotor.csv"))?;
     let rows: Vec<&str> = flight.lines().skip(1).collect();
@@ -80,7 +81,7 @@ fn table(is_held_out: bool) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// The spikes on the chip of the report's last layer: `name: neurons, clipped; spikes, on the chip, distance`.
+/// Parses the number of spikes of the last layer on the chip: `name: neurons, clipped; spikes, on the chip, distance`.
 fn of_report(report: &str) -> Result<u32> {
     let layers = report.lines().filter(|line| line.starts_with("node `"));
     let figures = layers.filter_map(|line| line.split_once("; "));
@@ -88,7 +89,7 @@ fn of_report(report: &str) -> Result<u32> {
     counts.next_back().context("no layer in the report")
 }
 
-/// `NAME: N spikes ...`
+/// Parses the number in `NAME: N spikes ...`.
 fn of_firmware(line: &str, name: &str) -> Option<u32> {
     let (spikes, _) = line.strip_prefix(name)?.strip_prefix(": ")?.split_once(" spikes")?;
     spikes.parse().ok()

@@ -1,4 +1,4 @@
-//! The firmware for real boards: each built in a project of its own, as its reader would build it.
+//! Checks the firmware for real boards, each built in a project of its own, as a user would.
 
 use crate::checks::emulator;
 use crate::common::{cargo, command, lint, output, paths, run};
@@ -12,13 +12,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// How many lines a board's file may have.
+/// Maximum number of lines in a board's file.
 const MOST_LINES: usize = 150;
 
-/// The board that flies every day; the others take too long.
+/// Board that is checked every day; the others take too long.
 const EVERY_DAY: &str = "pico";
 
-/// The sensors' drivers on the host, and a Pico's image, built as it is flashed and flown.
+/// Tests the sensors' drivers on the host; builds a Pico's image as it is flashed, and flies it in an emulator.
 pub fn boards() -> Result<()> {
     let bodies =
         "test --quiet --manifest-path examples/Cargo.toml --package flight --package icm42688p";
@@ -28,8 +28,8 @@ pub fn boards() -> Result<()> {
     BOARDS.iter().filter(|part| part.name == EVERY_DAY).try_for_each(fly)
 }
 
-/// The other images that an emulator has, flown; and those that none here has: compiled and linked, and looked at. `BOARD`
-/// in the environment names one of them alone.
+/// Flies the other images for which there is an emulator; compiles, links and inspects the rest. `BOARD` in the
+/// environment selects a single one.
 pub fn more() -> Result<()> {
     let asked = std::env::var("BOARD").ok();
     let is_asked = |part: &Part| match &asked {
@@ -46,8 +46,8 @@ fn fly(part: &Part) -> Result<()> {
     emulator::fly(part, &build(part, false)?)
 }
 
-/// Builds a board's image in a project that `new-firmware` writes, with the crate as it would be published. `quickly` is for
-/// images that nobody runs: whether all fits together needs no optimised code.
+/// Builds a board's image in a project that `new-firmware` writes, with the crate as it would be published. `quickly`
+/// builds without optimisation, for images that are not run.
 fn build(part: &Part, quickly: bool) -> Result<PathBuf> {
     let file = paths::examples().join(format!("boards/src/board/{}.rs", part.board));
     let lines = fs::read_to_string(&file)?.lines().count();
@@ -80,7 +80,7 @@ fn build(part: &Part, quickly: bool) -> Result<PathBuf> {
     Ok(image)
 }
 
-/// The lowest address, and length, of each section.
+/// Returns the lowest address and the length of a section.
 fn section(image: &Path, name: &str) -> Result<(u32, u32)> {
     let sections = output(command("arm-none-eabi-objdump").arg("-h").arg(image))?;
     let mut lines = sections.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
@@ -90,7 +90,7 @@ fn section(image: &Path, name: &str) -> Result<(u32, u32)> {
     Ok((number(3)?, number(2)?))
 }
 
-/// What DMA moves lies where DMA reaches, and where `part.rs` keeps the cache out.
+/// Checks that buffers for DMA lie where DMA reaches, and where `part.rs` keeps the cache out.
 fn dma_has_its_memory(image: &Path) -> Result<()> {
     let (start, length) = section(image, ".dma")?;
     println!("DMA: {length} bytes from {start:#x} on");
@@ -98,14 +98,15 @@ fn dma_has_its_memory(image: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The Crazyflie's radio bootloader has the first 16 KiB.
+/// Checks that the first 16 KiB are left to the Crazyflie's radio bootloader.
 fn the_bootloader_stays(image: &Path) -> Result<()> {
     let (start, _) = section(image, ".vector_table")?;
     ensure!(start == 0x0800_4000, "the image begins at {start:#x}, over the bootloader");
     Ok(())
 }
 
-/// What `objcopy` makes of the image for DFU and the radio begins with the stack's address, and has no gap up to another memory.
+/// Checks that the binary which `objcopy` makes for DFU and the radio begins with the stack's address, and has no gap
+/// up to another memory.
 fn a_binary_begins_with_the_vectors(image: &Path) -> Result<()> {
     let binary = image.with_extension("bin");
     run(command("arm-none-eabi-objcopy").args(["-O", "binary"]).arg(image).arg(&binary))?;
@@ -116,7 +117,7 @@ fn a_binary_begins_with_the_vectors(image: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The stack ends where the memory does: one that overflows meets no static, but a fault.
+/// Checks that the stack ends where the memory does: if it overflows it causes a fault, and does not overwrite statics.
 fn stack_ends_the_memory(image: &Path) -> Result<()> {
     let symbols = output(command("arm-none-eabi-nm").arg(image))?;
     let [start, end, statics] = ["_stack_start", "_stack_end", "__sdata"].map(|name| {
@@ -153,7 +154,7 @@ mod tests {
         }
     }
 
-    /// A log that waits for a debug probe stops the firmware when somebody pulls the probe.
+    /// A log that waits for a debug probe would stop the firmware once the probe is unplugged.
     #[test]
     fn no_log_waits_for_a_probe() {
         let text = fs::read_to_string(paths::examples().join("boards/Cargo.toml")).unwrap();

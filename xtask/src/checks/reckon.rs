@@ -1,4 +1,5 @@
-//! A chip's model against its register-transfer code, which is not in here: it is fetched, or a checkout is named.
+//! Compares a chip's model with the chip's register-transfer code, which is not in this repository: it is cloned, or a
+//! checkout is given.
 
 use crate::common::{cargo, command, paths, run, shell::has};
 use crate::setup;
@@ -7,11 +8,11 @@ use std::{env, fs, path::PathBuf};
 
 const REPOSITORY: &str = "https://github.com/ChFrenkel/ReckOn";
 const COMMIT: &str = "5e5c0bea8fe1897876ba3b7bfdcecf76d3bf4505";
-/// The files beside those of the sources of random numbers.
+/// The code's files, besides those of the sources of random numbers.
 const FILES: [&str; 4] = ["reckon.v", "spi_slave.v", "srnn.v", "fifo.v"];
 
-/// Builds ReckOn's code with Verilator, and compares it with the model over a million clocks. `RECKON_RTL` names a
-/// checkout; without it, the code is cloned.
+/// Builds ReckOn's code with Verilator, and compares it with the model over a million clocks. The code is cloned unless
+/// `RECKON_RTL` gives a checkout.
 pub fn reckon() -> Result<()> {
     if !has("verilator") {
         setup::packages("what simulates the chip's code", &["verilator"])?;

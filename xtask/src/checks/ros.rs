@@ -1,4 +1,5 @@
-//! `cargo verify ros`: the nodes in a ROS 1 of the distribution; `cargo verify ros2`: those of ROS 2 against another DDS.
+//! `cargo verify ros`: tests the nodes with the distribution's ROS 1. `cargo verify ros2`: tests those for ROS 2 with
+//! another DDS.
 
 use crate::common::{cargo, command, output, paths, run};
 use crate::figures::drawing;
@@ -11,7 +12,7 @@ use std::{
     process::Command,
 };
 
-/// ROS 1, what builds its packages, and what its nodes and their tests import.
+/// Packages of ROS 1: what builds its packages, and what the nodes and their tests import.
 const PACKAGES: [&str; 11] = [
     "catkin",
     "g++",
@@ -25,17 +26,17 @@ const PACKAGES: [&str; 11] = [
     "python3-yaml",
     "ros-message-generation",
 ];
-/// What the build of a package of ROS 2 asks for, what `ros2 run` finds packages by, and a network.
+/// Packages for building a ROS 2 package, for `ros2 run` to find it, and for a network namespace.
 const PACKAGES_2: [&str; 4] = ["ament-cmake", "cmake", "iproute2", "python3-ament-index"];
-/// The Python that has ament's modules, the first one on the path or not.
+/// Option that selects the Python with ament's modules, even if another is first on the path.
 const PYTHON: &str = "-DPython3_EXECUTABLE=/usr/bin/python3";
-/// The programs of the distribution, and no others: its Python has its ROS.
+/// Path with the distribution's programs only, as its Python has its ROS.
 const PATH: &str = "/usr/bin:/bin";
 
-/// The paper's figure of its ROS package, of the inputs that a bag of the node has.
+/// Picture for docs: the figure of the paper's ROS package, with the inputs from a bag of the node.
 const FIGURE: &str = "docs/ros.svg";
 
-/// A flight through every scheme, what goes wrong, the toolbox's bags and launch files, and the figure.
+/// Tests a flight through every scheme, faults, the toolbox's bags and launch files, and the figure.
 pub fn ros() -> Result<()> {
     let ros = Ros::ready()?;
     run(&mut ros.test("core.py"))?;
@@ -51,9 +52,9 @@ pub fn ros() -> Result<()> {
     ensure_decoded(&output(spikewire.arg("decode").arg(bag))?, &ros.table()?)
 }
 
-/// Tests the Rust nodes, builds their package by colcon, and runs them against Eclipse Cyclone DDS.
+/// Tests the Rust nodes, builds their package with colcon, and runs them with Eclipse Cyclone DDS.
 ///
-/// All that they send stays in a network namespace with nothing but loopback in it.
+/// All their traffic stays in a network namespace with only a loopback device.
 pub fn ros2() -> Result<()> {
     setup::packages("what builds the nodes' package, and a network of their own", &PACKAGES_2)?;
     let top = paths::target().join("ros2");
@@ -86,12 +87,12 @@ pub fn ros2() -> Result<()> {
     run(test.arg(room).env("PYTHONPATH", sources()).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// A workspace of ROS 2 with the nodes' package as the README links it. `spyke_msgs` is not in it: it needs generators
-/// of messages that only a ROS 2 has.
+/// A workspace of ROS 2 with the nodes' package, set up as the README says. It does not contain `spyke_msgs`, which
+/// needs generators of messages that only a full ROS 2 has.
 struct Workspace {
-    /// Beside what cargo builds.
+    /// Directory beside cargo's output.
     place: PathBuf,
-    /// Where cargo builds what the tests share.
+    /// Directory in which cargo builds what the tests share.
     built: PathBuf,
     colcon: PathBuf,
 }
@@ -112,7 +113,7 @@ impl Workspace {
         colcon
     }
 
-    /// Fails if colcon finds other packages than those of ROS 2 in a clone of the repository, or one twice.
+    /// Fails if colcon finds packages in a clone of the repository that are not of ROS 2, or finds one twice.
     fn ensure_clone_is_unambiguous(&self) -> Result<()> {
         let listed = output(self.colcon("list").arg("--base-paths").arg(paths::root()))?;
         let mut found: Vec<_> = listed.lines().filter_map(|line| line.split('\t').nth(1)).collect();
@@ -127,7 +128,8 @@ impl Workspace {
         Ok(())
     }
 
-    /// A copy of the package alone cannot know where the nodes' code is: it says so, and takes the place of a clone.
+    /// Checks a copy of the package outside a clone. It cannot know where the nodes' code is, must say so, and must
+    /// accept a clone's path.
     fn ensure_copy_asks_for_a_clone(&self) -> Result<()> {
         let copy = self.place.join("copied");
         fs::create_dir_all(&copy)?;
@@ -150,7 +152,7 @@ impl Workspace {
         Ok(())
     }
 
-    /// Builds as the README says, in the profile of the tests.
+    /// Builds as the README says, in the tests' profile.
     fn build(&self) -> Result<()> {
         let mut colcon = self.colcon("build");
         colcon.args(["--cmake-args", "-DCARGO_PROFILE=dev", PYTHON]);
@@ -168,16 +170,16 @@ fn package_2() -> PathBuf {
     paths::root().join("bindings/ros/ros2/spikewire_ros")
 }
 
-/// Draws the figure into the page.
+/// Draws the figure into docs.
 pub fn write() -> Result<()> {
     drawing::keep(&Ros::ready()?.figure()?, FIGURE)
 }
 
 /// The package `spikewire` and the catkin packages, built and installed below `target`.
 struct Ros {
-    /// All that is generated.
+    /// Directory of all generated files.
     top: PathBuf,
-    /// Where Python finds `spikewire`.
+    /// Directory from which Python imports `spikewire`.
     site: PathBuf,
 }
 
@@ -200,8 +202,8 @@ impl Ros {
         Ok(ros)
     }
 
-    /// A source space with links to the packages, as the README makes it. What is built here stays out of the sight of a
-    /// colcon that finds the repository in its workspace.
+    /// Makes a source space with links to the packages, as the README does. What is built here is hidden from a colcon
+    /// that finds the repository in its workspace.
     fn linked(&self) -> Result<PathBuf> {
         let source = self.room("src")?;
         fs::write(self.top.join("COLCON_IGNORE"), "")?;
@@ -211,14 +213,14 @@ impl Ros {
         Ok(source)
     }
 
-    /// A directory for what a test leaves behind.
+    /// Makes a directory for the files of a test.
     fn room(&self, name: &str) -> Result<PathBuf> {
         let room = self.top.join(name);
         fs::create_dir_all(&room)?;
         Ok(room)
     }
 
-    /// A test with the nodes as catkin has installed them.
+    /// Returns a test, to be run with the nodes as installed by catkin.
     fn test(&self, name: &str) -> Command {
         let mut test = command(self.top.join("install-space/env.sh"));
         test.arg("python3").arg(tests().join(name));
@@ -236,13 +238,13 @@ impl Ros {
         Ok(drawn)
     }
 
-    /// What the figure's bag holds.
+    /// Returns the table of the values in the figure's bag.
     fn table(&self) -> Result<PathBuf> {
         Ok(self.room("figure")?.join("figure.csv"))
     }
 }
 
-/// Fails if these lines of `index,value,time_us` have other values than the table of the bag, as numbers of 32 bits.
+/// Fails if lines of `index,value,time_us` have other values than the bag's table, compared as 32-bit numbers.
 fn ensure_decoded(lines: &str, table: &Path) -> Result<()> {
     let column = |text: &str, column: usize| {
         let values = text.lines().skip(1).map(|line| line.split(',').nth(column)?.parse().ok());

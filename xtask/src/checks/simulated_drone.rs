@@ -1,4 +1,4 @@
-//! `cargo xtask loop`: a drone in RotorPy that flies on spikes, in an environment of its own.
+//! `cargo xtask loop`: flies a drone in RotorPy on spikes, in a Python environment of its own.
 
 use crate::common::{cargo, command, output, paths, run, usage};
 use crate::figures::{drawing, markdown};
@@ -11,13 +11,13 @@ use std::{
 };
 
 const PAGE: &str = "docs/loop.md";
-/// The tables: every code's flights as it is tuned by flying, and as it is tuned on its error behind other filters.
+/// The tables: each code's flights when it is tuned by flying, and when it is tuned on its error behind other filters.
 const TABLES: [&str; 2] = ["loop", "filters"];
 const CHIP: &str = "chip";
 const PICTURE: &str = "docs/loop.svg";
 const CRASH: &str = "docs/crash.svg";
 
-/// The row that a check flies again.
+/// The row of a table that a check flies again.
 const AGAIN: &str = "sod";
 
 /// Flies a flip on the spikes of a code, and draws it.
@@ -32,7 +32,7 @@ pub fn fly(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Flies all codes, and puts tables and pictures into the page.
+/// Flies all codes, and writes tables and pictures into docs/loop.md.
 pub fn write() -> Result<()> {
     let python = environment()?;
     drawing::keep(&draw(&python, "picture.py")?, PICTURE)?;
@@ -40,7 +40,7 @@ pub fn write() -> Result<()> {
     put(&output(&mut program(&python, "table.py"))?)
 }
 
-/// Puts the tables of the flights that `laptop/loop/verdicts.json` keeps into the page, and flies none.
+/// Writes the tables of the flights stored in `laptop/loop/verdicts.json` into docs/loop.md, without flying.
 pub fn write_tables() -> Result<()> {
     put(&output(program(&environment()?, "table.py").arg("--print"))?)
 }
@@ -49,13 +49,14 @@ fn put(printed: &str) -> Result<()> {
     tables(printed).try_for_each(|(marker, table)| markdown::write(PAGE, marker, &table))
 }
 
-/// The tables, which an empty line divides, with their places in the page.
+/// Splits the output into tables at empty lines, each with its place in the page.
 fn tables(printed: &str) -> impl Iterator<Item = (&'static str, String)> {
     let each = printed.split("\n\n").map(|table| format!("\n{}\n\n", table.trim_end()));
     TABLES.into_iter().zip(each)
 }
 
-/// The control is steady, links carry what codecs make, the same seeds give the page's picture and one of its rows.
+/// Checks that control is stable, that links carry what codecs make, and that the same seeds give the page's picture
+/// and one of its rows.
 pub fn verify() -> Result<()> {
     let python = environment()?;
     run(&mut program(&python, "test_loop.py"))?;
@@ -77,12 +78,13 @@ pub fn verify() -> Result<()> {
     Ok(())
 }
 
-/// A network on the model of tinyODIN flies all manoeuvres: what the page has of it comes again from the committed graph.
+/// Flies all manoeuvres with a network on the model of tinyODIN: the page's table of it must come again from the
+/// committed graph.
 pub fn chip() -> Result<()> {
     markdown::ensure_written(PAGE, CHIP, &on_chip()?, "cargo xtask write chip")
 }
 
-/// Flies them, and puts the table into the page.
+/// Flies all manoeuvres with a network on the model of tinyODIN, and writes the table into docs/loop.md.
 pub fn write_chip() -> Result<()> {
     markdown::write(PAGE, CHIP, &on_chip()?)
 }
@@ -95,7 +97,7 @@ fn on_chip() -> Result<String> {
     Ok(format!("\n{flown}\n"))
 }
 
-/// An emulated board flies a short manoeuvre, in lockstep with the world: each bit of it must be the laptop's.
+/// Flies a short manoeuvre on an emulated board, in lockstep with the simulation: each bit must be the laptop's.
 pub fn board() -> Result<()> {
     let python = environment()?;
     let image = image::build("in-the-loop", Board::with("M4F")?)?;
@@ -108,14 +110,14 @@ fn draw(python: &Path, name: &str) -> Result<PathBuf> {
     Ok(picture)
 }
 
-/// A program of `laptop/loop`, with this Python.
+/// Returns a program of `laptop/loop`, to be run with this Python.
 pub(super) fn program(python: &Path, name: &str) -> Command {
     let mut program = command(python);
     program.arg(paths::root().join("laptop/loop").join(name));
     program
 }
 
-/// `RotorPy`, and the package of this repository, compiled as its tests are.
+/// Returns an environment with `RotorPy` and with this repository's package, compiled like its tests.
 pub(super) fn environment() -> Result<PathBuf> {
     println!(
         "Installs in target/loop, from PyPI: what laptop/loop/requirements.txt names, 1.1 GB."

@@ -1,4 +1,4 @@
-//! `cargo verify soak`: hours of flight over a bad line, on emulated boards and the host.
+//! `cargo verify soak`: simulates hours of flight over a bad line, on emulated boards and the host.
 
 use crate::common::{cargo, output, paths};
 use crate::programs::{boards::Board, image, qemu};
@@ -6,13 +6,13 @@ use anyhow::{Context, Result, bail, ensure};
 use std::thread;
 
 const PROGRAM: &str = "soak";
-/// Spells of each fault: eleven hours of flight.
+/// Number of spells of each fault, and the variable that sets it: eleven hours of flight.
 const SPELLS: (&str, &str) = ("SOAK_SPELLS", "2400");
-/// With a floating-point unit, and without.
+/// A core with a floating-point unit, and one without.
 const CORES: [&str; 2] = ["M4F", "M0"];
 
-/// The program checks itself, and its exit status tells. Draws are from a fixed seed, so that each core and the host must
-/// count the same.
+/// Runs the program, which checks itself. Random numbers are from a fixed seed, so each core and the host must count
+/// the same.
 pub fn soak() -> Result<()> {
     let mut host = cargo("run --release --quiet --manifest-path examples/Cargo.toml --package");
     host.arg(PROGRAM).env(SPELLS.0, SPELLS.1).env("CARGO_TARGET_DIR", paths::target());

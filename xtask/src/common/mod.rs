@@ -1,4 +1,4 @@
-//! What every room uses: other programs, paths, progress, processor time, the error of a wrong command line.
+//! Shared by all modules: running programs, paths, progress, processor time, the error of a wrong command line.
 
 pub mod cpu;
 pub mod paths;

@@ -1,9 +1,9 @@
-//! Where things are.
+//! Paths of directories.
 
 use std::{env, path::PathBuf};
 
-/// The repository's top. Cargo says where this package is, when it runs it; what it said when it compiled it
-/// may be another checkout's place, if the two share a target directory.
+/// Returns the repository's top directory, as cargo gives it at run time. The one at compile time may be that of
+/// another checkout, if the two share a target directory.
 pub fn root() -> PathBuf {
     let here =
         env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
@@ -11,17 +11,17 @@ pub fn root() -> PathBuf {
     here.parent().map(PathBuf::from).unwrap_or(here)
 }
 
-/// Everything generated goes below here.
+/// Returns the directory below which everything is generated.
 pub fn target() -> PathBuf {
     root().join(env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()))
 }
 
-/// What the Cortex-M compiler builds. Kept apart: it may be another compiler than the host's.
+/// Returns the output directory for Cortex-M. It is separate, as its compiler may differ from the host's.
 pub fn thumb_target() -> PathBuf {
     target().join("thumb")
 }
 
-/// The firmware workspace.
+/// Returns the directory of the firmware workspace.
 pub fn examples() -> PathBuf {
     root().join("examples")
 }

@@ -1,4 +1,4 @@
-//! A line every few seconds while something runs, so that nobody takes it for hung.
+//! Prints a line every few seconds while something runs, so that it does not seem to hang.
 
 use std::{
     sync::{Mutex, MutexGuard, PoisonError},
@@ -6,16 +6,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// No silence is longer than this.
+/// Longest time without output.
 const EVERY: Duration = Duration::from_secs(15);
 
-/// What runs now, each under a number of its own.
+/// The tasks that run now, each with its start.
 static RUNNING: Mutex<Vec<(Instant, String)>> = Mutex::new(Vec::new());
 
-/// Something that runs, until this is dropped.
+/// A task that runs until this is dropped.
 pub struct Running(Instant);
 
-/// Says from now on that this runs.
+/// Registers a task as running.
 pub fn running(what: String) -> Running {
     let mut all = all();
     // Two that begin in the same instant would end as one.
@@ -33,7 +33,7 @@ impl Drop for Running {
     }
 }
 
-/// Starts to print what runs, on standard error.
+/// Starts to print running tasks on standard error.
 pub fn watch() {
     thread::spawn(|| {
         loop {
@@ -46,7 +46,7 @@ pub fn watch() {
     });
 }
 
-/// `  … 45 s: cargo build`, with the time of what has run longest.
+/// Formats `  … 45 s: cargo build`, with the time of the task that has run longest.
 fn line(all: &[(Instant, String)]) -> Option<String> {
     let longest = all.iter().map(|(start, _)| start.elapsed()).max()?;
     let names: Vec<&str> = all.iter().map(|(_, what)| what.as_str()).collect();

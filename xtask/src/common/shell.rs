@@ -1,4 +1,4 @@
-//! Running other programs: what runs is printed first, and failure is an error.
+//! Runs other programs: prints each command first, and makes its failure an error.
 
 use crate::common::{paths, progress};
 use anyhow::{Context, Result, bail};
@@ -7,14 +7,14 @@ use std::{
     process::{Command, Output},
 };
 
-/// A program, started at the repository's top.
+/// Prepares a program to be started at the repository's top.
 pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     let mut command = Command::new(program);
     command.current_dir(paths::root());
     command
 }
 
-/// Cargo of the toolchain that `cargo xtask` was started with, its arguments separated by blanks.
+/// Prepares cargo of the toolchain that runs `cargo xtask`; arguments are separated by blanks.
 pub fn cargo(args: &str) -> Command {
     let mut command = command("cargo");
     // What is kept for the next change is a third of the disk, and no check changes anything.
@@ -22,7 +22,8 @@ pub fn cargo(args: &str) -> Command {
     command
 }
 
-/// Clippy in the compiler's place for the workspace's own crates: it lints and builds at once. A warning is an error.
+/// Replaces the compiler by clippy for the workspace's own crates, which then lints and builds at once. A warning is an
+/// error.
 pub fn lint(cargo: &mut Command) -> &mut Command {
     // The form in which cargo hands arguments to clippy.
     const WARNINGS: &str = "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__";
@@ -41,7 +42,7 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs the command quietly and returns its standard output; what it said stands in the error if it fails.
+/// Runs the command quietly and returns its standard output; if it fails, the error includes its messages.
 pub fn output(command: &mut Command) -> Result<String> {
     let _running = progress::running(short(command));
     let Output { status, stdout, stderr } =
@@ -53,18 +54,18 @@ pub fn output(command: &mut Command) -> Result<String> {
     Ok(String::from_utf8_lossy(&stdout).into_owned())
 }
 
-/// Whether the command succeeds; nothing is shown.
+/// Returns whether the command succeeds; shows nothing.
 pub fn succeeds(command: &mut Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
-/// Whether a program of this name is on the path.
+/// Returns whether there is a program of this name on the path.
 pub fn has(program: &str) -> bool {
     std::env::var_os("PATH")
         .is_some_and(|path| std::env::split_paths(&path).any(|dir| dir.join(program).is_file()))
 }
 
-/// The command's beginning without its environment, for a line of progress.
+/// Returns the beginning of the command without its environment, for a line of progress.
 fn short(command: &Command) -> String {
     let words = words(command);
     match words.char_indices().nth(72) {
@@ -73,7 +74,7 @@ fn short(command: &Command) -> String {
     }
 }
 
-/// The command as one would type it at the repository's top.
+/// Formats the command as it would be typed at the repository's top.
 fn shown(command: &Command) -> String {
     let set = command
         .get_envs()

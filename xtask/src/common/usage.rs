@@ -1,9 +1,9 @@
-//! A command line that asks for what there is not.
+//! The error of a command line that cannot be understood.
 
 use anyhow::Error;
 use std::fmt;
 
-/// Ends the program with exit status 2.
+/// An error that ends the program with exit status 2.
 #[derive(Debug)]
 pub struct Usage(String);
 

@@ -1,4 +1,5 @@
-//! `cargo bench-target`: what every codec costs, and an event on its way, counted exactly on the emulated boards.
+//! `cargo bench-target`: counts what every codec costs, and what an event costs on its way, exactly, on the emulated
+//! boards.
 
 mod baseline;
 mod code;
@@ -35,7 +36,7 @@ cargo bench-target loops [CORE]...
   --markdown    the tables of docs/costs.md
   --baseline    makes these counts the ones that `cargo verify` compares with, and puts the tables into the docs";
 
-/// The programs that count codecs, two for each sample type, and the one that counts events.
+/// Programs that count codecs, two for each sample type, and the one that counts events.
 const CODECS: [&str; 8] =
     ["f32_1", "f32_2", "q16_16_1", "q16_16_2", "q8_8_1", "q8_8_2", "i16_1", "i16_2"];
 const EVENTS: &str = "events";
@@ -92,23 +93,23 @@ pub fn bench(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Puts the tables into docs/costs.md, and the short one into README.md.
+/// Writes the tables into docs/costs.md, and the short one into README.md.
 pub fn write() -> Result<()> {
     needs::ensure_met()?;
     table::write(&measure(&[], &CORES)?)
 }
 
-/// Puts the tables of stacks into docs/costs.md.
+/// Writes the tables of stacks into docs/costs.md.
 pub fn write_stack() -> Result<()> {
     needs::ensure_met()?;
     let measured = measure(&CODECS, &CORES)?;
     CORES.iter().try_for_each(|core| table::write_stack(core, &measured))
 }
 
-/// No codec takes more stack, in bytes.
+/// Maximum stack of a codec, in bytes.
 const MOST_STACK: u32 = 1024;
 
-/// Fails if a codec's stack has no bound, or one above `MOST_STACK`, or was seen deeper than its bound.
+/// Fails if a codec's stack has no bound, has one above `MOST_STACK`, or was seen deeper than its bound.
 pub fn verify_stack() -> Result<()> {
     let measured = measure(&CODECS, &CORES)?;
     let mut deepest = 0;
@@ -124,7 +125,8 @@ pub fn verify_stack() -> Result<()> {
     Ok(())
 }
 
-/// Fails if small loops take other cycles than are known, if anything takes more instructions on a core than it did, or six channels more than is promised of theirs.
+/// Fails if small loops take other cycles than calculated, if anything takes more instructions on a core than it did,
+/// or if six channels take more than promised.
 pub fn verify(core: &str) -> Result<()> {
     loops::verify(Board::with(core)?)?;
     let measured = measure(&[], &[core])?;
@@ -134,7 +136,7 @@ pub fn verify(core: &str) -> Result<()> {
     baseline::compare(core, &measured)
 }
 
-/// An element of the array: both kinds in one, each with its own members.
+/// An element of the array in which codecs and events are printed.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Element<'a> {

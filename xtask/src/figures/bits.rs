@@ -1,4 +1,4 @@
-//! The page of bits that agree: spike counts, and a mark for each board.
+//! Writes docs/bits.md: spike counts, and a mark for each board whose bits agree.
 
 use crate::figures::{markdown, names::full_name};
 use anyhow::Result;
@@ -6,8 +6,8 @@ use anyhow::Result;
 const PAGE: &str = "docs/bits.md";
 const MARKER: &str = "bits";
 
-/// One row for each scheme, one column for each sample type, from lines as `sf f32 spikes=2074 …` and their marks. A cell
-/// is the host's spike count, then a mark for each board.
+/// Formats a row for each scheme and a column for each sample type, from lines such as `sf f32 spikes=2074 …` with
+/// their marks. A cell is the host's spike count, followed by a mark for each board.
 pub fn table(flown: &[(String, String)]) -> String {
     let schemes = distinct(flown, 0);
     let samples = distinct(flown, 1);
@@ -29,18 +29,18 @@ pub fn table(flown: &[(String, String)]) -> String {
     [row(heads.collect()), row(rule)].into_iter().chain(body).collect()
 }
 
-/// Puts the table into the page.
+/// Writes the table into docs/bits.md.
 pub fn write(table: &str) -> Result<()> {
     markdown::write(PAGE, MARKER, &format!("\n{table}\n"))
 }
 
-/// Fails if the page has another table.
+/// Fails if docs/bits.md has another table.
 pub fn ensure_written(table: &str) -> Result<()> {
     let command = "cargo xtask write bits";
     markdown::ensure_written(PAGE, MARKER, &format!("\n{table}\n"), command)
 }
 
-/// The words at one place of the lines, each once.
+/// Returns the words at one position of the lines, each once.
 fn distinct(flown: &[(String, String)], place: usize) -> Vec<&str> {
     let mut words = Vec::new();
     for word in flown.iter().filter_map(|(line, _)| line.split(' ').nth(place)) {

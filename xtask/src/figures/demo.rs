@@ -1,4 +1,4 @@
-//! `cargo demo`: real flight data through encoder, emulated flight controller and decoder.
+//! `cargo demo`: runs real flight data through encoder, emulated flight controller and decoder.
 
 use crate::common::{paths, usage};
 use crate::figures::{drawing, flown, flown::Flown, names::full_name, picture, signal::Signal};
@@ -19,7 +19,7 @@ pub fn demo(args: &[String]) -> Result<()> {
     fly().map(drop)
 }
 
-/// Draws the flight into the page.
+/// Draws the flight into the documentation.
 pub fn write() -> Result<()> {
     drawing::keep(&fly()?, "docs/flight.svg")
 }
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use needs::{CHECKS, DEMO};
 
-    /// On a machine of two cores each core library takes half a minute, and the compiler for C half a gigabyte.
+    /// More would cost time: each core library takes half a minute on two cores, and the C compiler half a gigabyte.
     #[test]
     fn it_asks_for_the_core_that_it_flies_on_and_the_emulator_alone() {
         assert_eq!(DEMO.targets, [Board::with("M4F").unwrap().target]);

@@ -1,6 +1,6 @@
-//! What the pictures share: colours, margins, and their places in the pages.
+//! Shared by the pictures: colours, margins, and their places in the documentation.
 //!
-//! The colours are Okabe and Ito's, which colour-blind people tell apart; polarity is also a direction.
+//! The colours are Okabe and Ito's, which remain distinct to the colour-blind; polarity is also shown as a direction.
 
 use crate::common::paths;
 use anyhow::{Context, Result, ensure};
@@ -11,7 +11,7 @@ pub const SIGNAL: RGBColor = RGBColor(165, 165, 165);
 pub const DECODED: RGBColor = RGBColor(0, 114, 178);
 pub const UP: RGBColor = RGBColor(213, 94, 0);
 pub const DOWN: RGBColor = RGBColor(0, 0, 0);
-/// Pixels beside the curves.
+/// Pixels to the left of the curves.
 pub const LEFT: i32 = 76;
 pub const MARGIN: i32 = 16;
 pub const FONT: &str = "sans-serif";
@@ -19,14 +19,14 @@ pub const FONT: &str = "sans-serif";
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// Puts a picture into the pages.
+/// Copies a picture into the documentation.
 pub fn keep(picture: &Path, page: &str) -> Result<()> {
     fs::copy(picture, paths::root().join(page)).with_context(|| page.to_owned())?;
     println!("{page} has it.");
     Ok(())
 }
 
-/// Fails if the page has another picture.
+/// Fails if the documentation has another picture.
 pub fn ensure_kept(picture: &Path, page: &str, command: &str) -> Result<()> {
     let kept = fs::read(paths::root().join(page)).with_context(|| page.to_owned())?;
     ensure!(kept == fs::read(picture)?, "{page} is another picture; `{command}` draws it");

@@ -1,4 +1,4 @@
-//! The table of faults in SAFETY.md: hours of flight in which one thing after the other goes wrong.
+//! Measures the table of faults in SAFETY.md: hours of flight with one fault after the other.
 
 use crate::common::{cargo, output};
 use crate::figures::markdown;
@@ -7,12 +7,12 @@ use anyhow::{Result, ensure};
 const PAGE: &str = "SAFETY.md";
 const MARKER: &str = "faults";
 
-/// Flies, and puts the table into its page.
+/// Flies, and writes the table into SAFETY.md.
 pub fn write() -> Result<()> {
     markdown::write(PAGE, MARKER, &table()?)
 }
 
-/// Flies, and fails if a promise is broken or the page has other figures.
+/// Flies, and fails if a promise is broken or SAFETY.md has other figures.
 pub fn verify() -> Result<()> {
     markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask write faults")
 }

@@ -1,4 +1,4 @@
-//! The flash that one codec takes, as linked.
+//! Measures the flash that one codec takes when linked.
 
 use super::markdown;
 use crate::{
@@ -11,7 +11,7 @@ use std::fmt::Write;
 const CORES: [&str; 2] = ["M4F", "M0"];
 const CALLS: [&str; 2] = ["sample", "slice"];
 
-/// The codes of the paper, and the most that both of their ways may take by samples, if it is promised.
+/// The paper's codes, and the promised maximum for encoder and decoder by samples, if there is one.
 const CODECS: [(&str, Option<u32>); 7] = [
     ("TBR", None),
     ("MW, W = 5", None),
@@ -30,12 +30,12 @@ pub fn write() -> Result<()> {
     markdown::write(PAGE, MARKER, &table()?)
 }
 
-/// Fails if a codec takes more than is promised, or the page has other figures.
+/// Fails if a codec takes more than promised, or if the documentation has other figures.
 pub fn verify() -> Result<()> {
     markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask write flash")
 }
 
-/// A row for each codec.
+/// Formats a row for each codec.
 fn table() -> Result<String> {
     let mut table =
         "\n| codec, both ways | M4F, by samples | by slices | M0, by samples | by slices |\n\

@@ -1,21 +1,21 @@
-//! What the firmware program `demo` prints, read back: each scheme's spikes and decoded values.
+//! Parses the output of the firmware program `demo`: each scheme's spikes and decoded values.
 
 use anyhow::{Context, Result};
 
-/// What one scheme did with the channel.
+/// The spikes and decoded values of one scheme.
 #[derive(PartialEq)]
 pub struct Flown {
     pub scheme: String,
-    /// In samples.
+    /// Latency in samples.
     pub latency: usize,
     pub steps: Vec<Step>,
 }
 
-/// What became of one sample.
+/// The spikes and the decoded value of one sample.
 #[derive(PartialEq)]
 pub struct Step {
     pub firings: Vec<NeuronSpike>,
-    /// The decoded value, an `f32`: two are equal if their bits are.
+    /// Bits of the decoded value, an `f32`; values are equal if their bits are.
     bits: u32,
 }
 
@@ -23,7 +23,7 @@ pub struct Step {
 pub struct NeuronSpike {
     pub up: bool,
     pub neuron: u16,
-    /// Not drawn, but compared.
+    /// Sub-timestep, which is compared but not drawn.
     slot: u16,
 }
 
@@ -38,7 +38,7 @@ impl Flown {
         self.steps.iter().map(|step| step.firings.len()).sum()
     }
 
-    /// The root of the mean square of what the decoded values are off.
+    /// Returns the root mean square error of the decoded values.
     pub fn rmse(&self, signal: &[f32]) -> f64 {
         let squares = self.steps.iter().zip(signal).map(|(step, sample)| {
             let error = f64::from(step.value()) - f64::from(*sample);
@@ -64,7 +64,7 @@ pub fn parse(printed: &str) -> Result<Vec<Flown>> {
     Ok(flown)
 }
 
-/// `+3.0-4.1 3f800000`
+/// Parses `+3.0-4.1 3f800000`.
 fn step(firings: &str, bits: &str) -> Option<Step> {
     let signed = firings.split_inclusive(['+', '-']);
     let signs = signed.clone().map(|part| part.ends_with('+'));

@@ -1,5 +1,4 @@
-//! The hardest second of the flight in three step codes of one threshold, and how far behind each
-//! of them is.
+//! Draws the hardest second of the flight in three step codes with one threshold, and how far each lags behind.
 
 use crate::common::paths;
 use crate::figures::drawing::{Area, Drawn, FONT, LEFT, MARGIN, SIGNAL};
@@ -14,26 +13,26 @@ use std::{ops::Range, path::PathBuf};
 
 const PAGE: &str = "docs/jumps.svg";
 const SIZE: (u32, u32) = (1000, 760);
-/// Seconds of the flight: a fall that ends on the ground.
+/// Time range in seconds: a fall that ends on the ground.
 const SHOWN: Range<f64> = 11.6..12.6;
-/// rad/s.
+/// Threshold, in rad/s.
 const THRESHOLD: f32 = 0.1;
-/// Spikes a sample: so many thresholds are more than the signal ever moves from one sample to the next.
+/// Maximum number of spikes in a sample: more thresholds than the signal ever moves between samples.
 const SPIKES: usize = 24;
 
-/// Okabe and Ito's, which colour-blind people tell apart.
+/// Colours of Okabe and Ito, which remain distinct to the colour-blind.
 const COLOURS: [RGBColor; 3] = [RGBColor(213, 94, 0), RGBColor(0, 114, 178), RGBColor(0, 158, 115)];
 
-/// What a code makes of the second.
+/// The values of a code during the second.
 struct Followed {
     name: String,
     values: Vec<f32>,
     spikes: usize,
-    /// How far the value is from the signal at most.
+    /// Largest difference from the signal.
     behind: f32,
 }
 
-/// Draws it below the target directory, and says where.
+/// Draws the picture below the target directory; returns its path.
 pub fn jumps() -> Result<PathBuf> {
     let path = paths::target().join("jumps.svg");
     let signal = Signal::read();
@@ -62,12 +61,12 @@ pub fn jumps() -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Draws it into the page.
+/// Draws the picture into the documentation.
 pub fn write() -> Result<()> {
     drawing::keep(&jumps()?, PAGE)
 }
 
-/// The whole flight through a code, of which the second is kept.
+/// Runs the whole flight through a code, and keeps the second.
 fn follow<P: Start<Sample = f32>>(
     name: &str,
     scheme: &P,
@@ -119,7 +118,7 @@ fn draw(
     Ok(())
 }
 
-/// Title and legend.
+/// Draws title and legend.
 fn heading(area: &Area, all: &[Followed; 3]) -> Drawn {
     let title = "The flight's hardest second: three step codes with a threshold of 0.1 rad/s";
     area.draw_text(title, &(FONT, 25).into_text_style(area), (LEFT, 14))?;
@@ -138,7 +137,7 @@ fn heading(area: &Area, all: &[Followed; 3]) -> Drawn {
     Ok(())
 }
 
-/// Lines over the second, each with its colour and width.
+/// Draws lines over the second, each with its colour and width.
 fn chart<'a>(
     area: &Area,
     range: Range<f64>,
@@ -175,7 +174,7 @@ fn chart<'a>(
     Ok(())
 }
 
-/// The samples within the second.
+/// Returns the range of samples in the second.
 fn shown(signal: &Signal) -> Range<usize> {
     let at = |time: f64| signal.times.partition_point(|&sample| sample < time);
     at(SHOWN.start)..at(SHOWN.end)

@@ -1,10 +1,10 @@
-//! Tables in pages, between two comments.
+//! Reads and writes tables in pages, between two markers.
 
 use crate::common::paths;
 use anyhow::{Context, Result, ensure};
 use std::fs;
 
-/// Puts a table between its markers in a page.
+/// Writes a table between its markers in a page.
 pub fn write(page: &str, marker: &str, table: &str) -> Result<()> {
     let text = between(&read(page)?, marker, table)?;
     fs::write(paths::root().join(page), text)?;
@@ -12,7 +12,7 @@ pub fn write(page: &str, marker: &str, table: &str) -> Result<()> {
     Ok(())
 }
 
-/// Fails if a page has another table, and says which command writes this one.
+/// Fails if a page has another table; the error names the command that writes it.
 pub fn ensure_written(page: &str, marker: &str, table: &str, command: &str) -> Result<()> {
     let text = read(page)?;
     ensure!(
@@ -22,7 +22,7 @@ pub fn ensure_written(page: &str, marker: &str, table: &str, command: &str) -> R
     Ok(())
 }
 
-/// What stands between the markers now.
+/// Returns the text that is between the markers now.
 pub fn section(page: &str, marker: &str) -> Result<String> {
     Ok(parts(&read(page)?, marker)?[1].to_owned())
 }
@@ -31,13 +31,13 @@ fn read(page: &str) -> Result<String> {
     fs::read_to_string(paths::root().join(page)).with_context(|| page.to_owned())
 }
 
-/// The page with the table in the place of what stood between its markers.
+/// Returns the page with the table in place of the text between its markers.
 fn between(page: &str, marker: &str, table: &str) -> Result<String> {
     let [before, _, after] = parts(page, marker)?;
     Ok(format!("{before}<!-- {marker} -->\n{table}<!-- /{marker} -->{after}"))
 }
 
-/// What stands before, between and behind the markers.
+/// Splits a page into the text before, between and after the markers.
 fn parts<'a>(page: &'a str, marker: &str) -> Result<[&'a str; 3]> {
     let (start, end) = (format!("<!-- {marker} -->\n"), format!("<!-- /{marker} -->"));
     let missing = || format!("no `{}` … `{end}`", start.trim_end());

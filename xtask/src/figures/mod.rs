@@ -1,4 +1,5 @@
-//! Tables and pictures of the pages: each is measured or drawn here, written into its page, and compared with it.
+//! Tables and pictures of the documentation: each is measured or drawn here, written into its page, and compared with
+//! it.
 
 pub mod bench;
 pub mod bits;

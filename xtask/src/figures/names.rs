@@ -1,9 +1,9 @@
-//! What the firmware calls in a word, in full.
+//! Full names of what the firmware calls by a short word.
 
 use catalogue::{Channel, Flight};
 use spikewire::{Calibration, ConfigError, Scheme};
 
-/// A scheme as one would look it up: its words in the catalogue.
+/// Returns the full name of a scheme, from the catalogue.
 pub fn full_name(scheme: &str) -> &str {
     let mut calibration = Calibration::<f32>::new();
     for sample in [0.0, 1.0, 0.0] {

@@ -1,4 +1,4 @@
-//! The picture of `cargo demo`: a signal, its spikes and its reconstruction, for three kinds of code.
+//! Draws the picture of `cargo demo`: a signal, its spikes and its reconstruction, for three kinds of code.
 
 use crate::figures::drawing::{Area, DECODED, DOWN, Drawn, FONT, LEFT, MARGIN, SIGNAL, UP};
 use crate::figures::{flown::Flown, names::full_name, signal::Signal};
@@ -7,11 +7,11 @@ use plotters::prelude::*;
 use std::{ops::Range, path::Path};
 
 const SIZE: (u32, u32) = (1000, 1180);
-/// Seconds of the flight: a turn, a fall, and a hard landing.
+/// Time range in seconds: a turn, a fall, and a hard landing.
 const SHOWN: Range<f64> = 11.2..13.2;
-/// rad/s.
+/// Range of the axis, in rad/s.
 const RATES: Range<f64> = -4.4..1.5;
-/// One of each family.
+/// A scheme of each family.
 const SCHEMES: [&str; 3] = ["sf", "bsa", "position"];
 
 pub fn draw(path: &Path, signal: &Signal, flown: &[Flown]) -> Result<()> {
@@ -31,7 +31,7 @@ pub fn draw(path: &Path, signal: &Signal, flown: &[Flown]) -> Result<()> {
     Ok(())
 }
 
-/// Title and legend.
+/// Draws title and legend.
 fn heading(area: &Area) -> Drawn {
     let title = "A hexarotor's yaw rate in three spike codes";
     area.draw_text(title, &(FONT, 28).into_text_style(area), (LEFT, 14))?;
@@ -41,7 +41,7 @@ fn heading(area: &Area) -> Drawn {
     legend(area)
 }
 
-/// The last line of a heading of 100 pixels.
+/// Draws the legend, in the last line of a heading of 100 pixels.
 fn legend(area: &Area) -> Drawn {
     let style = (FONT, 16).into_text_style(area);
     for (x, label, colour, width) in
@@ -57,7 +57,7 @@ fn legend(area: &Area) -> Drawn {
     Ok(())
 }
 
-/// What the panel shows, and how well.
+/// Writes what the panel shows, and its error.
 fn caption(area: &Area, signal: &Signal, flown: &Flown) -> Drawn {
     let shown = shown(signal);
     let spikes: usize = flown.steps[shown.clone()].iter().map(|step| step.firings.len()).sum();
@@ -77,7 +77,7 @@ fn caption(area: &Area, signal: &Signal, flown: &Flown) -> Drawn {
     area.draw_text(&text, &(FONT, 19).into_text_style(area), (LEFT, 14))
 }
 
-/// The signal, and over it what the decoder made of its spikes.
+/// Draws the signal, and over it the decoded values.
 fn draw_curves(area: &Area, signal: &Signal, flown: &Flown) -> Drawn {
     let mut chart = ChartBuilder::on(area)
         .margin_left(MARGIN)
@@ -105,7 +105,7 @@ fn draw_curves(area: &Area, signal: &Signal, flown: &Flown) -> Drawn {
     Ok(())
 }
 
-/// A tick for each spike: beside its neuron, if there is more than one.
+/// Draws a tick for each spike; beside its neuron if there are several.
 fn draw_spikes(area: &Area, signal: &Signal, flown: &Flown) -> Drawn {
     let shown = shown(signal);
     let steps = || signal.times[shown.clone()].iter().zip(&flown.steps[shown.clone()]);
@@ -142,7 +142,7 @@ fn draw_spikes(area: &Area, signal: &Signal, flown: &Flown) -> Drawn {
     Ok(())
 }
 
-/// The samples within the seconds shown.
+/// Returns the range of samples that are shown.
 fn shown(signal: &Signal) -> Range<usize> {
     let at = |time: f64| signal.times.partition_point(|&sample| sample < time);
     at(SHOWN.start)..at(SHOWN.end)

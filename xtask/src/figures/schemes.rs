@@ -1,4 +1,4 @@
-//! What each scheme makes of a flight and of the paper's signal, measured by the laptop program.
+//! Measures each scheme on a flight and on the paper's signal, with the laptop program.
 
 use crate::common::{output, paths};
 use crate::figures::markdown;
@@ -18,12 +18,12 @@ struct Figures {
     spikes_per_second: Option<f64>,
 }
 
-/// Puts the figures into the page.
+/// Writes the figures into docs/schemes.md.
 pub fn write() -> Result<()> {
     markdown::write(PAGE, MARKER, &table()?)
 }
 
-/// Fails if the page has other figures.
+/// Fails if docs/schemes.md has other figures.
 pub fn ensure_written() -> Result<()> {
     markdown::ensure_written(PAGE, MARKER, &table()?, "cargo xtask write schemes")
 }

@@ -4,12 +4,12 @@
 pub struct Signal {
     /// Seconds since the first sample.
     pub times: Vec<f64>,
-    /// rad/s.
+    /// Angular rates in rad/s.
     pub rates: Vec<f32>,
 }
 
 impl Signal {
-    /// From the same bytes as the firmware.
+    /// Reads the same bytes as the firmware.
     pub fn read() -> Self {
         let records = || flight_data::records(flight_data::HEXAROTOR);
         Self {
@@ -22,7 +22,7 @@ impl Signal {
         self.times.last().copied().unwrap_or_default()
     }
 
-    /// The usual time between two samples: the median, as the recording has gaps.
+    /// Returns the usual time between two samples, as the median: the recording has gaps.
     pub fn interval(&self) -> f64 {
         let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         steps.sort_by(f64::total_cmp);

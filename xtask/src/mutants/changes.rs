@@ -1,4 +1,4 @@
-//! The changes to be tried, as cargo-mutants lists them.
+//! The changes to try, as cargo-mutants lists them.
 
 use super::CRATES;
 use crate::common::{
@@ -18,7 +18,7 @@ use std::{
 pub struct Change {
     /// The source file, from the repository's top.
     pub file: String,
-    /// File, line, column, and what is replaced by what.
+    /// File, line and column, and what is replaced by what.
     pub name: String,
     pub replacement: String,
     genre: String,
@@ -36,7 +36,7 @@ struct Place {
     column: usize,
 }
 
-/// What a change is found by in the syntax tree: genre, and line and column, from 1.
+/// Where a change is found in the syntax tree: genre, line and column, the latter two from 1.
 pub type Site = (String, usize, usize);
 
 impl Change {
@@ -45,12 +45,12 @@ impl Change {
     }
 }
 
-/// All changes of the crates.
+/// Lists all changes of the crates.
 pub fn all() -> Result<Vec<Change>> {
     listed(&[])
 }
 
-/// The names of the changes of lines that differ from a commit's.
+/// Returns the names of the changes in lines that differ from a commit's.
 pub fn since(commit: &str) -> Result<HashSet<String>> {
     let lines = paths::target().join("mutants/lines.diff");
     fs::create_dir_all(paths::target().join("mutants"))?;
@@ -62,7 +62,7 @@ pub fn since(commit: &str) -> Result<HashSet<String>> {
     Ok(changes.into_iter().map(|change| change.name).collect())
 }
 
-/// What cargo-mutants lists; it is installed first if it is missing.
+/// Runs cargo-mutants, and installs it first if it is missing.
 fn listed(of: &[&OsStr]) -> Result<Vec<Change>> {
     let tools = paths::target().join("tools");
     let program = tools.join("bin/cargo-mutants");
@@ -76,8 +76,8 @@ fn listed(of: &[&OsStr]) -> Result<Vec<Change>> {
     Ok(serde_json::from_str(&output(&mut list)?)?)
 }
 
-/// Names that an edit above them in the file leaves as they are: without line and column, and numbered where several
-/// are alike.
+/// Returns names that stay the same if lines are added above: without line and column, and numbered if several are
+/// equal.
 pub fn lasting_names(changes: &[Change]) -> Vec<String> {
     let mut seen = HashMap::new();
     let lasting = changes.iter().map(|change| {

@@ -1,4 +1,4 @@
-//! A copy of the repository, whose crates have each change behind a switch.
+//! Makes a copy of the repository, whose crates have each change behind a switch.
 
 use super::{
     CRATES, Out,
@@ -23,7 +23,7 @@ use std::{
 pub struct Program {
     pub name: String,
     pub path: PathBuf,
-    /// Where its package is, in which it is started.
+    /// Directory of its package, in which it is started.
     pub package: PathBuf,
 }
 
@@ -35,15 +35,15 @@ pub struct Copy {
 }
 
 impl Copy {
-    /// Below `target/mutants`. All but the crates' sources are links.
+    /// Makes the copy below `target/mutants`. Everything except the crates' sources is a link.
     pub fn new(switched: Vec<usize>) -> Result<Self> {
         let top = paths::target().join("mutants/tree");
         link(Path::new(""), &top)?;
         Ok(Self { top, switched, out: BTreeMap::new() })
     }
 
-    /// Compiles the tests, without the changes that the compiler does not take. Which these are is kept, while the crate
-    /// is the same.
+    /// Compiles the tests without the changes that the compiler rejects. Which these are is stored until the crate
+    /// changes.
     pub fn programs(&mut self, changes: &[Change]) -> Result<Vec<Program>> {
         let kept = kept()?;
         self.out = fs::read(&kept)
@@ -107,7 +107,7 @@ impl Copy {
         }
     }
 
-    /// The changes that an error points to.
+    /// Removes the changes to which an error points.
     fn take_out(&mut self, span: &Value) -> Result<()> {
         let (Some(file), Some(at)) = (span["file_name"].as_str(), span["byte_start"].as_u64())
         else {
@@ -155,7 +155,7 @@ impl Copy {
         Ok(())
     }
 
-    /// Cargo in the copy. Optimised a little: the tests run many times.
+    /// Prepares cargo in the copy. Tests run many times, so they are optimised a little.
     fn cargo(&self) -> Command {
         let mut cargo = Command::new("cargo");
         cargo
@@ -171,10 +171,10 @@ impl Copy {
     }
 }
 
-/// The last of what a crate's root says of the whole crate.
+/// The last attribute of a crate's root.
 const FORBID: &str = "#![forbid(unsafe_code)]";
 
-/// Links all that a directory holds, but for sources and for the directories on the way to them, which are made.
+/// Links everything in a directory except for sources; makes the directories that lead to them.
 fn link(below: &Path, top: &Path) -> Result<()> {
     fs::create_dir_all(top.join(below))?;
     for entry in fs::read_dir(paths::root().join(below))? {
@@ -192,7 +192,7 @@ fn link(below: &Path, top: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The file of what is left out of the crates as they are.
+/// Returns the path of the stored list of rejected changes, for the present crates.
 fn kept() -> Result<PathBuf> {
     let mut hasher = DefaultHasher::new();
     for file in all_sources()? {
@@ -229,7 +229,7 @@ fn sources(directory: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// The changes within whose marks the text ends, of those that lie within each other the inner ones.
+/// Returns the innermost changes within whose marks the text ends.
 fn innermost(text: &str) -> Vec<(usize, Out)> {
     let mut open: Vec<(usize, Out, usize)> = Vec::new();
     for (start, _) in text.match_indices("/*") {

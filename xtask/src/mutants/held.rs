@@ -1,4 +1,4 @@
-//! The committed list that a run is held against: `host-tests/mutants.toml`.
+//! The committed list with which a run is compared: `host-tests/mutants.toml`.
 
 use crate::common::paths;
 use anyhow::{Context, Result};
@@ -9,10 +9,10 @@ use std::{collections::BTreeSet, fs};
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Held {
-    /// Those that no test can tell from the crate as it is.
+    /// Changes that no test can distinguish from the crate.
     #[serde(default)]
     equal: Vec<Equal>,
-    /// Those that a test should notice, and none does yet.
+    /// Changes that a test should notice, but none does yet.
     #[serde(default)]
     not_noticed_yet: BTreeSet<String>,
 }
@@ -20,7 +20,7 @@ pub struct Held {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Equal {
-    /// Read by people alone.
+    /// The reason, for readers only.
     #[serde(rename = "reason")]
     _reason: String,
     changes: BTreeSet<String>,

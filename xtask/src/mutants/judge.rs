@@ -1,4 +1,4 @@
-//! Which changes the tests notice.
+//! Finds out which changes the tests notice.
 
 use super::{
     copy::Program,
@@ -15,16 +15,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Seconds of a quick test: all changes are tried with these before any is with the others.
+/// Longest time of a quick test, in seconds; all changes are tried with the quick tests first.
 const QUICK: f64 = 0.2;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// No test reaches it.
+    /// No test reaches the change.
     NotReached,
-    /// All tests that reach it pass.
+    /// All tests that reach the change pass.
     Missed,
-    /// The quick tests that reach it pass; the others have to be tried.
+    /// The quick tests that reach the change pass; the others are still to be tried.
     Quiet,
     /// A test did not end.
     Endless,
@@ -32,7 +32,7 @@ pub enum Verdict {
     Noticed,
 }
 
-/// The tests of a program, and what is known of it.
+/// The tests of a program, and what is known about them.
 struct Judge<'a> {
     program: &'a Program,
     /// For each change the tests that reach it, the quickest first.
@@ -41,8 +41,8 @@ struct Judge<'a> {
     verdicts: BTreeMap<usize, Verdict>,
 }
 
-/// Tries these changes, first with the tests of their own room. What is found is added to a file for each program, and
-/// holds as long as the program is the same.
+/// Tries these changes, first with the tests of their own module. The results are appended to a file for each program,
+/// and are valid until the program changes.
 pub fn judge(
     changes: &[usize],
     programs: &[Program],
@@ -75,7 +75,7 @@ pub fn judge(
     Ok(verdicts(changes, &judges))
 }
 
-/// The best verdict on each change.
+/// Returns the strongest verdict on each change.
 fn verdicts(changes: &[usize], judges: &[Judge<'_>]) -> BTreeMap<usize, Verdict> {
     let best = |change: &usize| judges.iter().filter_map(|one| one.verdicts.get(change)).max();
     let all = changes
@@ -100,7 +100,7 @@ impl<'a> Judge<'a> {
         Ok(Self { program, reaching, known, verdicts })
     }
 
-    /// Tries changes, two at a time, and adds what is found to the file.
+    /// Tries changes, two at a time, and appends the results to the file.
     fn in_pairs(
         &mut self,
         changes: &[usize],
@@ -141,7 +141,7 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Runs tests in batches that grow; and tells which of them noticed.
+/// Runs tests in batches of growing size; returns which of them noticed the change.
 fn tried(change: usize, tests: Vec<&Test<'_>>, passed: Verdict) -> Result<(Verdict, String)> {
     let (mut left, mut size) = (&tests[..], 1);
     while !left.is_empty() {
@@ -156,7 +156,7 @@ fn tried(change: usize, tests: Vec<&Test<'_>>, passed: Verdict) -> Result<(Verdi
     Ok((passed, String::new()))
 }
 
-/// The last line of a change holds.
+/// Reads the results; the last line about a change counts.
 fn read(known: &Path) -> BTreeMap<usize, Verdict> {
     let text = fs::read_to_string(known).unwrap_or_default();
     let lines = text.lines().filter_map(|line| {

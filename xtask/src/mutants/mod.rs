@@ -1,9 +1,9 @@
-//! `cargo verify mutants`: changes of the crates' code, each of which the tests have to notice.
+//! `cargo verify mutants`: plants changes in the crates' code, each of which the tests must notice.
 //!
-//! cargo-mutants lists them. A copy of the crates has all of them at once, each behind a switch that is read from the
-//! environment, so that its tests are compiled once. Each test runs alone and records which changes it reaches; then each
-//! change is switched on for the tests that reach it, the quickest first. `host-tests/mutants.toml` lists those that none
-//! notices; any other fails.
+//! cargo-mutants lists the changes. A copy of the crates contains all of them at once, each behind a switch that is
+//! read from the environment, so that its tests are compiled once. Each test runs alone and records which changes it
+//! reaches. Then each change is switched on for the tests that reach it, the quickest first. `host-tests/mutants.toml`
+//! lists those that no test notices; the check fails at any other.
 
 mod changes;
 mod copy;
@@ -20,7 +20,7 @@ use judge::Verdict;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, env};
 
-/// The rooms, which their tests' programs are named after, and where their sources begin.
+/// Modules after which the tests' programs are named, with the beginnings of their sources' paths.
 const ROOMS: [(&str, &[&str]); 4] = [
     ("wire", &["src/wire/", "src/event/", "src/out/", "src/serial.rs"]),
     ("cameras", &["cameras/src/"]),
@@ -28,23 +28,23 @@ const ROOMS: [(&str, &[&str]); 4] = [
     ("codes", &["src/scheme/", "src/num/", "src/error/"]),
 ];
 
-/// The crates that are changed, and their sources.
+/// Crates that are changed, with the paths of their sources.
 const CRATES: [(&str, &str); 3] =
     [("spikewire", "src"), ("spikewire-cameras", "cameras/src"), ("spikewire-chips", "chips/src")];
 
-/// Why a change cannot be switched on.
+/// The reason that a change cannot be switched on.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Out {
-    /// The compiler does not take it.
+    /// The compiler rejects the change.
     DoesNotCompile,
-    /// The compiler does not take its switch, or it is in a constant.
+    /// The compiler rejects its switch, or the change is in a constant.
     NoSwitch,
 }
 
-/// `MUTANTS_SINCE=v0.1.0` tries the changes of lines that are not those of that commit, `MUTANTS_IN=src/wire` those whose
-/// names have this in them, `MUTANTS_AGAIN=1` those of the list that no test notices yet, and `MUTANTS_AGAIN=all` the equal
-/// ones too. `MUTANTS_TESTS='chips wire'` leaves the tests of codes out, which compile longest. A run that is stopped goes
-/// on where it was.
+/// Runs the check. Environment variables select changes: `MUTANTS_SINCE=v0.1.0` those in lines that differ from that
+/// commit, `MUTANTS_IN=src/wire` those with this in their names, `MUTANTS_AGAIN=1` those in the list that no test
+/// notices yet, and `MUTANTS_AGAIN=all` the indistinguishable ones too. `MUTANTS_TESTS='chips wire'` leaves out the
+/// tests of codes, which take longest to compile. A run that was stopped continues where it was.
 pub fn mutants() -> Result<()> {
     let changes = changes::all()?;
     let names = changes::lasting_names(&changes);
@@ -108,7 +108,7 @@ fn room(file: &str) -> &'static str {
     ROOMS.iter().find(is_here).map_or("", |(name, _)| name)
 }
 
-/// What became of a room's changes.
+/// Counts the verdicts on a module's changes.
 fn counts(
     here: &[usize],
     names: &[String],

@@ -1,8 +1,9 @@
-//! All changes of a file at once, each behind a switch.
+//! Puts all changes of a file into it at once, each behind a switch.
 //!
-//! `a - b` with two changes becomes `match (a, b) { (l, r) => if is(1) { l + r } else if is(2) { l / r } else { l - r } }`:
-//! operands stand there once, however many changes lie in them. Marks tell from where the compiler points which change it
-//! does not take: `/*<1*/` and `/*1>*/` around what a change puts in, `/*{1*/` and `/*1}*/` around all that its switch needs.
+//! `a - b` with two changes becomes `match (a, b) { (l, r) => if is(1) { l + r } else if is(2) { l / r } else { l - r }
+//! }`, so that operands occur once, however many changes are in them. Marks show which change the compiler rejects, by
+//! the place of its error: `/*<1*/` and `/*1>*/` around what a change inserts, `/*{1*/` and `/*1}*/` around all that
+//! its switch needs.
 
 use super::{
     Out,
@@ -22,10 +23,10 @@ use syn::{
     visit::{self, Visit},
 };
 
-/// Changes of a file by their site: number and replacement.
+/// Changes of a file by their site, each with its number and replacement.
 pub type Sites = HashMap<Site, Vec<(usize, String)>>;
 
-/// The file's text with all of them behind their switches, but for those that have none.
+/// Returns the file's text with all changes behind switches, and those that cannot have one.
 pub fn switched(text: &str, sites: &Sites) -> Result<(String, Vec<(usize, Out)>)> {
     let file = syn::parse_file(text).context("the crate's source does not parse")?;
     let all = sites.values().flatten().map(|(change, _)| (*change, Out::NoSwitch));
@@ -38,7 +39,7 @@ struct Schemata<'a> {
     text: &'a str,
     sites: &'a Sites,
     edits: Vec<Edit>,
-    /// Those that were not found yet.
+    /// Changes that have not been found yet.
     out: BTreeMap<usize, Out>,
 }
 
@@ -51,7 +52,7 @@ fn put_in(change: usize, code: &str) -> String {
 }
 
 impl<'a> Schemata<'a> {
-    /// The changes at this place.
+    /// Returns the changes at this place.
     fn at(&mut self, genre: &str, span: Span) -> &'a [(usize, String)] {
         let start = span.start();
         let site = (genre.to_owned(), start.line, start.column + 1);
@@ -74,7 +75,7 @@ impl<'a> Schemata<'a> {
         self.edits.push(Edit { range, pieces });
     }
 
-    /// `if is(1) { a } else if is(2) { b } else { as it is }`.
+    /// Writes `if is(1) { a } else if is(2) { b } else { as it is }`.
     fn choice(
         &self,
         changes: &[(usize, String)],
@@ -266,7 +267,7 @@ impl<'a> Schemata<'a> {
     }
 }
 
-/// Around all of an expression: the compiler's complaint there is about each of its changes.
+/// Returns marks around a whole expression, for errors that concern all of its changes.
 fn marks(changes: &[(usize, String)]) -> (String, String) {
     let mark = |from: fn(usize) -> String| {
         changes.iter().map(|(change, _)| from(*change)).collect::<String>()
@@ -274,7 +275,7 @@ fn marks(changes: &[(usize, String)]) -> (String, String) {
     (mark(|change| format!("/*{{{change}*/")), mark(|change| format!("/*{change}}}*/")))
 }
 
-/// Whether a condition has a `let`.
+/// Returns whether a condition contains a `let`.
 fn binds(expression: &Expr) -> bool {
     match expression {
         Expr::Let(_) => true,
@@ -346,7 +347,8 @@ impl<'a> Visit<'a> for Schemata<'_> {
 mod tests {
     use super::*;
 
-    /// The text with these changes, numbered from 0, as (genre, column from 1, replacement); without its marks.
+    /// Returns the text with these changes, numbered from 0 and given as (genre, column from 1, replacement), without
+    /// its marks.
     fn of(text: &str, changes: &[(&str, usize, &str)]) -> (String, Vec<usize>) {
         let mut sites = Sites::new();
         for (number, (genre, column, with)) in changes.iter().enumerate() {

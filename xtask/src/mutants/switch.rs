@@ -1,19 +1,19 @@
-//! In the copy of the crate: which change is on.
+//! Part of the copy of the crate: tells which change is switched on.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 use std::io::Write;
 
-/// No change is on, and those that are reached are written down.
+/// No change is switched on, and those that are reached are recorded.
 const RECORD: u32 = u32::MAX - 1;
 
-/// The environment has not been asked yet.
+/// The environment has not been read yet.
 const UNKNOWN: u32 = u32::MAX;
 
 static CHOSEN: AtomicU32 = AtomicU32::new(UNKNOWN);
 
 static REACHED: [AtomicBool; CHANGES] = [const { AtomicBool::new(false) }; CHANGES];
 
-/// Whether this change is on. Constants are never changed.
+/// Returns whether this change is switched on. Constants are never changed.
 #[inline]
 pub(crate) const fn is(change: u32) -> bool {
     core::intrinsics::const_eval_select((change,), in_constants, while_running)

@@ -1,4 +1,4 @@
-//! The tests, each alone: how long it takes, and which changes it reaches.
+//! Runs each test alone, and records its duration and the changes that it reaches.
 
 use super::copy::Program;
 use crate::common::{cpu, paths, shell::output};
@@ -12,31 +12,33 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Seconds of processor time: a test that takes longer is left out, since a change that none notices is tried with all.
+/// Longest processor time of a test, in seconds. A slower test is left out, as a change that none notices is tried with
+/// all tests.
 const LONGEST: u64 = 20;
 
-/// Kilobytes that a test may have: a change may ask for all there is.
+/// Maximum memory of a test in kilobytes: a change may allocate without end.
 const MEMORY: u64 = 6 << 20;
 
 pub struct Test<'a> {
     pub program: &'a Program,
     pub name: String,
-    /// Of the processor.
+    /// Processor time, in seconds.
     pub seconds: f64,
     /// The changes that it reaches.
     pub reached: Vec<usize>,
 }
 
-/// What became of tests in one process.
+/// The outcome of tests in one process.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
     Passed,
     Failed,
-    /// Stopped after many times what it needs.
+    /// Stopped after many times the usual duration.
     Endless,
 }
 
-/// Every test that passes in the unchanged copy in time. What was recorded of a program is kept while it is the same.
+/// Records every test that passes in the unchanged copy in time. The record of a program is kept until the program
+/// changes.
 pub fn record(programs: &[Program]) -> Result<Vec<Test<'_>>> {
     let mut tests = Vec::new();
     for program in programs {
@@ -59,7 +61,7 @@ pub fn record(programs: &[Program]) -> Result<Vec<Test<'_>>> {
     Ok(tests)
 }
 
-/// A file of what is known of a program, as it is.
+/// Returns the path of a file about the present state of a program.
 pub fn kept(what: &str, program: &Program) -> Result<PathBuf> {
     let mut hasher = DefaultHasher::new();
     fs::read(&program.path)?.hash(&mut hasher);
@@ -68,7 +70,7 @@ pub fn kept(what: &str, program: &Program) -> Result<PathBuf> {
     Ok(directory.join(format!("{}-{what}-{:016x}", program.name, hasher.finish())))
 }
 
-/// All tests but those that `cargo test` leaves out.
+/// Lists all tests except those that `cargo test` leaves out.
 fn names(program: &Program) -> Result<Vec<String>> {
     let list = |of: &[&str]| -> Result<Vec<String>> {
         let told = output(command(program, LONGEST).args(["--list", "--format=terse"]).args(of))?;
@@ -78,7 +80,7 @@ fn names(program: &Program) -> Result<Vec<String>> {
     Ok(list(&[])?.into_iter().filter(|name| !ignored.contains(name)).collect())
 }
 
-/// A line: name, seconds, changes. Nothing if the test is left out.
+/// Returns a line with name, seconds and changes; empty if the test is left out.
 fn recorded(program: &Program, name: &str) -> Result<String> {
     let reached = paths::target().join("mutants/reached");
     fs::write(&reached, "")?;
@@ -105,7 +107,7 @@ pub fn with_change(change: usize, tests: &[&Test<'_>]) -> Result<End> {
     ended(command.args(tests.iter().map(|test| &test.name)), 30 + limit * 10)
 }
 
-/// The program as cargo starts it, with bounds.
+/// Prepares the program as cargo starts it, with limits.
 fn command(program: &Program, seconds: u64) -> Command {
     let mut command = Command::new("sh");
     let bounded = format!("ulimit -t {seconds}; ulimit -v {MEMORY}; exec \"$0\" \"$@\"");
@@ -123,7 +125,7 @@ fn command(program: &Program, seconds: u64) -> Command {
     command
 }
 
-/// Waits for the end, at most so many seconds on the clock.
+/// Waits for the end, for at most this many seconds.
 fn ended(command: &mut Command, seconds: u64) -> Result<End> {
     let mut child =
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;

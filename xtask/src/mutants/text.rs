@@ -1,4 +1,4 @@
-//! Edits of a text that lie within each other.
+//! Edits of a text that may be nested.
 
 use std::ops::Range;
 
@@ -13,8 +13,8 @@ pub enum Piece {
     Old(Range<usize>),
 }
 
-/// The text with all edits done. Two edits lie apart, or one within an old piece of the other; those of an empty range
-/// insert, and belong to the widest edit that ends or begins there.
+/// Applies all edits to the text. Two edits must be disjoint, or one must lie within an old piece of the other. Edits
+/// of an empty range insert, and belong to the widest edit that ends or begins there.
 pub fn edited(text: &str, edits: &mut [Edit]) -> String {
     // The outer one first; of insertions and edits that begin at one place, the insertions.
     edits.sort_by_key(|edit| {

@@ -1,4 +1,4 @@
-//! What others take from here: the library for C, the Python package, the page, firmware for a board.
+//! What others use of this repository: the C library, the Python package, the page, firmware for a board.
 
 pub mod c_library;
 pub mod new_firmware;

@@ -1,6 +1,7 @@
-//! `cargo xtask new-firmware DIR --board NAME`: a project for a board, outside this workspace, that builds as it comes.
+//! `cargo xtask new-firmware DIR --board NAME`: writes a project for a board, outside this workspace, that builds at
+//! once.
 //!
-//! Its files are those of `examples/boards`, with the other boards left out.
+//! Its files are those of `examples/boards`, without the other boards.
 
 use crate::common::{paths, usage};
 use crate::products::parts::{BOARDS, Part};
@@ -13,19 +14,19 @@ use toml::{Table, Value};
 
 pub const USAGE: &str = "cargo xtask new-firmware DIR --board NAME [--git URL]";
 
-/// Where a project's cargo finds the crate and its companions.
+/// Where a project finds the crate and its companions.
 pub enum Origin {
     /// A directory with this repository's files.
     Path(PathBuf),
-    /// An address that git clones.
+    /// A URL for git.
     Git(String),
 }
 
-/// The packages that a project takes from there, and their places.
+/// Packages that a project takes from there, with their directories.
 const PACKAGES: [(&str, &str); 3] =
     [("spikewire", ""), ("flight", "examples/flight"), ("icm42688p", "examples/icm42688p")];
 
-/// Features that are no board's and no dependency's.
+/// Error text for a feature that is not a list.
 const ARRAYS: &str = "a feature is a list of texts";
 
 pub fn new_firmware(args: &[String]) -> Result<()> {
@@ -73,7 +74,7 @@ pub fn write(directory: &Path, part: &Part, origin: &Origin) -> Result<()> {
     Ok(())
 }
 
-/// The manifest with this board's dependencies alone, and their features.
+/// Returns the manifest with this board's dependencies only, and their features.
 fn manifest(mut all: Table, directory: &Path, part: &Part, origin: &Origin) -> Result<String> {
     let name = directory.file_name().context("a directory has a name")?.to_string_lossy();
     let mut dependencies = table(&mut all, "dependencies")?;
@@ -129,7 +130,7 @@ fn table(of: &mut Table, name: &str) -> Result<Table> {
     }
 }
 
-/// Makes a dependency one of the project, with a feature more.
+/// Adds a dependency to the project, with an additional feature.
 fn enable(dependencies: &mut Table, name: &str, feature: Option<&str>) -> Result<()> {
     let value = dependencies.get_mut(name).with_context(|| format!("no dependency `{name}`"))?;
     if let Value::String(version) = value {
@@ -144,7 +145,8 @@ fn enable(dependencies: &mut Table, name: &str, feature: Option<&str>) -> Result
     Ok(())
 }
 
-/// The text without what is for other boards: attributes that ask for a feature, and the line that follows a false one.
+/// Returns the text without the parts for other boards: attributes that ask for a feature, and the line after one that
+/// is false.
 fn alone(text: &str, board: &str) -> String {
     let mut lines = text.lines();
     let mut kept = String::new();

@@ -1,7 +1,7 @@
-//! `cargo xtask scheme NAME TYPE --like NAME`: a scheme to begin from, which compiles as it comes.
+//! `cargo xtask scheme NAME TYPE --like NAME`: writes the beginnings of a scheme, which compile at once.
 //!
-//! It is a copy of one that there is, under another name, in the crate and in the catalogue, with the lines that list it. The
-//! reference and its test begin empty: copied, they would prove nothing.
+//! In the crate and in the catalogue they are a copy of an existing scheme under another name, with the lines that list
+//! it. The reference and its test begin empty: copied, they would prove nothing.
 
 use crate::common::{cargo, command, output, paths, run, usage};
 use anyhow::{Context, Result, ensure};
@@ -14,7 +14,7 @@ use std::{
 pub const USAGE: &str =
     "cargo xtask scheme NAME TYPE --like NAME, as in: trial TrialForward --like sf";
 
-/// Where the reference and the test go, what they are, and the files that list them.
+/// Files of the reference and its test: their directories, what they are, and the files that list them.
 const BY_HAND: [(&str, &str, &str); 2] = [
     ("host-tests/src/reference", "once more, from the paper alone and in doubles", "mod.rs"),
     ("host-tests/tests", "against the reference", "codes.rs"),
@@ -46,15 +46,15 @@ pub fn new_scheme(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// What a scheme is called.
+/// The names of a scheme.
 struct Called {
-    /// On the command line: `step-forward`.
+    /// Name on the command line: `step-forward`.
     name: String,
-    /// `StepForward`.
+    /// Name of its type: `StepForward`.
     type_name: String,
-    /// Its file in the crate: `step_forward`.
+    /// Name of its file in the crate: `step_forward`.
     module: String,
-    /// Its file in the catalogue.
+    /// Name of its file in the catalogue.
     entry: String,
 }
 
@@ -64,9 +64,9 @@ impl Called {
     }
 }
 
-/// The scheme that is copied, and the new one.
+/// The names of the scheme that is copied, and those of the new one.
 struct Names {
-    /// The directory of its file, from the repository's top.
+    /// Directory of its file, from the repository's top.
     room: PathBuf,
     old: Called,
     new: Called,
@@ -82,7 +82,7 @@ impl Names {
         })
     }
 
-    /// A text of the old scheme, of the new one.
+    /// Replaces the old scheme's names in a text by the new one's.
     fn renamed(&self, text: &str) -> String {
         let (old, new) = (&self.old, &self.new);
         replaced(text, &old.type_name, &new.type_name)
@@ -91,7 +91,7 @@ impl Names {
             .replace(&format!("\"{}\"", old.module), &format!("\"{}\"", new.module))
     }
 
-    /// Writes the files, and returns them.
+    /// Writes the files; returns their paths.
     fn write(&self, root: &Path) -> Result<Vec<String>> {
         let (old, new, room) = (&self.old, &self.new, root.join(&self.room));
         let entries = root.join("laptop/catalogue/src");
@@ -142,7 +142,7 @@ impl Names {
         Ok(files.into_iter().map(shown).collect())
     }
 
-    /// The text with each line that lists the old scheme once more, for the new one.
+    /// Duplicates each line that lists the old scheme, for the new one.
     fn listed(&self, text: &str, is_listed: &dyn Fn(&str) -> bool) -> String {
         let mut lines = Vec::new();
         for line in text.lines() {
@@ -161,8 +161,8 @@ impl Names {
     }
 }
 
-/// The text with one more line before those that begin with the same word, if there are any; rustfmt sorts them. The module
-/// `common` stands apart.
+/// Inserts a line before those that begin with the same word, if there are any; rustfmt sorts them. The module `common`
+/// is kept apart.
 fn inserted(text: &str, line: &str) -> String {
     let (word, _) = line.split_once(' ').unwrap_or((line, ""));
     let is_listed = |other: &&str| other.starts_with(word) && *other != "mod common;";
@@ -172,7 +172,7 @@ fn inserted(text: &str, line: &str) -> String {
     )
 }
 
-/// The text with another beginning of words: `StepForward` in `StepForwardState` and not in `AdaptiveStepForward`.
+/// Replaces the beginnings of words: `StepForward` in `StepForwardState`, but not in `AdaptiveStepForward`.
 fn replaced(text: &str, from: &str, to: &str) -> String {
     let mut parts = text.split(from);
     let mut done = parts.next().unwrap_or_default().to_owned();
@@ -184,7 +184,7 @@ fn replaced(text: &str, from: &str, to: &str) -> String {
     done
 }
 
-/// The room and the file without its ending in which a type is declared.
+/// Returns the directory and the file, without its ending, in which a type is declared.
 fn declared(rooms: &Path, type_name: &str) -> Result<(PathBuf, String)> {
     for room in fs::read_dir(rooms)?.collect::<Result<Vec<_>, _>>()? {
         let Ok(files) = fs::read_dir(room.path()) else { continue };
@@ -199,7 +199,7 @@ fn declared(rooms: &Path, type_name: &str) -> Result<(PathBuf, String)> {
     anyhow::bail!("no file of src/scheme declares `{type_name}`: take another scheme to begin from")
 }
 
-/// `TrialForward` or `trial-forward` as a module's name.
+/// Converts `TrialForward` or `trial-forward` to a module's name.
 fn snake(name: &str) -> String {
     let mut snake = String::new();
     for letter in name.chars() {
@@ -211,7 +211,7 @@ fn snake(name: &str) -> String {
     snake.replace('-', "_")
 }
 
-/// Makes one in a copy of the repository's files, which must compile there.
+/// Makes a scheme in a copy of the repository's files, which must compile there.
 pub fn verify() -> Result<()> {
     let copy = tempfile::tempdir()?;
     let files =

@@ -1,4 +1,5 @@
-//! `cargo xtask page`: the laptop library as WebAssembly in one HTML file, to look at and to check in a browser.
+//! `cargo xtask page`: builds the laptop library as WebAssembly in one HTML file, serves it, and checks it in a
+//! browser.
 
 use crate::common::{cargo, command, lint, paths, run, shell, usage};
 use crate::figures::drawing;
@@ -14,11 +15,11 @@ use std::{
 };
 
 const TARGET: &str = "wasm32-unknown-unknown";
-/// Where it is looked at, if the port is free.
+/// Port on which the page is served, if it is free.
 const PORT: u16 = 8000;
 const BROWSERS: [&str; 2] = ["chromium", "chromium-browser"];
 
-/// Builds the page, and serves it if asked.
+/// Builds the page, and serves it on request.
 pub fn page(args: &[String]) -> Result<()> {
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
     let serves = match args[..] {
@@ -34,7 +35,7 @@ pub fn page(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Builds it, and returns where it is.
+/// Builds the page; returns its path.
 fn build() -> Result<PathBuf> {
     let site = installed()?;
     run(&mut library()?)?;
@@ -73,8 +74,8 @@ fn installed() -> Result<PathBuf> {
     Ok(site)
 }
 
-/// Cargo for WebAssembly: the toolchain in use where it has the standard library, else the distribution's compiler, which
-/// builds that from its source. Clippy stands in the compiler's place for the page's own crate.
+/// Prepares cargo for WebAssembly: of the current toolchain if it has the standard library, or else of the
+/// distribution's compiler, which builds that from source. Clippy replaces the compiler for the page's own crate.
 fn library() -> Result<Command> {
     setup::wasm(TARGET)?;
     let by_default = toolchain::has_core(TARGET)?;
@@ -91,7 +92,7 @@ fn library() -> Result<Command> {
     Ok(build)
 }
 
-/// Serves the page on this machine alone, until the program is ended.
+/// Serves the page on this machine only, until the program is ended.
 fn serve(page: &Path) -> Result<()> {
     let content = fs::read(page)?;
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, PORT))
@@ -122,12 +123,12 @@ fn respond(mut stream: TcpStream, page: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Drives the page in a browser, against the laptop program.
+/// Drives the page in a browser, and compares it with the laptop program.
 pub fn verify() -> Result<()> {
     drive(None, env::var_os("PICTURES").map(|pictures| paths::root().join(pictures)))
 }
 
-/// Takes the documentation's picture of the page anew.
+/// Takes the documentation's picture of the page.
 pub fn write() -> Result<()> {
     let pictures = target().join("pictures");
     fs::create_dir_all(&pictures)?;
@@ -135,7 +136,7 @@ pub fn write() -> Result<()> {
     drawing::keep(&pictures.join("page.png"), "docs/page.png")
 }
 
-/// Runs the checks, or the one of this name, and keeps pictures of the page if there is a place for them.
+/// Runs all checks, or the one of this name; keeps pictures of the page in a directory if one is given.
 fn drive(only: Option<&str>, pictures: Option<PathBuf>) -> Result<()> {
     let page = build()?;
     if !BROWSERS.iter().any(|program| shell::has(program)) {

@@ -2,25 +2,25 @@
 
 /// A board of `examples/boards`.
 pub struct Part {
-    /// Its feature.
+    /// Name of its feature.
     pub name: &'static str,
     pub target: &'static str,
-    /// probe-rs' name for the part.
+    /// Name of the part in probe-rs.
     pub chip: &'static str,
-    /// Its files: `src/board/….rs`, `src/part/….rs`, `memory/….x`.
+    /// Name of its files: `src/board/….rs`, `src/part/….rs`, `memory/….x`.
     pub board: &'static str,
     pub part: &'static str,
     pub memory: &'static str,
     pub baud: u32,
-    /// The far end's arguments of `spikewire listen`.
+    /// Arguments of `spikewire listen` at the far end.
     pub listen: &'static str,
-    /// The shortest way to put the image on the board.
+    /// Shortest way to flash the image.
     pub flash: &'static str,
 }
 
 const F4: &str = "thumbv7em-none-eabihf";
 const M0: &str = "thumbv6m-none-eabi";
-/// The codes of the sensors: `flight::bmi323`, `flight::bmi088` and `icm42688p`.
+/// Codes of the sensors, as in `flight::bmi323`, `flight::bmi088` and `icm42688p`.
 pub const BMI323: &str = "--scheme sod --spikes 16 --sample i16 --thresholds 98,98,98,205,205,205";
 pub const BMI088: &str = "--scheme sod --spikes 16 --sample i16 --thresholds 98,98,98,137,137,137";
 pub const ICM42688P: &str = "--scheme sf --sample i16 --thresholds 98,98,98,328,328,328";

@@ -1,4 +1,4 @@
-//! The Python package, installed as its user installs it.
+//! The Python package, installed as a user installs it.
 
 use crate::common::{command, output, paths, run};
 use crate::programs::host;
@@ -12,9 +12,9 @@ use std::{
 /// The package's version, as in `bindings/python/Cargo.toml`.
 const VERSION: &str = "0.1.0";
 
-/// Installs the package in an environment of its own and runs its tests, its doctests, its README and its example.
+/// Installs the package in an environment of its own, and runs its tests, doctests, README and example.
 ///
-/// It is compiled as the other tests are, so that they share the dependencies.
+/// It is compiled with the same options as the other tests, so that they share dependencies.
 pub fn python() -> Result<()> {
     let python = environment("python")?;
     install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
@@ -38,7 +38,7 @@ pub fn write_stub() -> Result<()> {
     Ok(())
 }
 
-/// The package built from its source package, optimised, and its speed beside plain Python and other libraries.
+/// Builds the package from its source package, optimised, and compares its speed with plain Python and other libraries.
 pub fn speed() -> Result<()> {
     let python = environment("python-speed")?;
     install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
@@ -50,7 +50,7 @@ pub fn speed() -> Result<()> {
     run(command(&python).args(["bindings/python/examples/speed.py", "--check"]))
 }
 
-/// The source package, which has all that the package is built from.
+/// Makes the source package, which must contain all that the package is built from.
 fn source_package(python: &Path) -> Result<PathBuf> {
     let place = paths::target().join("python-source");
     let maturin = python.with_file_name("maturin");

@@ -1,22 +1,22 @@
-//! The emulated boards, one for each Cortex-M core that the crate promises.
+//! The emulated boards, one for each Cortex-M core that the crate supports.
 
 use crate::common::paths;
 use anyhow::{Context, Result};
 use std::{fs, path::PathBuf};
 
-/// A board as QEMU knows it. Its memory map is `examples/board/memory/<machine>.x`.
+/// A board that QEMU emulates. Its memory map is `examples/board/memory/<machine>.x`.
 pub struct Board {
     /// Column heading in the tables.
     pub core: &'static str,
-    /// QEMU's name for it.
+    /// Name in QEMU.
     pub machine: &'static str,
-    /// Rust's name for what it runs.
+    /// Target in Rust.
     pub target: &'static str,
-    /// The compiler's name for its core: code is tuned for it, and uses all the instructions it has.
+    /// Name of its core for the compiler, which tunes code for it and uses all of its instructions.
     pub cpu: &'static str,
-    /// Its clock in Hz, which counts instructions.
+    /// Clock in Hz that counts instructions.
     pub clock: u64,
-    /// For counting, an instruction takes 2^icount ns: 2 and more ticks of that clock.
+    /// Duration of an instruction when counting: 2^icount ns, which is at least 2 ticks of that clock.
     pub icount: u32,
 }
 
@@ -70,12 +70,12 @@ impl Board {
         board.with_context(|| format!("no core `{core}`"))
     }
 
-    /// What the clock counts in 10^9 instructions.
+    /// Returns the number of clock ticks for 10^9 instructions.
     pub fn ticks_per_gigainstruction(&self) -> u64 {
         self.clock << self.icount
     }
 
-    /// The linker's memory map.
+    /// Returns the path of the linker's memory map.
     pub fn memory_map(&self) -> PathBuf {
         match self.machine {
             "netduinoplus2" => paths::root().join("memory.x"),
@@ -83,14 +83,14 @@ impl Board {
         }
     }
 
-    /// Bytes of flash and of RAM, read from the map that the firmware is linked with.
+    /// Returns the bytes of flash and of RAM, from the map with which the firmware is linked.
     pub fn memory(&self) -> Result<(u32, u32)> {
         let path = self.memory_map();
         Ok((length(&path, "FLASH")?, length(&path, "RAM")?))
     }
 }
 
-/// `LENGTH` of the region's line in a linker's memory map, written in K.
+/// Reads `LENGTH` of a region in a linker's memory map, written in K.
 fn length(path: &PathBuf, region: &str) -> Result<u32> {
     let map = fs::read_to_string(path).with_context(|| path.display().to_string())?;
     map.lines()

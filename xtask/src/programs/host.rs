@@ -1,11 +1,12 @@
-//! What the checks build for the host. All of them build the same, so that each crate is compiled once.
+//! Builds for the host. All checks build with the same options, so that each crate is compiled once.
 
 use super::published::CRATES;
 use crate::common::{cargo, command, lint, output, paths, run};
 use anyhow::{Context, Result};
 use std::{path::PathBuf, process::Command};
 
-/// `cargo test` of the whole workspace with every feature but the debug probe's driver, linted as it is compiled.
+/// Prepares `cargo test` for the whole workspace, with every feature except the debug probe's driver; lints while
+/// compiling.
 pub fn tests(args: &str) -> Result<Command> {
     let mut features = vec!["host-tests/extract".to_owned()];
     for own in CRATES {
@@ -17,7 +18,7 @@ pub fn tests(args: &str) -> Result<Command> {
     Ok(cargo)
 }
 
-/// The laptop program as its tests build it, its arguments separated by blanks.
+/// Prepares the laptop program, built as for its tests; arguments are separated by blanks.
 pub fn spikewire(args: &str) -> Result<Command> {
     run(&mut tests("--quiet --no-run --test pipes")?)?; // a test that runs the program, so that cargo builds that too
     let mut spikewire = command(paths::target().join("debug/spikewire"));
@@ -25,14 +26,14 @@ pub fn spikewire(args: &str) -> Result<Command> {
     Ok(spikewire)
 }
 
-/// The target for which `rustc` builds what runs here.
+/// Returns the host's target triple.
 pub fn triple() -> Result<String> {
     let version = output(command("rustc").arg("-vV"))?;
     let host = version.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).context("rustc -vV")
 }
 
-/// Builds one of the examples, and returns where it is.
+/// Builds one of the examples; returns its path.
 pub fn example(program: &str) -> Result<PathBuf> {
     let target = paths::target();
     let mut cargo = cargo("build --quiet --manifest-path examples/Cargo.toml --package");
@@ -40,15 +41,15 @@ pub fn example(program: &str) -> Result<PathBuf> {
     Ok(target.join("debug").join(program))
 }
 
-/// What the example prints here.
+/// Returns the output of an example on the host.
 pub fn on_host(program: &str) -> Result<String> {
     output(&mut command(example(program)?))
 }
 
-/// The programs that fly the recorded flight through every scheme, each in two sample types.
+/// Programs that fly the recorded flight through every scheme, each in two sample types.
 pub const FLIGHT_LOG: [&str; 2] = ["flight-log", "flight-log-fixed"];
 
-/// What these print here.
+/// Returns the output of these programs on the host.
 pub fn flight_log() -> Result<String> {
     FLIGHT_LOG.into_iter().map(on_host).collect()
 }

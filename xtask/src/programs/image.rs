@@ -6,12 +6,12 @@ use crate::setup::toolchain;
 use anyhow::{Context, Result};
 use std::{ffi::OsStr, fs, path::PathBuf, process::Command};
 
-/// Builds the program for the board, and returns the image.
+/// Builds the program for the board; returns the path of the image.
 pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
     Ok(build_all(program, &[program], board)?.join(program))
 }
 
-/// Builds the program for the board with these variables in the environment, and returns the image.
+/// Builds the program for the board with these environment variables; returns the path of the image.
 pub fn build_with(
     program: &str,
     board: &Board,
@@ -27,7 +27,7 @@ pub fn build_with(
     .join(program))
 }
 
-/// Builds the package's programs for the board, and returns the directory where they are.
+/// Builds the package's programs for the board; returns the directory with the images.
 pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
     let mut cargo = building("build", &format!("--package {package}"), board)?;
     kept(&mut cargo, package, programs, board)
@@ -45,14 +45,14 @@ fn kept(cargo: &mut Command, package: &str, programs: &[&str], board: &Board) ->
     Ok(images)
 }
 
-/// Lints all programs, as they are built for the board. Apart from building: clippy's compiler leaves out
-/// optimisations, and the code that it makes is not what a user gets.
+/// Lints all programs as built for the board. Linting is separate from building: clippy's compiler leaves out
+/// optimisations, so its code is not what a user gets.
 pub fn lint_all(board: &Board) -> Result<()> {
     shell::run(shell::lint(&mut building("check", "--workspace", board)?))
         .with_context(|| format!("lints of the firmware for {}", board.machine))
 }
 
-/// Links the program for the board with a panic for every integer that overflows, in a directory of its own.
+/// Links the program for the board with a panic for every integer overflow, in a directory of its own.
 pub fn link_checked(program: &str, board: &Board) -> Result<()> {
     let mut cargo = building("build", &format!("--package {program}"), board)?;
     cargo
@@ -61,9 +61,9 @@ pub fn link_checked(program: &str, board: &Board) -> Result<()> {
     shell::run(&mut cargo).with_context(|| format!("{program} for {}, checked", board.machine))
 }
 
-/// All boards and checks share one directory and one profile, so that each crate is compiled once for a core. What
-/// differs between two boards is in the compiler's flags, which cargo tells apart. The images have a place for each
-/// board, as two of them share a target.
+/// Prepares a build. All boards and checks share one directory and one profile, so that each crate is compiled once for
+/// a core. Boards differ in the compiler's flags, by which cargo tells them apart. Each board has a directory for
+/// images, as two boards share a target.
 fn building(command: &str, packages: &str, board: &Board) -> Result<Command> {
     let build = format!("{command} --release {packages} --manifest-path examples/Cargo.toml");
     let mut cargo = toolchain::cargo_for(board.target, &build)?;

@@ -1,4 +1,4 @@
-//! Programs that the rooms above build and run: on this machine, on emulated boards, in environments of Python.
+//! Programs that other modules build and run: on this machine, on emulated boards, and in Python environments.
 
 pub mod boards;
 pub mod host;

@@ -1,4 +1,4 @@
-//! The crate as it would be published, for programs that take it as their reader would.
+//! The crates as they would be published, for programs that use them as a user would.
 
 use crate::common::{cargo, command, paths, run};
 use anyhow::{Context, Result, ensure};
@@ -11,14 +11,14 @@ use tempfile::TempDir;
 /// A crate that is published.
 pub struct Crate {
     pub name: &'static str,
-    /// Its directory, from the repository's top.
+    /// Directory, from the repository's top.
     pub directory: &'static str,
-    /// Whether it runs on a microcontroller.
+    /// Whether the crate runs on a microcontroller.
     pub flies: bool,
 }
 
 impl Crate {
-    /// The names in its manifest's `[features]`, so that a new feature is checked without a word here.
+    /// Returns the names in its manifest's `[features]`, so that new features are checked without a change here.
     pub fn features(&self) -> Result<Vec<String>> {
         let manifest = paths::root().join(self.directory).join("Cargo.toml");
         let text = fs::read_to_string(manifest)?;
@@ -34,7 +34,7 @@ impl Crate {
     }
 }
 
-/// The crates that are published, each after those that it needs.
+/// The published crates, each after those on which it depends.
 pub const CRATES: [Crate; 5] = [
     Crate { name: "spikewire", directory: "", flies: true },
     Crate { name: "spikewire-cameras", directory: "cameras", flies: true },
@@ -43,12 +43,12 @@ pub const CRATES: [Crate; 5] = [
     Crate { name: "flight-logs", directory: "flight-logs", flies: false },
 ];
 
-/// What tells cargo to take the crate as it would be published.
+/// Returns cargo arguments that select the crate as it would be published.
 pub fn patch() -> Result<String> {
     Ok(format!("patch.crates-io.spikewire.path={:?}", unpacked()?.display().to_string()))
 }
 
-/// Packs the crate as it would be published, and returns the directory that it is unpacked into.
+/// Packs the crate as it would be published; returns the directory into which it is unpacked.
 fn unpacked() -> Result<PathBuf> {
     run(&mut cargo("package --package spikewire --no-verify --allow-dirty --quiet"))?;
     let packed = paths::target().join("package");
@@ -65,7 +65,8 @@ pub fn version() -> Result<String> {
     Ok(line.context("Cargo.toml has no version")?.trim_end_matches('"').into())
 }
 
-/// A copy of an example and of what is copied beside it, and what tells cargo of the crate as it would be published.
+/// Copies an example and its shared files; returns the copy, and cargo arguments that select the crate as it would be
+/// published.
 pub fn copied(name: &str, shared: &[&str]) -> Result<(TempDir, String)> {
     const PATCH: &str = "[patch.crates-io]\nspikewire = { path = \"../..\" }\n";
 
@@ -80,7 +81,7 @@ pub fn copied(name: &str, shared: &[&str]) -> Result<(TempDir, String)> {
     Ok((elsewhere, patch()?))
 }
 
-/// Copies a directory's files, without what cargo has built there.
+/// Copies a directory's files, without cargo's output.
 fn copy(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {

@@ -1,4 +1,4 @@
-//! Environments of Python below the target directory, and the package of this repository in them.
+//! Python environments below the target directory, and the installation of this repository's package.
 
 use crate::common::{command, lint, paths, run};
 use anyhow::Result;
@@ -8,7 +8,7 @@ use std::{
     process::Command,
 };
 
-/// An environment of this name, below the target directory.
+/// Returns the Python of an environment, which is created if it is missing.
 pub fn environment(name: &str) -> Result<PathBuf> {
     let place = paths::target().join(name);
     let python = place.join("bin/python");
@@ -18,7 +18,7 @@ pub fn environment(name: &str) -> Result<PathBuf> {
     Ok(python)
 }
 
-/// `pip install` in the environment.
+/// Prepares `pip install` in the environment.
 pub fn pip(python: &Path) -> Command {
     let mut pip = command(python);
     pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
@@ -37,7 +37,7 @@ pub fn install(python: &Path, what: &[&str]) -> Result<()> {
     run(pip(python).args(what))
 }
 
-/// Compiles the package in a profile of cargo, linted as the other crates are, and installs it.
+/// Compiles the package in a profile of cargo, linted like the other crates, and installs it.
 pub fn package(python: &Path, profile: &str) -> Result<()> {
     let mut pip = pip(python);
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall", "./bindings/python"]);

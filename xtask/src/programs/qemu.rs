@@ -12,38 +12,38 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A program that takes longer hangs: a fault before the console is up, for one, never ends.
+/// Longest time of a program. A fault before the console is up, for one, would never end.
 const PATIENCE: Duration = Duration::from_mins(2);
 
-/// Counting takes longer: software floating point on a Cortex-M0, some 10^10 instructions.
+/// Longest time of a program that counts: software floating point on a Cortex-M0 takes some 10^10 instructions.
 const LONG_PATIENCE: Duration = Duration::from_mins(10);
 
-/// Runs the image to its end and returns what it printed. It is an error if it ends badly, or not in time.
+/// Runs the image to its end; returns its output. Fails if the program fails, or does not end in time.
 pub fn run(board: &Board, image: &Path) -> Result<String> {
     run_for(PATIENCE, board, emulator(board), image)
 }
 
-/// The same of a program that prints something else than text.
+/// Runs an image as [`run`] does, for output that is not text.
 pub fn run_bytes(board: &Board, image: &Path) -> Result<Vec<u8>> {
     run_to_end(PATIENCE, board, emulator(board), image)
 }
 
-/// The same of a program that takes its time.
+/// Runs an image as [`run`] does, with a longer time.
 pub fn run_long(board: &Board, image: &Path) -> Result<String> {
     run_for(LONG_PATIENCE, board, emulator(board), image)
 }
 
-/// The same as `run` with a clock that goes by instructions, so that every run is the same.
+/// Runs an image as [`run`] does, with a clock that counts instructions, so that every run is the same.
 pub fn run_repeatably(board: &Board, image: &Path) -> Result<String> {
     run_for(PATIENCE, board, counting(board), image)
 }
 
-/// The same for a program that counts instructions, and takes its time.
+/// Runs an image that counts instructions, with a longer time.
 pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
     run_for(LONG_PATIENCE, board, counting(board), image)
 }
 
-/// The same with a plugin, started in the directory.
+/// Runs an image that counts instructions, with a plugin, in a directory.
 pub fn run_counting_with(
     board: &Board,
     image: &Path,
@@ -55,7 +55,7 @@ pub fn run_counting_with(
     run_for(LONG_PATIENCE, board, emulator, image)
 }
 
-/// The same as `run_counting`, and what went out of the board's first serial port is kept in the file.
+/// Runs an image as [`run_counting`] does, and keeps the output of the board's first serial port in a file.
 pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<String> {
     let mut emulator = counting(board);
     // Or the monitor takes the console that the serial port leaves.
@@ -64,7 +64,8 @@ pub fn run_capturing(board: &Board, image: &Path, serial: &Path) -> Result<Strin
     run_for(PATIENCE, board, emulator, image)
 }
 
-/// The same in real time, and the board's first serial port hears the file. What goes out of the second one is kept.
+/// Runs an image in real time. The board's first serial port receives the file `heard`; the output of the second is
+/// kept.
 pub fn run_hearing(board: &Board, image: &Path, heard: &Path, said: &Path) -> Result<String> {
     let mut emulator = emulator(board);
     emulator.args(["-monitor", "none"]);
@@ -137,7 +138,7 @@ fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Ve
     })
 }
 
-/// The exit status, or `None` after having ended a program that ran out of time.
+/// Returns the exit status; `None` if the program ran out of time and was ended.
 fn wait(child: &mut Child, patience: Duration) -> Result<Option<ExitStatus>> {
     let start = Instant::now();
     while start.elapsed() < patience {

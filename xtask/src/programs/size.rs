@@ -1,11 +1,11 @@
-//! How much of a board an image takes.
+//! Measures how much of a board's memory an image takes.
 
 use crate::common::shell;
 use crate::programs::boards::Board;
 use anyhow::{Context, Result};
 use std::path::Path;
 
-/// "flash 12.3 of 256 KiB, RAM 1.0 of 16 KiB": what is static; the stack comes on top.
+/// Formats "flash 12.3 of 256 KiB, RAM 1.0 of 16 KiB", for static memory; the stack comes in addition.
 pub fn of(image: &Path, board: &Board) -> Result<String> {
     let [text, data, bss] = sections(image)?;
     let (flash, ram) = board.memory()?;
@@ -19,19 +19,19 @@ pub fn of(image: &Path, board: &Board) -> Result<String> {
     ))
 }
 
-/// The bytes of code and of constants.
+/// Returns the bytes of code and constants.
 pub fn flash(image: &Path) -> Result<u32> {
     let [text, data, _] = sections(image)?;
     Ok(text + data)
 }
 
-/// The bytes of code, of initial values and of what starts as zeros.
+/// Returns the bytes of code, of initial values, and of zeroed memory.
 fn sections(image: &Path) -> Result<[u32; 3]> {
     let table = shell::output(shell::command("arm-none-eabi-size").arg(image))?;
     first_three(&table).context("arm-none-eabi-size prints something else")
 }
 
-/// The first three numbers of the second line.
+/// Parses the first three numbers in the second line.
 fn first_three(table: &str) -> Option<[u32; 3]> {
     let mut numbers = table.lines().nth(1)?.split_whitespace();
     let mut next = || numbers.next()?.parse().ok();

@@ -1,4 +1,4 @@
-//! Builds the core library for a Cortex-M, and puts it where the distribution's compiler looks for it.
+//! Builds the core library for a Cortex-M, and installs it where the distribution's compiler looks for it.
 
 use crate::common::{paths, shell};
 use crate::setup::distribution::{CARGO, RUSTC, STAMP, libraries, version};
@@ -6,7 +6,7 @@ use crate::setup::packages;
 use anyhow::{Context, Result};
 use std::{fs, path::Path};
 
-/// Builds it, copies it as root, and removes what was compiled with another one.
+/// Builds the library, copies it as root, and removes what was compiled with another one.
 pub fn install(target: &str) -> Result<()> {
     let is_replaced = libraries(target).exists();
     build(target).with_context(|| format!("the core library for {target}"))?;
@@ -26,7 +26,7 @@ fn work() -> std::path::PathBuf {
     paths::target().join("core-library")
 }
 
-/// Builds core and alloc as the dependencies of an empty crate, and keeps only them.
+/// Builds core and alloc as dependencies of an empty crate, and keeps only them.
 fn build(target: &str) -> Result<()> {
     let work = work();
     fs::create_dir_all(work.join("src"))?;

@@ -10,7 +10,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The packages that bring the compiler and the source.
+/// Packages with the compiler and the source.
 pub const PACKAGES: [&str; 6] = [
     "rustc-web",
     "cargo-web",
@@ -24,10 +24,11 @@ pub const CARGO: &str = "/usr/bin/cargo";
 pub const RUSTC: &str = "/usr/bin/rustc";
 pub const CLIPPY: &str = "/usr/bin/clippy-driver";
 
-/// Says which compiler built the core library beside it.
+/// File that names the compiler which built the core library beside it.
 pub const STAMP: &str = ".built-by";
 
-/// Whether the distribution's compiler, at its present version, can build for the target, and `cargo +thumb` is it.
+/// Returns whether the distribution's compiler, at its present version, can build for the target, and `cargo +thumb`
+/// selects it.
 pub fn has_core(target: &str) -> Result<bool> {
     if !Path::new(RUSTC).is_file() || !is_linked() {
         return Ok(false);
@@ -36,12 +37,12 @@ pub fn has_core(target: &str) -> Result<bool> {
     Ok(stamp.trim() == version()?)
 }
 
-/// Whether rustup, if there is one, knows this compiler as toolchain `thumb`.
+/// Returns whether rustup, if it is installed, knows this compiler as toolchain `thumb`.
 pub fn is_linked() -> bool {
     !shell::has("rustup") || shell::succeeds(shell::command("rustc").args(["+thumb", "-V"]))
 }
 
-/// Where the compiler looks for the target's core library.
+/// Returns the directory in which the compiler looks for the target's core library.
 pub fn libraries(target: &str) -> PathBuf {
     Path::new("/usr/lib/rustlib").join(target).join("lib")
 }

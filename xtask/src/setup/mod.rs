@@ -1,4 +1,5 @@
-//! `cargo xtask setup`: puts there what a machine lacks. It says first what it will do, and leaves what is there.
+//! `cargo xtask setup`: installs what a machine lacks. It says first what it will do, and leaves alone what is
+//! installed.
 //!
 //! Nothing else in this program acts as root or removes directories. `cargo demo` and `cargo verify` begin with it.
 
@@ -13,12 +14,12 @@ use anyhow::Result;
 use needs::{Missing, Needs, missing};
 use std::env;
 
-/// Puts there what the checks need.
+/// Installs what the checks need.
 pub fn setup() -> Result<()> {
     provide(&needs::CHECKS)
 }
 
-/// Puts there what these needs are, and no more.
+/// Installs these needs, and no more.
 pub fn provide(needs: &Needs) -> Result<()> {
     let missing = missing(needs)?;
     if missing.is_empty() {
@@ -36,7 +37,7 @@ pub fn provide(needs: &Needs) -> Result<()> {
     Ok(())
 }
 
-/// Installs what a check alone needs, where it is missing, and says so first.
+/// Installs packages that a single check needs, if they are missing, and says so first.
 pub fn packages(what: &str, wanted: &[&str]) -> Result<()> {
     let missing = packages::missing(wanted);
     if !missing.is_empty() {
@@ -46,7 +47,7 @@ pub fn packages(what: &str, wanted: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Gets what builds for WebAssembly, where it is missing, and says so first.
+/// Installs what builds for WebAssembly, if it is missing, and says so first.
 pub fn wasm(target: &str) -> Result<()> {
     if toolchain::has_core(target)? {
         return Ok(());
@@ -60,12 +61,12 @@ pub fn wasm(target: &str) -> Result<()> {
     packages("a compiler for WebAssembly", &distribution::PACKAGES)
 }
 
-/// With `RUSTUP_AUTO_INSTALL=0` a machine says that rustup must fetch nothing.
+/// Returns whether rustup may fetch anything: `RUSTUP_AUTO_INSTALL=0` forbids it.
 fn rustup_may_fetch() -> bool {
     shell::has("rustup") && env::var("RUSTUP_AUTO_INSTALL").as_deref() != Ok("0")
 }
 
-/// The packages that bring it, installed or not.
+/// Returns the packages that provide what is missing, installed or not.
 fn wanted(missing: &Missing) -> Vec<&'static str> {
     let mut wanted: Vec<_> = missing.tools.iter().map(|tool| tool.package).collect();
     if !missing.targets.is_empty() && !rustup_may_fetch() {
@@ -74,7 +75,7 @@ fn wanted(missing: &Missing) -> Vec<&'static str> {
     wanted
 }
 
-/// What will be done, a line each.
+/// Lists what will be done, a line each.
 fn plan(missing: &Missing) -> Vec<String> {
     let mut plan = Vec::new();
     let packages = packages::missing(&wanted(missing));
@@ -101,7 +102,7 @@ fn plan(missing: &Missing) -> Vec<String> {
     plan
 }
 
-/// A compiler with a core library for these targets.
+/// Installs a compiler with a core library for these targets.
 fn compiler(targets: &[&str]) -> Result<()> {
     if rustup_may_fetch() {
         let mut rustup = shell::command("rustup");
@@ -124,7 +125,7 @@ fn compiler(targets: &[&str]) -> Result<()> {
 mod tests {
     use std::{fs, path::Path};
 
-    /// Root and removal stay in this room.
+    /// Only this module may act as root or remove directories.
     #[test]
     fn nothing_else_acts_as_root_or_removes_directories() {
         let mut waiting = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];

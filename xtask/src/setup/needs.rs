@@ -1,10 +1,10 @@
-//! What the checks need of a machine, and which of it is not there.
+//! What the checks need of a machine, and what of it is missing.
 
 use crate::common::shell;
 use crate::setup::{distribution, toolchain};
 use anyhow::{Result, ensure};
 
-/// A program that a package of the distribution brings.
+/// A program that a package of the distribution contains.
 pub struct Tool {
     pub package: &'static str,
     pub program: &'static str,
@@ -33,22 +33,22 @@ pub struct Needs {
 }
 
 impl Needs {
-    /// The programs, in words.
+    /// Lists the programs in words.
     pub fn words(&self) -> String {
         let tools = self.tools.iter().map(|tool| tool.program);
         ["Cortex-M compiler"].into_iter().chain(tools).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// What all checks need together.
+/// The needs of all checks together.
 pub const CHECKS: Needs = Needs { targets: &toolchain::TARGETS, tools: &TOOLS };
 
-/// The demo flies on one emulated board, and compiles nothing in C.
+/// The needs of the demo, which flies on one emulated board and compiles nothing in C.
 pub const DEMO: Needs = Needs { targets: &["thumbv7em-none-eabihf"], tools: TOOLS.split_at(1).0 };
 
-/// What is not there.
+/// What is missing.
 pub struct Missing {
-    /// Those for which neither compiler has a core library.
+    /// Targets for which neither compiler has a core library.
     pub targets: Vec<&'static str>,
     pub tools: Vec<&'static Tool>,
 }
@@ -58,7 +58,7 @@ impl Missing {
         self.targets.is_empty() && self.tools.is_empty()
     }
 
-    /// A line for each.
+    /// Returns a line for each.
     pub fn lines(&self) -> Vec<String> {
         let targets = self.targets.iter().map(|target| format!("the core library for {target}"));
         let tools = self.tools.iter().map(|tool| format!("{}, which {}", tool.program, tool.why));
@@ -77,7 +77,7 @@ pub fn missing(needs: &Needs) -> Result<Missing> {
     Ok(Missing { targets, tools })
 }
 
-/// Fails if something is missing, and says what installs it.
+/// Fails if something is missing; the error names the command that installs it.
 pub fn ensure_met() -> Result<()> {
     let missing = missing(&CHECKS)?;
     ensure!(

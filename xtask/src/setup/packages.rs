@@ -4,7 +4,7 @@ use crate::common::shell;
 use anyhow::{Context, Result, bail};
 use std::process::Command;
 
-/// Those of the packages that are not installed.
+/// Returns the packages that are not installed.
 pub fn missing<'a>(packages: &[&'a str]) -> Vec<&'a str> {
     let is_there = |package: &str| shell::succeeds(shell::command("dpkg").args(["-s", package]));
     packages.iter().copied().filter(|package| !is_there(package)).collect()
@@ -25,7 +25,7 @@ pub fn install(packages: &[&str]) -> Result<()> {
     apt_get(&format!("install --yes --no-install-recommends {list}")).with_context(by_hand)
 }
 
-/// Quiet: only a failure shows what apt-get said.
+/// Runs apt-get quietly: its output is shown only if it fails.
 fn apt_get(args: &str) -> Result<()> {
     let mut apt_get = as_root("env")?;
     apt_get.args(["DEBIAN_FRONTEND=noninteractive", "apt-get", "-qq"]);
@@ -34,7 +34,7 @@ fn apt_get(args: &str) -> Result<()> {
     shell::output(&mut apt_get).map(drop)
 }
 
-/// The program, started as root.
+/// Prepares a program to be started as root.
 pub fn as_root(program: &str) -> Result<Command> {
     let user = shell::output(shell::command("id").arg("-u"))?;
     if user.trim() == "0" {

@@ -1,11 +1,11 @@
-//! Which cargo builds for a Cortex-M.
+//! Chooses the cargo that builds for a Cortex-M.
 
 use crate::common::{paths, shell};
 use crate::setup::distribution;
 use anyhow::{Result, ensure};
 use std::{fs, path::PathBuf, process::Command};
 
-/// The Cortex-M cores that the crate is built for.
+/// The Cortex-M targets for which the crate is built.
 pub const TARGETS: [&str; 4] = [
     "thumbv6m-none-eabi",
     "thumbv7m-none-eabi",
@@ -13,9 +13,9 @@ pub const TARGETS: [&str; 4] = [
     "thumbv8m.main-none-eabihf",
 ];
 
-/// Cargo for a Cortex-M target: `cargo …` where the toolchain in use has its core library, and
-/// `cargo +thumb …`, the distribution's compiler as `cargo xtask setup` prepares it, where it has not.
-/// It builds into a directory of its own, since that may be another compiler.
+/// Prepares cargo for a Cortex-M target: `cargo …` if the current toolchain has its core library, or else `cargo +thumb
+/// …`, the distribution's compiler as `cargo xtask setup` prepares it. It builds into a separate directory, since the
+/// compiler may differ.
 pub fn cargo_for(target: &str, args: &str) -> Result<Command> {
     let by_default = has_core(target)?;
     ensure!(
@@ -25,7 +25,7 @@ pub fn cargo_for(target: &str, args: &str) -> Result<Command> {
     Ok(cargo(by_default, &[target], args))
 }
 
-/// The same for several targets: one cargo for all that a compiler builds for, which shares what runs on the host.
+/// Prepares cargo for several targets: one call for all targets of a compiler, which then share what runs on the host.
 pub fn cargo_for_each(targets: &[&str], args: &str) -> Result<Vec<Command>> {
     let (mut by_default, mut by_distribution) = (Vec::new(), Vec::new());
     for &target in targets {
@@ -52,7 +52,7 @@ fn cargo(by_default: bool, targets: &[&str], args: &str) -> Command {
     cargo
 }
 
-/// Whether the toolchain in use can build for the target.
+/// Returns whether the current toolchain can build for the target.
 pub fn has_core(target: &str) -> Result<bool> {
     let mut rustc = shell::command("rustc");
     rustc.args(["--print", "target-libdir", "--target", target]);

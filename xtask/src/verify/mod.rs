@@ -1,4 +1,5 @@
-//! `cargo verify`: every check, in order, each with its time. A failure does not hide the next one.
+//! `cargo verify`: runs every check in order, and reports the time of each. A failure does not stop the checks after
+//! it.
 
 mod passed;
 
@@ -34,11 +35,11 @@ struct Step {
     name: &'static str,
     what: &'static str,
     run: fn() -> Result<()>,
-    /// What it does not read: `--changed` passes over changes of these.
+    /// What the check does not read: `--changed` ignores changes of these.
     apart: Apart,
 }
 
-/// Rooms and files at the repository's top, in groups.
+/// Modules and files at the repository's top, in groups.
 type Apart = &'static [&'static [&'static str]];
 
 const PROSE: &[&str] = &[
@@ -55,7 +56,7 @@ const PROSE: &[&str] = &[
 ];
 /// What firmware does not use.
 const HOST: &[&str] = &["flight-logs", "host-tests", "laptop/cli", "laptop/lab"];
-/// What no other room uses.
+/// What nothing else in the repository uses.
 const LAST: &[&str] = &[
     "bindings/c",
     "bindings/python",
@@ -66,11 +67,11 @@ const LAST: &[&str] = &[
 ];
 /// What the crate does not use.
 const REST: &[&str] = &["data", "examples", "laptop/catalogue", "laptop/flight", "memory.x"];
-/// For checks of emulated boards.
+/// What checks of emulated boards do not read.
 const BOARDS: Apart = &[PROSE, HOST, LAST];
 
-/// To add a check: write a function in a room of `checks`, and a line here. One that says nothing of what it does not read
-/// reads everything; one that does is looked at with `strace -f -e trace=%file`.
+/// The everyday checks. To add one, write a function in a module of `checks`, and a line here. A check is taken to read
+/// everything unless its line says what it does not read; find that out with `strace -f -e trace=%file`.
 const STEPS: &[Step] = &[
     step(SETUP, "compiler targets, QEMU, binutils", setup),
     step("fmt", "rustfmt", everyday::fmt),
@@ -171,7 +172,7 @@ const STEPS: &[Step] = &[
     .apart(BOARDS),
 ];
 
-/// Those that take too long for every change: the longest last.
+/// Checks that take too long for every change, the longest last.
 const LONG: &[Step] = &[
     step("recordings", "the flights come out of the published logs again", long::recordings),
     step("deny", "licences and sources of every crate, in every workspace", release::deny),
@@ -287,17 +288,17 @@ impl Step {
     }
 }
 
-/// What became of a step.
+/// The outcome of a check.
 struct Outcome {
     step: &'static Step,
     good: bool,
-    /// On the clock.
+    /// Elapsed time, in seconds.
     seconds: f64,
-    /// Of the processor, over all cores.
+    /// Processor time over all cores, in seconds.
     processor: f64,
 }
 
-/// Runs the named steps, or all but the long ones, in the list's order.
+/// Runs the named checks, or all except the long ones, in the order of the list.
 pub fn verify(args: &[String]) -> Result<()> {
     let mut args: Vec<&str> = args.iter().map(String::as_str).collect();
     let is_changed = args.pop_if(|last| *last == "--changed").is_some();

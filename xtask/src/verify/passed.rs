@@ -1,4 +1,4 @@
-//! With what each step of `cargo verify` has last passed, so that `--changed` leaves it out.
+//! Records the state with which each step of `cargo verify` last passed, so that `--changed` can skip it.
 
 use crate::common::{command, output, paths};
 use anyhow::{Context, Result, ensure};
@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Variables with which a step does less, or something else. Nothing is kept of a run with one of them.
+/// Variables that make a step do less, or something else. A run with one of them is not recorded.
 const NARROW: [&str; 10] = [
     "BOARD",
     "CASES_TIMES",
@@ -21,15 +21,16 @@ const NARROW: [&str; 10] = [
     "SWEEPS_SEED",
 ];
 
-/// Directories at the repository's top whose directories are rooms.
+/// Directories at the repository's top whose subdirectories count as modules.
 const GROUPS: [&str; 2] = ["bindings", "laptop"];
 
-/// A line for each room and file at the repository's top, with git's name of all that it holds, committed or not; then
-/// each manifest and lock file, whose rooms cargo reads for one another; then the compiler. None where git does not tell.
+/// A state of the repository: a line for each module and file at the top, with git's hash of its content, committed or
+/// not; then each manifest and lock file, which cargo reads for others too; then the compiler. `None` if git does not
+/// tell.
 pub struct Passed(Option<String>);
 
 impl Passed {
-    /// As the tree is now; that it is not known is an error if that `is_needed`.
+    /// Reads the present state. If that fails it is an error only if `is_needed`.
     pub fn now(is_needed: bool) -> Result<Self> {
         let is_whole = NARROW.iter().all(|name| env::var_os(name).is_none());
         ensure!(is_whole || !is_needed, "--changed knows nothing of {}", NARROW.join(", "));
@@ -37,18 +38,20 @@ impl Passed {
         Ok(Self(if is_needed { Some(told?) } else { told.ok().filter(|_| is_whole) }))
     }
 
-    /// Whether the step has passed with all that it reads now: all rooms but those `apart`.
+    /// Returns whether the step has passed with the present state of all that it reads: all modules except those
+    /// `apart`.
     pub fn holds(&self, name: &str, apart: &[&[&str]]) -> bool {
         let kept = fs::read_to_string(place().join(name)).ok();
         kept.is_some() && kept == self.0.as_deref().map(|told| read(told, apart))
     }
 
-    /// Forgets it, as the step begins: one that fails now has not passed.
+    /// Deletes the record of a step when it begins, so that a failure leaves none.
     pub fn remove(name: &str) {
         let _ = fs::remove_file(place().join(name));
     }
 
-    /// Keeps that the step has passed, unless the tree changed meanwhile. What cannot be written costs a repetition, and no more.
+    /// Records that the step has passed, unless the repository changed meanwhile. If that cannot be written, the step
+    /// is only repeated.
     pub fn add(&self, name: &str, apart: &[&[&str]]) {
         if let Some(told) = &self.0
             && Self::now(false).is_ok_and(|now| now.0.as_ref() == Some(told))
@@ -62,7 +65,7 @@ fn place() -> PathBuf {
     paths::target().join("passed")
 }
 
-/// Asks git in an index of our own, which leaves the user's alone.
+/// Asks git with a separate index, so that the user's is unchanged.
 fn told(root: &Path, place: &Path) -> Result<String> {
     fs::create_dir_all(place)?;
     let git = |args: &str| {
@@ -86,7 +89,7 @@ fn told(root: &Path, place: &Path) -> Result<String> {
     Ok([rooms, manifests, output(command("rustc").arg("-vV"))?].concat())
 }
 
-/// The lines without those of rooms that a step does not read. A room that nobody thought of stays.
+/// Returns the lines without those of modules that a step does not read. Unknown modules stay.
 fn read(told: &str, apart: &[&[&str]]) -> String {
     let is_read = |line: &&str| {
         let name = line.split_once('\t').map(|(_, name)| name);
@@ -114,7 +117,7 @@ mod tests {
         assert!(!holds(&before.replace('2', "6"), &[&["ros"]]));
     }
 
-    /// A change counts before a commit holds it, and a file before git knows it.
+    /// A change counts before it is committed, and a file before it is added to git.
     #[test]
     fn git_tells_what_is_there() {
         let (root, place) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());

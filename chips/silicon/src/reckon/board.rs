@@ -5,10 +5,10 @@ use spikewire_chips::ReckOnPort;
 use super::{Inputs, ReckOn};
 use crate::board::{self, Model};
 
-/// Chip and wires.
+/// The chip, the wires and their faults.
 pub type Pins = board::Pins<ReckOn>;
 
-/// Where a driver and a test meet.
+/// A board, shared between a driver and a test.
 pub type Board = board::Board<ReckOn>;
 
 /// The chip's SPI pins.

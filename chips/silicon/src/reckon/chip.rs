@@ -1,4 +1,4 @@
-//! The network's controller, its memories, and the arithmetic of neurons and traces.
+//! The controller of `ReckOn`, its memories, and the arithmetic of neurons and traces.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -8,7 +8,7 @@ use super::lfsr::Lfsr;
 use super::memory::Memory;
 use super::spi::{self, SpiSlave};
 
-/// A bit for each neuron or input.
+/// A set of neurons or inputs, one bit for each.
 pub(super) type Set = [u64; 4];
 
 pub(super) fn has(set: &Set, at: u8) -> bool {
@@ -21,45 +21,45 @@ fn put(set: &mut Set, at: u8, value: bool) {
     *word = if value { *word | bit } else { *word & !bit };
 }
 
-/// What the controller does.
+/// The state of the controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum State {
-    /// Between samples.
+    /// Waits between samples.
     #[default]
     Idle,
-    /// Spikes and inputs act on neurons.
+    /// Applies spikes and inputs to neurons.
     Prop,
-    /// Neurons leak and fire.
+    /// Lets neurons leak and fire.
     Step,
-    /// The time step's end.
+    /// Ends the time step.
     StepDone,
     /// Waits for a target.
     GetTarget,
-    /// Stands still for SPI.
+    /// Pauses for an access over SPI.
     Config,
     /// Changes weights.
     Learn,
-    /// Sends its outputs.
+    /// Sends the outputs.
     Send,
 }
 
-/// Which event acts.
+/// The state in which an event is applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum EventState {
-    /// None.
+    /// There is no event.
     #[default]
     Wait,
-    /// Looks for the next.
+    /// Looks for the next event.
     Count,
-    /// It acts, on two neurons in two clocks.
+    /// Applies the event, to two neurons in two clocks.
     Event,
-    /// Its trace, if no neuron has its number.
+    /// Updates the event's trace, if no neuron has its number.
     Trace,
 }
 
-/// Two neurons as their word in memory holds them; 0 if they were not touched since the sample began.
+/// Two neurons, as stored in one word of memory; 0 if they have not been used since the sample began.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
@@ -68,7 +68,7 @@ pub(super) struct Pair {
     pub(super) output_trace: [u16; 2],
 }
 
-/// All that a clock changes but the memories.
+/// All state that a clock changes, except for the memories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Clocked {
     resets: [bool; 2],
@@ -187,7 +187,7 @@ impl Default for Clocked {
     }
 }
 
-/// The pins that a host drives, but those of SPI.
+/// The levels of the pins that a host drives, without those of SPI.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inputs {
     /// `RST`.
@@ -196,7 +196,7 @@ pub struct Inputs {
     pub address: u8,
     /// `AERIN_REQ`.
     pub request: bool,
-    /// `AERIN_TAR_EN`: the address is a target's byte.
+    /// `AERIN_TAR_EN`: whether the address is a byte of a target.
     pub is_target: bool,
     /// `SAMPLE`.
     pub sample: bool,
@@ -210,7 +210,7 @@ pub struct Inputs {
     pub output_acknowledge: bool,
 }
 
-/// The pins that the chip drives.
+/// The levels of the pins that the chip drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outputs {
     /// `MISO`.
@@ -227,31 +227,31 @@ pub struct Outputs {
     pub error_or_ready: bool,
 }
 
-/// `ReckOn`.
+/// The model of `ReckOn`.
 #[derive(Clone, Debug)]
 pub struct ReckOn {
     pub(super) inputs: Inputs,
     pub(super) spi: SpiSlave,
     pub(super) now: Clocked,
-    /// The neurons' memory: two a word.
+    /// The memory of neurons: two in each word.
     pub neurons: Vec<u128>,
-    /// Weights from inputs: sixteen a word, sixteen words an input.
+    /// Weights from inputs: sixteen in each word, sixteen words for each input.
     pub input_weights: Memory,
-    /// Weights from neurons, likewise.
+    /// Weights from neurons: sixteen in each word, sixteen words for each neuron.
     pub recurrent_weights: Memory,
-    /// Weights from neurons to outputs: a word a neuron.
+    /// Weights from neurons to outputs: one word for each neuron.
     pub output_weights: Memory,
     is_still: bool,
-    /// How many clocks there were.
+    /// Number of clocks so far.
     pub clocks: u64,
-    /// The neurons that fired since this was last taken.
+    /// Neurons that have fired, until a test takes them.
     pub fired: Vec<u8>,
-    /// The addresses that the input bus took since this was last taken.
+    /// Addresses that the input bus has accepted, until a test takes them.
     pub taken: Vec<u8>,
 }
 
 impl Default for ReckOn {
-    /// As after power-up, all memories 0.
+    /// The state after power-up, with all memories 0.
     fn default() -> Self {
         Self {
             inputs: Inputs::default(),
@@ -272,11 +272,11 @@ impl Default for ReckOn {
 /// An access to a memory in this clock.
 struct Access {
     address: usize,
-    /// What is written, and where.
+    /// The data to write with its mask; `None` to read.
     write: Option<(u128, u128)>,
 }
 
-/// What a word becomes.
+/// Returns the word after a masked write.
 const fn changed(old: u128, (data, mask): (u128, u128)) -> u128 {
     data & mask | old & !mask
 }
@@ -289,13 +289,13 @@ fn access(memory: &mut Memory, word: &mut u128, access: Option<&Access>) {
     }
 }
 
-/// A word of 32 bits as a part of one of 128.
+/// Returns the data and the mask that write 32 bits into a word of 128.
 fn part(address: u16, data: u32) -> (u128, u128) {
     let shift = u32::from(address & 3) * 32;
     (u128::from(data) << shift, 0xFFFF_FFFF << shift)
 }
 
-/// Two numbers of 16 bits, with the chip's saturation: the sign of the sum may also come from `noise`.
+/// Adds two 16-bit numbers with the chip's saturation, in which the sign of the sum may also come from `noise`.
 fn add(one: i16, other: i16, noise: i16) -> i16 {
     let sum = one.wrapping_add(other).wrapping_add(noise);
     match (one < 0, other < 0, sum < 0) {
@@ -305,7 +305,7 @@ fn add(one: i16, other: i16, noise: i16) -> i16 {
     }
 }
 
-/// A weight of 8 bits, shifted, in 16.
+/// Returns an 8-bit weight, shifted left, as a 16-bit number.
 fn shifted(weights: u128, at: u32, shift: u32) -> i16 {
     i16::from((weights >> (8 * at)) as i8) << shift
 }
@@ -331,7 +331,7 @@ impl ReckOn {
         self.register(96) as u8
     }
 
-    /// The pins that the chip drives.
+    /// Returns the levels of the pins that the chip drives.
     pub fn outputs(&self) -> Outputs {
         let now = &self.now;
         Outputs {
@@ -344,12 +344,12 @@ impl ReckOn {
         }
     }
 
-    /// The pins that a host drives.
+    /// Returns the levels of the pins that a host drives.
     pub const fn inputs(&self) -> Inputs {
         self.inputs
     }
 
-    /// Drives pins.
+    /// Drives the host's pins.
     pub fn set_inputs(&mut self, inputs: Inputs) {
         self.is_still &= self.inputs == inputs;
         if inputs.reset && !self.inputs.reset {
@@ -358,13 +358,13 @@ impl ReckOn {
         self.inputs = inputs;
     }
 
-    /// SCK rises.
+    /// Raises SCK, with MOSI at `bit`.
     pub fn rise(&mut self, bit: bool) {
         self.is_still = false;
         self.spi.rise(bit, self.inputs.reset);
     }
 
-    /// SCK falls.
+    /// Lowers SCK.
     pub fn fall(&mut self) {
         self.is_still = false;
         if !self.inputs.reset {
@@ -372,7 +372,7 @@ impl ReckOn {
         }
     }
 
-    /// So many clocks. Stops to count where nothing can change any more.
+    /// Runs the chip for this many clocks; stops early, without counting them, once nothing can change any more.
     pub fn run(&mut self, clocks: u32) {
         self.clocks += u64::from(clocks);
         for _ in 0..clocks {
@@ -385,28 +385,28 @@ impl ReckOn {
         }
     }
 
-    /// A configuration register.
+    /// Returns the value of a configuration register.
     pub fn register_value(&self, register: usize) -> u32 {
         self.register(register)
     }
 
-    /// Whether a tick may come.
+    /// Returns whether the chip is ready for a tick.
     pub fn is_ready(&self) -> bool {
         let now = &self.now;
         now.state == State::Idle || now.state == State::Prop && now.event_state == EventState::Wait
     }
 
-    /// What the controller does.
+    /// Returns the state of the controller.
     pub const fn state(&self) -> State {
         self.now.state
     }
 
-    /// The outputs' potentials.
+    /// Returns the outputs' potentials.
     pub const fn output_potentials(&self) -> &[i16; 16] {
         &self.now.outputs
     }
 
-    /// Whether a tick came before the step before it was done, since the last reset.
+    /// Returns whether a tick since the last reset came before the previous step was done.
     pub const fn timing_error(&self) -> bool {
         self.now.timing_error
     }
@@ -453,7 +453,7 @@ impl ReckOn {
         }
     }
 
-    /// The last count of a step: of neurons, inputs or outputs, whichever are the most.
+    /// Returns the last count of a step: the largest of the numbers of neurons, inputs and outputs.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }
@@ -894,7 +894,7 @@ impl ReckOn {
         self.now = new;
     }
 
-    /// The sources of random numbers.
+    /// Advances the sources of random numbers.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;
         let is_reset = now.resets[1];
@@ -931,7 +931,7 @@ impl ReckOn {
         }
     }
 
-    /// The synchronisers, and what reset clears at once.
+    /// Advances the synchronisers, and applies a reset.
     fn synchronise(&self, new: &mut Clocked) {
         let (now, pins) = (&self.now, &self.inputs);
         let shift = |bits: [bool; 2], pin| [pin, bits[0]];
@@ -968,7 +968,7 @@ impl ReckOn {
     }
 }
 
-/// The first of the largest.
+/// Returns the first of the largest values.
 fn first_most<T: PartialOrd>(values: &[T; 16], last: u8) -> u8 {
     (0..=last).fold(
         0,

@@ -1,8 +1,8 @@
-//! A number for what the chip holds, which the comparison with the register-transfer code computes on both sides.
+//! Digests of the chip's state. The simulation of the register-transfer code computes the same ones for comparison.
 
 use super::chip::ReckOn;
 
-/// Mixes words into one.
+/// Mixes words into one number.
 #[derive(Default)]
 struct Mixed(u64);
 
@@ -19,7 +19,7 @@ impl Mixed {
 }
 
 impl ReckOn {
-    /// The pins, the two controllers' states and the event at hand; and a digest of the registers.
+    /// Returns the pins, both controllers' states and the current event as one number, and a digest of the registers.
     pub fn digest(&self) -> [u64; 2] {
         let now = &self.now;
         let (state, event_state) = (now.state as u64, now.event_state as u64);
@@ -76,7 +76,7 @@ impl ReckOn {
         [pins, mixed.0]
     }
 
-    /// A digest of the four memories.
+    /// Returns a digest of the four memories.
     pub fn memory_digest(&self) -> u64 {
         let mut mixed = Mixed::default();
         let weights = [&self.input_weights, &self.recurrent_weights, &self.output_weights];

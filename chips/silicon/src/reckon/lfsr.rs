@@ -1,7 +1,7 @@
-//! The chip's sources of random numbers: shift registers with feedback that give many bits a clock.
+//! The chip's sources of random numbers: linear-feedback shift registers that give many bits in each clock.
 
-/// A register of `width` bits whose bits follow `s[n] = s[n - width] ^ s[n - tap]`, and which gives `bits` of them
-/// a clock.
+/// A register of `width` bits with the sequence `s[n] = s[n - width] ^ s[n - tap]`, which gives `bits` bits in each
+/// clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Lfsr {
     width: i32,
@@ -10,10 +10,10 @@ pub(super) struct Lfsr {
     state: u32,
 }
 
-/// A clock's bits, the first in bit 0 of the first word.
+/// The bits of a clock; the first is bit 0 of the first word.
 pub(super) type Bits = [u64; 8];
 
-/// Up to 25 bits from before the clock, and 512 of the clock and after.
+/// Length of the part of the sequence that is computed: up to 25 bits before this clock's, and 512 from there on.
 const LENGTH: usize = 26 + 512 + 26;
 const NOW: i32 = 26;
 
@@ -26,7 +26,7 @@ impl Lfsr {
         self.state = state & ((1 << self.width) - 1);
     }
 
-    /// The place in the sequence of a bit of the state; 0 is the first bit that is given now.
+    /// Returns the position in the sequence of a bit of the state; 0 is the first bit of this clock.
     fn place(&self, bit: i32) -> i32 {
         match (self.bits, bit) {
             (_, bit) if bit < self.tap => bit,
@@ -47,7 +47,7 @@ impl Lfsr {
         s
     }
 
-    /// The bits of this clock.
+    /// Returns the bits of this clock.
     pub(super) fn bits(&self) -> Bits {
         let s = self.sequence(self.bits);
         let mut bits = [0; 8];
@@ -57,7 +57,7 @@ impl Lfsr {
         bits
     }
 
-    /// The bits of this clock, if there are no more than 32.
+    /// Returns the bits of this clock as a number; there must be at most 32.
     pub(super) fn word(&self) -> u32 {
         self.bits()[0] as u32
     }

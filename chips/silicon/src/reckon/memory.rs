@@ -1,4 +1,4 @@
-//! A memory of weights, which takes room for what was written to it alone: a microcontroller has not enough for all.
+//! A memory of weights that stores only what was written: a microcontroller has no room for all of it.
 
 use alloc::vec::Vec;
 use core::iter::repeat_n;
@@ -7,7 +7,7 @@ use core::ops::Index;
 /// Words of 128 bits, all 0 until they are written.
 #[derive(Clone, Debug)]
 pub struct Memory {
-    /// Up to the last that is not 0.
+    /// The words up to the last that is not 0.
     words: Vec<u128>,
     length: usize,
 }
@@ -20,7 +20,7 @@ impl Memory {
     /// Writes a word.
     ///
     /// # Panics
-    /// There is no such word.
+    /// Panics if there is no such word.
     pub fn set(&mut self, at: usize, word: u128) {
         assert!(at < self.length, "a memory of {} words has no word {at}", self.length);
         if at >= self.words.len() {
@@ -32,7 +32,7 @@ impl Memory {
         self.words[at] = word;
     }
 
-    /// All words.
+    /// Returns all words.
     pub fn iter(&self) -> impl Iterator<Item = u128> {
         self.words.iter().copied().chain(repeat_n(0, self.length - self.words.len()))
     }

@@ -1,6 +1,6 @@
-//! `ReckOn`, clock by clock: its SPI, controllers, neurons, traces, learning and sources of random numbers.
+//! A model of `ReckOn`, clock by clock: its SPI, controllers, neurons, traces, learning and sources of random numbers.
 //!
-//! Written from the chip's public register-transfer code, of which nothing is copied.
+//! It was written from the chip's public register-transfer code, of which nothing is copied.
 
 mod board;
 mod chip;

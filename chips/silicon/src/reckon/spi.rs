@@ -1,35 +1,37 @@
-//! The SPI slave: a header of 32 bits, then as many words of 32 as it says, counted from reset, without a chip select.
+//! The SPI slave of `ReckOn`. A frame is a header of 32 bits, followed by as many 32-bit words as the header says. The
+//! slave has no chip select, and counts clocks from reset.
 
-/// Flags of what the core is asked to write: the memories in order of their codes, then the nine seeds.
+/// Flags of the writes that the core is asked for: first the memories in the order of their codes, then the nine seeds.
+/// This one is the parameters of a pair of neurons.
 pub(super) const PROG_NEURON: u16 = 1;
-/// An output neuron.
+/// The parameters of an output neuron.
 pub(super) const PROG_OUTPUT: u16 = 1 << 1;
-/// Weights of inputs.
+/// The weights of inputs.
 pub(super) const PROG_INPUT_WEIGHTS: u16 = 1 << 2;
-/// Recurrent weights.
+/// The recurrent weights.
 pub(super) const PROG_RECURRENT_WEIGHTS: u16 = 1 << 3;
-/// Weights of outputs.
+/// The weights of outputs.
 pub(super) const PROG_OUTPUT_WEIGHTS: u16 = 1 << 4;
 /// The first of nine seeds.
 pub(super) const PROG_SEED: u16 = 1 << 5;
 
-/// Registers up to 104.
+/// Number of registers; the highest is 104.
 pub(super) const REGISTERS: usize = 105;
 
-/// What the slave holds. It runs on SCK alone.
+/// The state of the slave, which only SCK advances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SpiSlave {
     count: u32,
     header: u32,
     shift_in: u32,
     shift_out: u32,
-    /// The address of the word that the core is asked for.
+    /// Address of the word that the core is asked for.
     pub(super) address: u16,
     /// The word to write.
     pub(super) data: u32,
-    /// What the core is asked to write.
+    /// Flags of the writes that the core is asked for.
     pub(super) writing: u16,
-    /// What the core is asked to read: the memories in order of their codes.
+    /// Flags of the reads that the core is asked for: the memories in the order of their codes.
     pub(super) reading: u8,
     registers: [u32; REGISTERS],
 }
@@ -50,7 +52,7 @@ impl Default for SpiSlave {
     }
 }
 
-/// A register's bits; 0 where there is none.
+/// Returns the number of bits in a register; 0 if there is no such register.
 const fn width(register: usize) -> u32 {
     match register {
         0 | 2 | 3 | 8 | 10 | 11 | 21 | 23 | 25..=27 | 30..=33 => 1,
@@ -72,7 +74,7 @@ const fn width(register: usize) -> u32 {
     }
 }
 
-/// A register's value after reset; `None` if reset leaves it.
+/// Returns a register's value after reset; `None` if reset does not change it.
 const fn reset_value(register: usize) -> Option<u32> {
     match register {
         0 | 3 | 11 | 26 | 31 => Some(1),
@@ -86,7 +88,7 @@ const fn reset_value(register: usize) -> Option<u32> {
 }
 
 impl SpiSlave {
-    /// What reset clears.
+    /// Resets the slave.
     pub(super) fn reset(&mut self) {
         (self.count, self.header, self.shift_out) = (0, 0, 0);
         (self.writing, self.reading) = (0, 0);
@@ -97,23 +99,23 @@ impl SpiSlave {
         }
     }
 
-    /// A configuration register.
+    /// Returns the value of a configuration register.
     pub(super) const fn register(&self, register: usize) -> u32 {
         self.registers[register]
     }
 
-    /// Puts a value in a register, as tests do without the bus.
+    /// Sets a register directly, for tests that do not use the bus.
     pub(super) fn set_register(&mut self, register: usize, value: u32) {
         self.registers[register] = value & ((1_u64 << width(register)) - 1) as u32;
     }
 
-    /// The line to the master, without the request of a target.
+    /// Returns the level of MISO, without the request of a target.
     pub(super) const fn output(&self, read: u32) -> bool {
         let is_first = self.header >> 31 == 1 && self.count & 31 == 0 && self.count >> 5 != 0;
         (if is_first { read } else { self.shift_out }) >> 31 == 1
     }
 
-    /// SCK rises.
+    /// Raises SCK, with MOSI at `bit`.
     pub(super) fn rise(&mut self, bit: bool, is_reset: bool) {
         let word = self.shift_in << 1 | u32::from(bit);
         let is_register = self.header >> 28 == 0 && self.count & 31 == 31 && self.count >> 5 != 0;
@@ -124,7 +126,7 @@ impl SpiSlave {
         self.shift_in = word;
     }
 
-    /// SCK falls. `read` is the word that the core read last.
+    /// Lowers SCK; `read` is the last word that the core read.
     pub(super) fn fall(&mut self, read: u32) {
         let Self { count, header, shift_in, shift_out, .. } = *self;
         let (words, is_last) = (count >> 5, count & 31 == 31);

@@ -1,16 +1,16 @@
-//! The parameters that a user asks for.
+//! The parameters that a user gave.
 
 use super::Value;
 use super::error::{Error, ErrorKind, Result};
 use super::words::Given;
 use crate::{Info, Kind};
 
-/// Values of parameters, by the names of the catalogue; a signal and the paper may stand in for the rest.
+/// Values of parameters, by their names in the catalogue. Missing ones may come from the signal or the paper.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Asked {
     /// Sorted by name.
     values: Vec<(&'static str, Value)>,
-    /// The paper's settings, scaled to the signal's range, for what is not given.
+    /// Whether missing parameters take the paper's values, scaled to the signal's range.
     pub paper: bool,
 }
 
@@ -24,32 +24,32 @@ impl Asked {
         }
     }
 
-    /// Takes a parameter back.
+    /// Removes a parameter.
     pub fn unset(&mut self, name: &str) {
         self.values.retain(|(own, _)| *own != name);
     }
 
-    /// The value of a parameter.
+    /// Returns the value of a parameter.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.values.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    /// The number of a parameter, if it has one.
+    /// Returns the value of a parameter, if it is a number.
     pub fn number(&self, name: &str) -> Option<f64> {
         self.get(name)?.number()
     }
 
-    /// The word of a parameter, if it has one.
+    /// Returns the value of a parameter, if it is a word.
     pub fn word(&self, name: &str) -> Option<&str> {
         self.get(name)?.word()
     }
 
-    /// All values, by name.
+    /// Returns all values, sorted by name.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))
     }
 
-    /// With these for what was not given.
+    /// Returns these values, completed by those of `others`.
     #[must_use]
     pub fn or(&self, others: &Self) -> Self {
         let mut all = others.clone();
@@ -58,15 +58,15 @@ impl Asked {
         all
     }
 
-    /// Whether no parameter is given.
+    /// Returns whether no parameter is given.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// Refuses what the scheme does not take.
+    /// Checks that the scheme has all these parameters.
     ///
     /// # Errors
-    /// Returns an error if a parameter is given that the scheme does not take.
+    /// Returns an error if a parameter is given that the scheme does not have.
     pub fn check(&self, info: &'static Info) -> Result<()> {
         match self.values.iter().find(|(name, _)| info.parameter(name).is_none()) {
             Some((name, _)) => Err(Error::takes_no(info, *name)),
@@ -74,10 +74,10 @@ impl Asked {
         }
     }
 
-    /// How many channels these are of, if a parameter that takes one number has several.
+    /// Returns the number of channels for which values are given; `None` if no parameter has a value for each channel.
     ///
     /// # Errors
-    /// Two parameters have another number of values.
+    /// Returns an error if two parameters have different numbers of values.
     pub fn channels(&self, info: &Info) -> Result<Option<usize>> {
         let mut all: Option<(&'static str, usize)> = None;
         for (name, value) in self.each(info) {
@@ -92,10 +92,10 @@ impl Asked {
         Ok(all.map(|(_, count)| count))
     }
 
-    /// The parameters asked for one of `channels` channels.
+    /// Returns the values for one of `channels` channels.
     ///
     /// # Errors
-    /// A parameter has another number of values.
+    /// Returns an error if a parameter has another number of values.
     pub fn channel(&self, info: &Info, channel: usize, channels: usize) -> Result<Self> {
         let mut own = self.clone();
         for (name, values) in self.each(info) {
@@ -110,7 +110,7 @@ impl Asked {
         Ok(own)
     }
 
-    /// The parameters that take one number and have a list, one for each channel.
+    /// Returns the parameters that take one number and have a list, with a number for each channel.
     fn each<'a>(&'a self, info: &'a Info) -> impl Iterator<Item = (&'static str, &'a [f64])> {
         self.values.iter().filter_map(|(name, value)| match value {
             Value::Numbers(numbers) => {

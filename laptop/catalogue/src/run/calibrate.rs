@@ -1,4 +1,4 @@
-//! The figures that a scheme takes from a whole recording, in any sample type.
+//! Calibrates a scheme on a whole recording, in any sample type.
 
 use super::SampleType;
 use super::quantiles::Quantiles;
@@ -6,23 +6,23 @@ use crate::for_sample_type;
 use spikewire::temporal::TemporalContrast;
 use spikewire::{Calibration, ConfigError, Sample};
 
-/// A calibration in the recording's unit.
+/// A calibration in the unit of the recording.
 pub struct Calibrated {
     calibration: Box<dyn Calibrate + Send + Sync>,
     quantiles: Quantiles,
-    /// The value of 1 in the unit of the calibration.
+    /// The number that represents 1 in the unit of the calibration.
     one: f64,
 }
 
 impl Calibrated {
-    /// A calibration that has seen nothing.
+    /// Starts a calibration without samples.
     pub fn new(sample: SampleType) -> Self {
         let calibration: Box<dyn Calibrate + Send + Sync> =
             for_sample_type!(sample, S => Box::new(Calibration::<S>::new()));
         Self { calibration, quantiles: Quantiles::new(), one: sample.one() }
     }
 
-    /// Takes the next samples, all finite.
+    /// Adds the next samples, which must be finite.
     pub fn observe(&mut self, samples: &[f64]) {
         for sample in samples {
             self.calibration.observe(sample * self.one);
@@ -30,27 +30,27 @@ impl Calibrated {
         }
     }
 
-    /// The smallest and the largest sample, if there was one.
+    /// Returns the smallest and the largest sample; `None` without samples.
     pub fn range(&self) -> Option<(f64, f64)> {
         self.calibration.range().map(|(min, max)| (min / self.one, max / self.one))
     }
 
-    /// This many quantiles `(2i + 1) / 2M`, dense where the samples are; `None` before the first sample.
+    /// Returns `count` quantiles `(2i + 1) / 2M`, which are dense where samples are frequent; `None` without samples.
     pub fn quantiles(&self, count: usize) -> Option<Vec<f64>> {
         let part = |i: usize| (2 * i + 1) as f64 / (2 * count) as f64;
         (0..count).map(|i| self.quantiles.quantile(part(i))).collect()
     }
 
-    /// The threshold of temporal contrast, from the differences or from their magnitudes.
+    /// Returns the threshold of temporal contrast, from the differences or from their magnitudes.
     ///
     /// # Errors
-    /// Too few samples, or a threshold that is not above 0.
+    /// Returns an error if there are too few samples, or if the threshold is not above 0.
     pub fn threshold(&self, factor: f64, of_magnitudes: bool) -> Result<f64, ConfigError> {
         Ok(self.calibration.threshold(factor as f32, of_magnitudes)? / self.one)
     }
 }
 
-/// The crate's calibration, in any sample type.
+/// The crate's calibration, for any sample type.
 trait Calibrate {
     fn observe(&mut self, sample: f64);
     fn range(&self) -> Option<(f64, f64)>;

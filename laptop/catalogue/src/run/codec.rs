@@ -1,7 +1,7 @@
-//! An encoder and its decoder over many samples, whose type says nothing of the scheme.
+//! An encoder and its decoder, which process many samples in a call and whose type does not depend on the scheme.
 //!
-//! The code of a sample is a row of cells, one for each neuron of each sub-timestep. A cell holds how many spikes went
-//! up less how many went down: -1, 0 or 1, or more where a code sends several spikes a sample.
+//! The code of a sample is a row of cells, one for each neuron in each sub-timestep. A cell holds the number of its
+//! spikes, positive for up and negative for down: -1, 0 or 1, or more if the code has several spikes in a sample.
 
 use std::{any::Any, array, iter};
 
@@ -14,103 +14,103 @@ use super::ErrorKind;
 use super::{Result, Runs, Settings, Shape, Visit};
 use crate::State;
 
-/// One neuron's spike for one sample.
+/// A spike of one neuron, in one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Event {
-    /// The sample, counted from 0.
+    /// Index of the sample, from 0.
     pub sample: u64,
-    /// The neuron, counted from 0.
+    /// Index of the neuron, from 0.
     pub neuron: u16,
-    /// The sub-timestep within the sample; 0 for codes without.
+    /// Index of the sub-timestep in the sample; 0 for codes without.
     pub slot: u16,
-    /// The direction.
+    /// Direction of the spike.
     pub polarity: Polarity,
 }
 
-/// Samples in the signal's unit, all finite.
+/// Samples in the signal's unit; all must be finite.
 #[derive(Clone, Copy, Debug)]
 pub enum Samples<'a> {
     /// In single precision.
     F32(&'a [f32]),
     /// In double precision.
     F64(&'a [f64]),
-    /// Whole numbers.
+    /// Integers.
     I16(&'a [i16]),
 }
 
-/// Room for decoded values, in the signal's unit.
+/// Buffers for decoded values, in the signal's unit.
 #[derive(Debug)]
 pub enum Values<'a> {
     /// In single precision.
     F32(&'a mut [f32]),
     /// In double precision.
     F64(&'a mut [f64]),
-    /// Whole numbers.
+    /// Integers.
     I16(&'a mut [i16]),
 }
 
-/// A matching encoder and decoder, in the signal's unit.
+/// An encoder and its decoder, in the signal's unit.
 pub struct Codec {
     running: Box<dyn Running + Send + Sync>,
     shape: Shape,
-    /// How many samples have been coded as events, and how many decoded from them.
+    /// Number of samples that were encoded as events; `decoded` is the number that were decoded from events.
     coded: u64,
     decoded: u64,
-    /// The cells of the sample that is decoded.
+    /// The cells of the sample that is being decoded.
     row: Vec<i8>,
 }
 
 impl Codec {
-    /// How many neurons and sub-timesteps it has.
+    /// Returns the numbers of neurons and sub-timesteps.
     pub fn shape(&self) -> Shape {
         self.shape
     }
 
-    /// How many samples after its own the code of a sample comes out.
+    /// Returns the latency: how many samples after a sample its code comes out.
     pub fn latency(&self) -> usize {
         self.running.latency()
     }
 
-    /// Takes the next samples, writes their codes into rows of cells, which are all 0, and returns how many rows that made.
+    /// Encodes the next samples into rows of cells, which must all be 0; returns the number of rows written.
     pub fn encode_cells(&mut self, samples: Samples, cells: &mut [i8]) -> usize {
         let mut sink = Sink::Cells { rows: cells, shape: self.shape, made: 0 };
         self.running.encode(samples, &mut sink);
         sink.made()
     }
 
-    /// The rows of the samples that still wait for later ones, and how many these are.
+    /// Writes the rows of the samples that still wait for later ones; returns their number.
     pub fn finish_cells(&mut self, cells: &mut [i8]) -> usize {
         let mut sink = Sink::Cells { rows: cells, shape: self.shape, made: 0 };
         self.running.finish(&mut sink);
         sink.made()
     }
 
-    /// Decodes as many rows of cells as there is room for values.
+    /// Decodes rows of cells, as many as there is room for values.
     ///
     /// # Errors
-    /// The first row that no encoder makes. Those before it have been decoded.
+    /// Returns the index of the first row that no encoder writes; the rows before it were decoded.
     pub fn decode_cells(&mut self, cells: &[i8], values: &mut Values) -> Result<(), usize> {
         self.running.decode(cells, values)
     }
 
-    /// Takes the next samples, all finite, and adds the events that they bring about.
+    /// Encodes the next samples, which must be finite, and appends their events.
     pub fn encode(&mut self, samples: &[f64], events: &mut Vec<Event>) {
         let mut sink = Sink::Events { events, sample: self.coded };
         self.running.encode(Samples::F64(samples), &mut sink);
         self.coded = sink.made() as u64;
     }
 
-    /// Adds the events of the samples that still wait for their look-ahead.
+    /// Encodes the samples that still wait for their look-ahead, and appends their events.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         let mut sink = Sink::Events { events, sample: self.coded };
         self.running.finish(&mut sink);
         self.coded = sink.made() as u64;
     }
 
-    /// Decodes the next samples from the events that belong to them, and adds their values.
+    /// Decodes the next samples from their events, and appends their values.
     ///
     /// # Errors
-    /// The first event of a sample whose events no encoder emits together.
+    /// Returns the first event of a sample if no encoder could emit the sample's events together.
     pub fn decode(
         &mut self,
         samples: usize,
@@ -137,19 +137,19 @@ impl Codec {
         Ok(())
     }
 
-    /// All that it keeps from sample to sample, as bytes.
+    /// Returns the state of encoder and decoder as bytes.
     ///
     /// # Errors
-    /// No state is known that cannot be written.
+    /// Returns an error if the state cannot be written; no such state is known.
     #[cfg(feature = "states")]
     pub fn state(&self) -> Result<Vec<u8>> {
         self.running.state()
     }
 
-    /// Goes on from what [`state`](Self::state) gave, of a codec of the same scheme.
+    /// Restores a state that [`state`](Self::state) returned for a codec of the same scheme.
     ///
     /// # Errors
-    /// Returns an error if the state is damaged, or another scheme's.
+    /// Returns an error if the bytes are damaged, or belong to another scheme.
     #[cfg(feature = "states")]
     pub fn set_state(&mut self, bytes: &[u8]) -> Result<()> {
         self.running.set_state(bytes)
@@ -157,13 +157,13 @@ impl Codec {
 }
 
 impl Shape {
-    /// The index of a spike's cell; `None` if it is none of these neurons and sub-timesteps.
+    /// Returns the index of a spike's cell; `None` if there is no such neuron or sub-timestep.
     fn cell(self, neuron: u16, slot: u16) -> Option<usize> {
         let (neuron, slot) = (usize::from(neuron), usize::from(slot));
         (neuron < self.neurons && slot < self.slots).then_some(slot * self.neurons + neuron)
     }
 
-    /// Adds events to a row. Returns whether there are such cells, and no two events of a cell contradict each other.
+    /// Adds events to a row. Returns false if a cell does not exist, or if two events in a cell contradict each other.
     fn put_all(self, events: &[Event], row: &mut [i8]) -> bool {
         events.iter().all(|event| {
             let cell = self.cell(event.neuron, event.slot).and_then(|cell| row.get_mut(cell));
@@ -180,9 +180,9 @@ impl Shape {
 
 /// The destination of codes.
 enum Sink<'a> {
-    /// Into rows of cells, of which so many are made.
+    /// Rows of cells; `made` is the number written so far.
     Cells { rows: &'a mut [i8], shape: Shape, made: usize },
-    /// Into a list of events, from this sample on.
+    /// A list of events; `sample` is the index of the next sample.
     Events { events: &'a mut Vec<Event>, sample: u64 },
 }
 
@@ -221,7 +221,7 @@ impl Sink<'_> {
         }
     }
 
-    /// How many rows were made, or the sample that comes next.
+    /// Returns the number of rows written, or the index of the next sample.
     fn made(&self) -> usize {
         match self {
             Self::Cells { made, .. } => *made,
@@ -230,7 +230,7 @@ impl Sink<'_> {
     }
 }
 
-/// Adds a code's spikes to a row.
+/// Adds the spikes of a code to a row.
 fn put<C: Code + 'static>(code: C, shape: Shape, row: &mut [i8]) {
     // Digit by digit, which costs less than to look for the ones.
     if let Some(bits) = (&code as &dyn Any).downcast_ref::<PhaseBits<8>>()
@@ -246,7 +246,7 @@ fn put<C: Code + 'static>(code: C, shape: Shape, row: &mut [i8]) {
     }
 }
 
-/// What a spike adds to its cell.
+/// Returns what a spike adds to its cell.
 fn step(polarity: Polarity) -> i8 {
     match polarity {
         Polarity::Up => 1,
@@ -254,7 +254,7 @@ fn step(polarity: Polarity) -> i8 {
     }
 }
 
-/// A codec over many samples a call, so that the dynamic call costs nothing.
+/// A codec that processes many samples in a call, so that the dynamic call costs nothing.
 trait Running {
     fn latency(&self) -> usize;
     fn encode(&mut self, samples: Samples, sink: &mut Sink);
@@ -266,11 +266,11 @@ trait Running {
     fn set_state(&mut self, bytes: &[u8]) -> Result<()>;
 }
 
-/// Starts a codec.
+/// The visitor that starts a codec.
 pub(super) struct Start<'a> {
     pub(super) settings: &'a Settings,
     pub(super) shape: Shape,
-    /// The value from which decoders that add up steps start, if not from 0.
+    /// Value from which decoders that add up steps start; 0 if `None`.
     pub(super) first: Option<f64>,
 }
 
@@ -308,17 +308,17 @@ struct Channel<P: Scheme> {
     decoder: P::DecoderState,
     /// The code without spikes.
     silent: P::Code,
-    /// Whether the decoder holds the value of the sample that comes next, whose spike then changes nothing.
+    /// Whether the decoder holds the value of the next sample already, so that this sample's spike changes nothing.
     is_first_held: bool,
-    /// The value of 1 of the signal in the unit of the sample type.
+    /// The number that represents 1 in the sample type.
     one: f64,
     shape: Shape,
-    /// A row of cells, to compare.
+    /// A row of cells, for comparisons.
     seen: Vec<i8>,
 }
 
 impl<P: Scheme + 'static> Channel<P> {
-    /// Encodes in blocks, which schemes have faster code for.
+    /// Encodes in blocks, for which schemes have faster code.
     fn encode_all(
         &mut self,
         mut samples: impl ExactSizeIterator<Item = P::Sample>,
@@ -339,7 +339,7 @@ impl<P: Scheme + 'static> Channel<P> {
         }
     }
 
-    /// The code of a row, unless there is none.
+    /// Returns the code of a row; `None` if no encoder emits it.
     fn code(&mut self, row: &[i8]) -> Option<P::Code> {
         if row.iter().all(|cell| *cell == 0) {
             return Some(self.silent);

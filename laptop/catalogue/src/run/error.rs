@@ -1,4 +1,4 @@
-//! Errors of settings, as values that a program can act on.
+//! Errors of settings, as values on which a program can act.
 
 use std::borrow::Cow;
 use std::{error, fmt, io};
@@ -9,20 +9,20 @@ use super::words::{Given, Spell, Worded, joined, quoted};
 use super::{Needs, SampleType};
 use crate::{Info, Kind, kinds};
 
-/// The result of what settings bring about.
+/// The result of a function that uses settings.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// The error of a setting, or of settings that do not go together.
+/// The error of a setting, or of settings that contradict each other.
 #[derive(Debug)]
 pub struct Error {
-    /// The setting at fault, if it is one alone.
+    /// The setting at fault, if it is a single one.
     pub parameter: Option<Given>,
-    /// The reason.
+    /// The kind of fault, with its details.
     pub kind: ErrorKind,
 }
 
 kinds! {
-    /// The reason that settings are refused.
+    /// The reason that settings are invalid.
     pub enum ErrorKind by spell of subject {
         // A value that is none of its parameter.
         NotANumber => ("{subject} is not a number"),
@@ -114,10 +114,10 @@ kinds! {
     }
 }
 
-/// The other end of a range, which a lower one must be below, or a higher one above.
+/// The other end of a range, which the faulty one must be below or above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// The upper end that was given.
+    /// An upper end that was given.
     Max(f64),
     /// The maximum of the signal.
     SignalMax(f64),
@@ -154,22 +154,22 @@ fn taken(scheme: &Info, spell: Spell) -> String {
 }
 
 impl Error {
-    /// The error of a setting.
+    /// Makes the error of a setting.
     pub fn of(parameter: Given, kind: ErrorKind) -> Self {
         Self { parameter: Some(parameter), kind }
     }
 
-    /// The error of a name that no scheme has.
+    /// Makes the error for a name of which there is no scheme.
     pub fn no_scheme(name: &str) -> Self {
         Self::of(Given::listed(&quoted(name), None::<&str>), ErrorKind::NoScheme)
     }
 
-    /// The error of a parameter that a scheme does not have.
+    /// Makes the error for a parameter that a scheme does not have.
     pub fn takes_no(scheme: &'static Info, name: impl Into<Cow<'static, str>>) -> Self {
         Self::of(Given::named(name), ErrorKind::TakesNo { scheme })
     }
 
-    /// The reason alone, for a front that has named the setting and its value already.
+    /// Removes the setting and its value, for a front end that has named them already.
     #[must_use]
     pub fn without_subject(self) -> Self {
         Self { parameter: None, ..self }

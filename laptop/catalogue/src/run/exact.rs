@@ -1,34 +1,36 @@
-//! The outcomes that a step code's threshold can have on a signal.
+//! Lists the outcomes of all thresholds of a step code on a signal.
 //!
-//! Spikes change only where the threshold passes a distance that some sample has, so that finitely many intervals say
-//! all; within one of them the error is a parabola in the decoder's step, whose lowest point is known.
+//! Spikes change only where the threshold passes the distance of some sample from its past, so there are finitely many
+//! intervals of thresholds with equal spikes. Within an interval the squared error is a parabola in the decoder's step,
+//! with a known minimum.
 
-/// A threshold and a step, and what they come to in exact arithmetic.
+/// A threshold and a step, with their spikes and errors in exact arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// The encoder's threshold.
+    /// Threshold of the encoder.
     pub threshold: f64,
-    /// The amount that the decoder adds for a spike.
+    /// Amount that the decoder adds for a spike.
     pub step: f64,
-    /// How many spikes there are.
+    /// Number of spikes.
     pub spikes: usize,
-    /// The sum of the squared errors of the decoded values.
+    /// Sum of the squared errors of the decoded values.
     pub squares: f64,
-    /// The same if each stretch is decoded with the step that is best for all others: what can be expected of a stretch
-    /// that was not there. The same as `squares` for a single stretch, or where the step is the threshold.
+    /// Sum of the squared errors if each stretch is decoded with the step that is best for all other stretches: an
+    /// estimate for stretches that were not seen. Equal to `squares` if there is a single stretch, or if the step must
+    /// equal the threshold.
     pub apart: f64,
 }
 
-/// Outcomes of a threshold over a range of thresholds.
+/// The outcomes of a range of thresholds.
 #[derive(Clone, Debug, Default)]
 pub struct Outcomes {
     /// The outcomes, each with its best step.
     pub list: Vec<Outcome>,
-    /// Whether no outcome in the range is missing from the list.
+    /// Whether the list contains every outcome in the range.
     pub is_complete: bool,
 }
 
-/// The sums of a parabola: the squared error as a function of the decoder's step.
+/// The squared error as a function of the decoder's step: a parabola, given by its sums.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Parabola {
     counts: f64,
@@ -37,14 +39,14 @@ pub struct Parabola {
 }
 
 impl Parabola {
-    /// Takes a sample, as its distance from the first, and how many more spikes went up than down before and with it.
+    /// Adds a sample: its distance from the first, and the number of spikes up minus spikes down until then.
     pub fn observe(&mut self, value: f64, count: f64) {
         self.counts += count * count;
         self.products += count * value;
         self.values += value * value;
     }
 
-    /// The sums of two signals.
+    /// Returns the sum for two signals.
     fn plus(self, other: Self) -> Self {
         Self {
             counts: self.counts + other.counts,
@@ -53,7 +55,7 @@ impl Parabola {
         }
     }
 
-    /// The sums without those of one of the signals.
+    /// Returns the sum without one of the signals.
     fn minus(self, other: Self) -> Self {
         Self {
             counts: self.counts - other.counts,
@@ -62,31 +64,31 @@ impl Parabola {
         }
     }
 
-    /// The step with the least error, if there is one above 0.
+    /// Returns the step with the smallest error; `None` if there is none above 0.
     pub fn lowest(&self) -> Option<f64> {
         (self.counts > 0.0 && self.products > 0.0).then(|| self.products / self.counts)
     }
 
-    /// The squares at this step.
+    /// Returns the squared error at this step.
     pub fn squares(&self, step: f64) -> f64 {
         (self.values - 2.0 * step * self.products + step * step * self.counts).max(0.0)
     }
 }
 
-/// The largest value that is used of an interval without its upper end.
+/// Returns the largest value to use in an interval that does not contain its upper end.
 pub fn below(low: f64, high: f64) -> f64 {
     // Two neighbours of the floats have nothing between them.
     (low + (high - low) * 0.9999).min(high.next_down())
 }
 
-/// The smallest value that is used of an interval without its lower end.
+/// Returns the smallest value to use in an interval that does not contain its lower end.
 pub fn above(low: f64, high: f64) -> f64 {
     high - (high - low) * 0.9999
 }
 
-/// All outcomes of a code that spikes where a sample's distance from its past is above the threshold, whatever it has
-/// sent before. Each stretch is coded by itself, from its first sample. Takes `n log n` steps for `n` samples: from one
-/// threshold to the next lower one a single sample begins to spike, which raises or lowers all counts from it on.
+/// Lists all outcomes of a code that spikes if a sample's distance from its past is above the threshold, whatever was
+/// sent before. Each stretch is coded by itself, from its first sample. Takes time `n log n` for `n` samples: between a
+/// threshold and the next lower one a single sample begins to spike, which raises or lowers all counts from it on.
 pub fn outcomes(stretches: &[&[f64]], distances: &[Vec<f64>], is_step_free: bool) -> Outcomes {
     let mut stacks: Vec<Counts> = stretches.iter().map(|values| Counts::new(values)).collect();
     let mut order: Vec<(f64, usize, usize)> = Vec::new();
@@ -138,7 +140,7 @@ fn sum(stacks: &[Counts]) -> Parabola {
     stacks.iter().fold(Parabola::default(), |sum, own| sum.plus(own.parabola))
 }
 
-/// The squares if each stretch is decoded with the step of the others.
+/// Returns the sum of the squared errors if each stretch is decoded with the best step of the others.
 fn apart(stacks: &[Counts], threshold: f64) -> f64 {
     let all = sum(stacks);
     let squares = stacks.iter().map(|own| {
@@ -148,17 +150,17 @@ fn apart(stacks: &[Counts], threshold: f64) -> f64 {
     squares.sum()
 }
 
-/// How many more spikes went up than down, by sample, of a stretch to which spikes are added in any order.
+/// Number of spikes up minus spikes down at each sample of a stretch; spikes are added in any order.
 struct Counts {
-    /// A tree of partial sums (Fenwick's) of the signs of the spikes.
+    /// Tree of partial sums (a Fenwick tree) of the signs of the spikes.
     signs: Vec<i64>,
-    /// The same of the signs, each times the number of samples from its own on.
+    /// Tree of partial sums of the signs, each times the number of samples from its own to the end.
     weighted: Vec<i64>,
-    /// The sums of the values from each sample to the end, as distances from the first.
+    /// Sums of the values from each sample to the end, as distances from the first.
     values: Vec<f64>,
-    /// The sum of all weighted signs.
+    /// Sum of all weighted signs.
     total: i64,
-    /// The error by the step.
+    /// Squared error as a function of the step.
     parabola: Parabola,
 }
 
@@ -183,7 +185,7 @@ impl Counts {
         }
     }
 
-    /// Adds a spike of this sign at a place, which changes all counts from there on.
+    /// Adds a spike at a sample, which changes all counts from there on.
     fn raise(&mut self, place: usize, sign: i64) {
         let samples = self.values.len() as i64;
         let left = samples - place as i64;
@@ -199,7 +201,7 @@ impl Counts {
     }
 }
 
-/// The sum of the entries up to and with this one.
+/// Returns the sum of the entries up to and including this one.
 fn prefix(tree: &[i64], place: usize) -> i64 {
     let mut node = place + 1;
     let mut sum = 0;
@@ -222,7 +224,7 @@ fn add(tree: &mut [i64], place: usize, change: i64) {
 mod tests {
     use super::{Outcome, outcomes};
 
-    /// The spikes and the squared error of a threshold and a step, computed sample by sample.
+    /// Computes spikes and squared error of a threshold and a step, sample by sample.
     fn coded(stretches: &[Vec<f64>], threshold: f64, step: f64) -> (usize, f64) {
         let (mut spikes, mut squares) = (0, 0.0);
         for values in stretches {
@@ -266,7 +268,7 @@ mod tests {
         }
     }
 
-    /// Every threshold on a fine grid gives an outcome that is among them, or worse.
+    /// For every threshold on a fine grid the list contains its outcome, or a better one.
     #[test]
     fn no_threshold_is_better() {
         let (stretches, list) = all(false);

@@ -1,4 +1,4 @@
-//! Filters by name, or from a file.
+//! Reads filters: by the name of a shape, as a list, or from a file.
 
 use std::fs;
 
@@ -7,10 +7,10 @@ use spikewire::rate::Shape;
 use super::Value;
 use super::error::{ErrorKind, Result};
 
-/// Reads taps as listed, from a file, or the name of a shape, which must be one.
+/// Reads taps from a list or a file, or the name of a shape, which is checked.
 ///
 /// # Errors
-/// Returns an error if there is no such shape or file, or something in it is not a number.
+/// Returns an error if there is no such shape or file, or if the list contains something else than numbers.
 pub(super) fn read(text: &str) -> Result<Value> {
     if let Some(taps) = shape(text) {
         return taps.map(|_| Value::Word(text.to_owned().into()));
@@ -19,7 +19,7 @@ pub(super) fn read(text: &str) -> Result<Value> {
     Ok(Value::Numbers(taps))
 }
 
-/// The taps of a shape, such as `triang:15`.
+/// Returns the taps of a shape, such as `triang:15`.
 ///
 /// # Errors
 /// Returns an error if there is no such shape.
@@ -27,7 +27,7 @@ pub fn taps(text: &str) -> Result<Vec<f64>> {
     shape(text).unwrap_or_else(|| Err(ErrorKind::NoShape.into()))
 }
 
-/// The taps of a shape, if the text names one.
+/// Returns the taps of a shape; `None` if the text does not name one.
 fn shape(text: &str) -> Option<Result<Vec<f64>>> {
     let (shape, scale) =
         text.split_once(',').map_or((text, None), |(shape, scale)| (shape, Some(scale)));
@@ -41,7 +41,7 @@ fn shape(text: &str) -> Option<Result<Vec<f64>>> {
     })
 }
 
-/// Taps with commas between: `0.5,1,0.5`, and for a single one `1,`.
+/// Parses taps separated by commas: `0.5,1,0.5`, or `1,` for a single one.
 fn listed(text: &str) -> Option<Vec<f64>> {
     let taps = text.strip_suffix(',').or_else(|| text.contains(',').then_some(text))?;
     let taps =

@@ -1,14 +1,15 @@
-//! Schemes chosen at run time: from what a user gave and a signal tells to settings, and from settings to a codec.
+//! Chooses schemes at run time: makes settings from what a user gave and a signal shows, and codecs from settings.
 //!
-//! A scheme says in its file how it is built from settings, and where needed how these come about. All else is here:
-//! what the paper and the signal stand in for, what a sample type rounds, and the codec
-//! whose type says nothing of the scheme.
+//! A scheme's file says how it is built from settings and, if necessary, how these are found. This module does
+//! everything else: default values from the paper and the signal, rounding to the sample type, and codecs whose type
+//! does not depend on the scheme.
 
 mod asked;
 mod calibrate;
 mod codec;
 mod error;
 mod exact;
+mod example;
 mod filter;
 mod needs;
 mod quantiles;
@@ -25,6 +26,7 @@ pub use calibrate::Calibrated;
 pub use codec::{Codec, Event, Samples, Values};
 pub use error::{End, Error, ErrorKind, Result};
 pub use exact::{Outcome, Outcomes, Parabola, above, below, outcomes};
+pub use example::example;
 pub use filter::taps;
 pub use needs::Needs;
 pub use resolve::{Known, Resolve, missing};
@@ -39,19 +41,19 @@ use spikewire::{Sample, Scheme, Spike};
 
 use crate::{Entry, Info, Parameter, Search, State, Unit, for_sample_type};
 
-/// Populations up to this size have codes of this capacity, larger ones of the largest.
+/// Populations up to this size get codes of this capacity, and larger ones codes of the largest capacity.
 pub(crate) const FEW: usize = 64;
 
-/// How many neurons a code has, and how many sub-timesteps a sample.
+/// The shape of a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
-    /// Neurons.
+    /// Number of neurons.
     pub neurons: usize,
-    /// Sub-timesteps.
+    /// Number of sub-timesteps in a sample.
     pub slots: usize,
 }
 
-/// A scheme in a sample type, which threads may share and whose states can be written.
+/// A scheme in a sample type that may be shared between threads, and whose states can be written.
 pub trait Runs<S>:
     Scheme<
         Sample = S,
@@ -76,21 +78,21 @@ impl<S, P> Runs<S> for P where
 {
 }
 
-/// Takes a scheme of any type in a sample type.
+/// A visitor that is given a scheme of any type, in a sample type.
 pub trait Visit<S: Sample> {
     /// The result of the visit.
     type Output;
 
-    /// Takes the scheme, and the state from which its encoder starts.
+    /// Visits the scheme; `start` is the state in which its encoder starts.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn visit<P: Runs<S>>(self, scheme: P, start: P::EncoderState) -> Result<Self::Output>;
 
-    /// Takes a scheme whose decoder adds up steps.
+    /// Visits a scheme whose decoder adds up steps.
     ///
     /// # Errors
-    /// The visitor's own.
+    /// Returns the visitor's errors.
     fn visit_steps<P: Runs<S> + Scheme<Code = Spike>>(
         self,
         scheme: P,
@@ -103,30 +105,31 @@ pub trait Visit<S: Sample> {
     }
 }
 
-/// How a scheme comes about at run time.
+/// How a scheme is built at run time.
 pub trait Build: Entry {
-    /// Complete settings from what is asked for, the paper's settings and the signal.
+    /// Makes complete settings from the parameters given, the paper's values and the signal.
     ///
     /// # Errors
-    /// A parameter is missing or makes no sense.
+    /// Returns an error if a parameter is missing or invalid.
     fn resolve(asked: &Resolve) -> Result<Settings> {
         asked.all()
     }
 
-    /// The parameters that would make a calibration over the whole signal unnecessary.
+    /// Returns the parameters that would have to be given so that the whole signal need not be calibrated on; `None` if
+    /// there are enough.
     fn needs_signal(asked: &Asked) -> Option<Needs> {
         missing(&Self::INFO, asked)
     }
 
-    /// How many samples its encoder takes to start from.
+    /// Returns the number of samples from which the encoder starts.
     fn looks_back(_: &Asked) -> usize {
         1
     }
 
-    /// How many neurons and sub-timesteps it has.
+    /// Returns the numbers of neurons and sub-timesteps.
     ///
     /// # Errors
-    /// The settings lack them, or they make no sense.
+    /// Returns an error if the settings lack them, or if they are invalid.
     fn shape(settings: &Settings) -> Result<Shape> {
         let has = |name: &str| Self::INFO.parameters.iter().any(|own| own.name == name);
         let neurons = if has("neurons") { settings.neurons()? } else { 1 };
@@ -138,44 +141,44 @@ pub trait Build: Entry {
         Ok(Shape { neurons, slots })
     }
 
-    /// The bytes of RAM of one channel's encoder, on a flight controller.
+    /// Returns the size of one channel's encoder on a flight controller, in bytes of RAM.
     ///
     /// # Errors
-    /// The settings lack its length, or it is not known.
+    /// Returns an error if the settings lack its length, or if the size is not known.
     fn ram<S: Sample>(_: &Settings) -> Result<usize> {
         Err(ErrorKind::MemoryUnknown { scheme: &Self::INFO }.into())
     }
 
-    /// The codec of the measured table that stands for its work.
+    /// Returns the codec in the table of measurements whose work is comparable.
     ///
     /// # Errors
-    /// The settings lack its length, or none does.
+    /// Returns an error if the settings lack its length, or if there is no such codec.
     fn counted(_: &Settings) -> Result<Counted> {
         Err(ErrorKind::NotMeasured { scheme: &Self::INFO }.into())
     }
 
-    /// Returns the outcomes that thresholds of a range can have on stretches of a signal, each coded by itself. Lists
-    /// about `most` of them, and says whether any is missing, if each takes a pass over the signal. The settings are
-    /// of any threshold. `None` if the scheme has no such list.
+    /// Returns the outcomes of a range of thresholds on stretches of a signal, each coded by itself; `None` if the
+    /// scheme has no such list. If each outcome takes a pass over the signal, lists only about `most` of them, and says
+    /// whether any is missing. The threshold in the settings is ignored.
     fn outcomes(_: &Settings, _: &[&[f64]], _: (f64, f64), _: usize) -> Option<Outcomes> {
         None
     }
 
-    /// Compares values of one parameter in one pass over stretches of a signal, and returns the spikes and squared errors
-    /// of each: values of the threshold, or factors on the filter where it has no threshold. The settings are of any
-    /// value. `None` if it takes a pass for each.
+    /// Compares several values of one parameter in one pass over stretches of a signal; returns the spikes and squared
+    /// errors of each. The values are thresholds, or factors of the filter if there is no threshold; that in the
+    /// settings is ignored. `None` if each value would need a pass.
     fn swept(_: &Settings, _: &[&[f64]], _: &[f64; LANES]) -> Option<[(usize, f64); LANES]> {
         None
     }
 
-    /// The scheme as a constant in Rust: its type in the crate, what that takes behind the sample type, and its
-    /// constructor, as [`Rust::filled`] takes them.
+    /// The scheme as a Rust constant: its type in the crate, the type's further arguments, and its constructor, as
+    /// [`Rust::filled`] takes them.
     const CONSTANT: Option<[&str; 3]> = None;
 
-    /// The scheme as a constant in Rust. The settings are those of a scheme that can be built.
+    /// Writes the scheme as a Rust constant. The settings must be those of a scheme that can be built.
     ///
     /// # Errors
-    /// The settings lack something, or it has no constant.
+    /// Returns an error if the settings lack something, or if the scheme cannot be written as a constant.
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let Some([scheme, shape, value]) = Self::CONSTANT else {
             return Err(ErrorKind::NoConstant { scheme: &Self::INFO }.into());
@@ -184,25 +187,25 @@ pub trait Build: Entry {
         rust.constant(scheme, &filled(shape)?, &filled(value)?)
     }
 
-    /// Whether the numbers of a parameter become samples, which rounds them to the sample type.
+    /// Returns whether the numbers of a parameter become samples, and are rounded to the sample type.
     fn is_in_samples(parameter: &Parameter, _: &Settings) -> bool {
         parameter.unit == Unit::Signal
     }
 
-    /// The range in which a good value of a parameter is looked for, given the others.
+    /// Returns the range in which a good value of a parameter is searched, given the others.
     fn search(parameter: &Parameter, _: &Asked) -> Option<Search> {
         parameter.search
     }
 
-    /// Builds it and hands it to a visitor.
+    /// Builds the scheme and passes it to a visitor.
     ///
     /// # Errors
-    /// A parameter makes no sense, or the visitor's own.
+    /// Returns an error if a parameter is invalid; or the visitor's error.
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output>;
 }
 
-/// Writes how a population code is built: its encoder's start and the scheme, from settings, in the sample type `S` with
-/// codes that hold `M` neurons. These are as small as its neurons allow.
+/// Writes the `build` of a population code from an expression for its encoder's start and the scheme. Its sample type
+/// is `S`, and its codes have room for `M` neurons; `M` is the smaller of two capacities if the neurons fit.
 macro_rules! population {
     (|$settings:ident| $built:expr) => {
         fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
@@ -223,7 +226,8 @@ macro_rules! population {
 }
 pub(crate) use population;
 
-/// Writes what a scheme costs: the state of this type, and this codec of the measured table, so many times as long.
+/// Writes the costs of a scheme: its RAM, from the type of its state, and the codec in the table of measurements, with
+/// how many times as long it is.
 macro_rules! costs {
     ($scheme:ty, $codec:literal) => {
         costs!($scheme, $codec, |_settings| 1.0);
@@ -240,47 +244,49 @@ macro_rules! costs {
 }
 pub(crate) use costs;
 
-/// A scheme of the catalogue, whichever it is.
+/// A scheme of the catalogue whose type is not known at compile time.
 pub trait RunTime: Sync {
-    /// The description of the scheme, without running it.
+    /// Returns the description of the scheme.
     fn info(&self) -> &'static Info;
 
-    /// The parameters that would make a calibration over the whole signal unnecessary.
+    /// Returns the parameters that would have to be given so that the whole signal need not be calibrated on; `None` if
+    /// there are enough.
     fn needs_signal(&self, asked: &Asked) -> Option<Needs>;
 
-    /// How many samples its encoder takes to start from.
+    /// Returns the number of samples from which the encoder starts.
     fn looks_back(&self, asked: &Asked) -> usize;
 
-    /// Complete settings from what is asked for, the paper's settings and the signal, as they run in a sample type.
+    /// Makes complete settings for a sample type from the parameters given, the paper's values and the signal.
     ///
     /// # Errors
-    /// A parameter is missing, not taken by the scheme, makes no sense, or becomes 0 in the sample type and must not.
+    /// Returns an error if a parameter is missing, unknown to the scheme, invalid, or rounded to 0 where that is not
+    /// allowed.
     fn resolve(&self, sample: SampleType, asked: &Asked, known: &Known) -> Result<Settings>;
 
-    /// How many neurons and sub-timesteps it has.
+    /// Returns the numbers of neurons and sub-timesteps.
     ///
     /// # Errors
-    /// The settings lack them, or they make no sense.
+    /// Returns an error if the settings lack them, or if they are invalid.
     fn shape(&self, settings: &Settings) -> Result<Shape>;
 
-    /// The range in which a good value of a parameter is looked for, given the others.
+    /// Returns the range in which a good value of a parameter is searched, given the others.
     fn search(&self, parameter: &Parameter, asked: &Asked) -> Option<Search>;
 
-    /// The bytes of RAM of one channel's encoder, on a flight controller.
+    /// Returns the size of one channel's encoder on a flight controller, in bytes of RAM.
     ///
     /// # Errors
-    /// The settings lack its length, or it is not known.
+    /// Returns an error if the settings lack its length, or if the size is not known.
     fn ram(&self, settings: &Settings) -> Result<usize>;
 
-    /// The codec of the measured table that stands for its work.
+    /// Returns the codec in the table of measurements whose work is comparable.
     ///
     /// # Errors
-    /// The settings lack its length, or none does.
+    /// Returns an error if the settings lack its length, or if there is no such codec.
     fn counted(&self, settings: &Settings) -> Result<Counted>;
 
-    /// Returns the outcomes that thresholds of a range can have on stretches of a signal, each coded by itself. Lists
-    /// about `most` of them, and says whether any is missing, if each takes a pass over the signal. The settings are
-    /// of any threshold. `None` if the scheme has no such list.
+    /// Returns the outcomes of a range of thresholds on stretches of a signal, each coded by itself; `None` if the
+    /// scheme has no such list. If each outcome takes a pass over the signal, lists only about `most` of them, and says
+    /// whether any is missing. The threshold in the settings is ignored.
     fn outcomes(
         &self,
         settings: &Settings,
@@ -289,9 +295,9 @@ pub trait RunTime: Sync {
         most: usize,
     ) -> Option<Outcomes>;
 
-    /// Compares values of one parameter in one pass over stretches of a signal, and returns the spikes and squared errors
-    /// of each: values of the threshold, or factors on the filter where it has no threshold. The settings are of any
-    /// value. `None` if it takes a pass for each.
+    /// Compares several values of one parameter in one pass over stretches of a signal; returns the spikes and squared
+    /// errors of each. The values are thresholds, or factors of the filter if there is no threshold; that in the
+    /// settings is ignored. `None` if each value would need a pass.
     fn swept(
         &self,
         settings: &Settings,
@@ -299,22 +305,22 @@ pub trait RunTime: Sync {
         values: &[f64; LANES],
     ) -> Option<[(usize, f64); LANES]>;
 
-    /// The scheme as a constant in Rust, as the settings run.
+    /// Writes the scheme as a Rust constant.
     ///
     /// # Errors
-    /// The settings lack something, or it has no constant.
+    /// Returns an error if the settings lack something, or if the scheme cannot be written as a constant.
     fn constant(&self, settings: &Settings) -> Result<Constant>;
 
-    /// An encoder and its decoder, as they start on a recording.
+    /// Makes an encoder and its decoder, in the state in which a recording begins.
     ///
     /// # Errors
-    /// A parameter makes no sense.
+    /// Returns an error if a parameter is invalid.
     fn codec(&self, settings: &Settings) -> Result<Codec>;
 
-    /// The same, whose decoder starts from a value, if there is one.
+    /// Makes an encoder and its decoder, which starts from the value `first` if there is one.
     ///
     /// # Errors
-    /// A parameter makes no sense.
+    /// Returns an error if a parameter is invalid.
     fn codec_from(&self, settings: &Settings, first: Option<f64>) -> Result<Codec>;
 }
 
@@ -401,7 +407,7 @@ impl<T: Build + Sync> RunTime for T {
     }
 }
 
-/// Settings as they run in a sample type that is not `f32`.
+/// Rounds settings to a sample type other than `f32`.
 fn rounded<T: Build>(sample: SampleType, asked: &Settings) -> Result<Settings> {
     let one = sample.one();
     let round =
@@ -438,7 +444,7 @@ fn rounded<T: Build>(sample: SampleType, asked: &Settings) -> Result<Settings> {
     Ok(ran)
 }
 
-/// Asks only whether a scheme can be built.
+/// A visitor that only checks whether a scheme can be built.
 struct Nothing;
 
 impl<S: Sample> Visit<S> for Nothing {

@@ -1,17 +1,17 @@
-//! What a signal would tell, and settings could tell instead.
+//! The settings without which the whole signal must be calibrated on.
 
 use std::fmt;
 
 use super::words::{Spell, Worded, joined, quoted};
 
-/// The settings that would make a calibration over the whole signal unnecessary.
+/// The settings that would have to be given so that the whole signal need not be calibrated on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Needs {
     /// All of these.
     All(Vec<&'static str>),
-    /// This one, as a list of numbers.
+    /// This one, given as a list of numbers.
     AsList(&'static str),
-    /// Those that the paper's settings stand in for.
+    /// All those that the paper's values replace.
     Paper,
 }
 

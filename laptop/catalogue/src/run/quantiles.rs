@@ -1,15 +1,15 @@
-//! Quantiles of a recording whose range nobody knows before.
+//! Quantiles of a recording whose range is not known in advance.
 
-/// How many samples lie in each of equal cells, whose range doubles where a sample leaves it.
+/// A histogram of equal cells, whose range doubles when a sample lies outside.
 ///
-/// Between a quarter and all of the cells lie within the samples' range: a quantile is within 1/2048 of it.
+/// The samples' range covers between a quarter and all of the cells, so a quantile is exact to 1/2048 of that range.
 pub(super) struct Quantiles {
-    /// The lower end of the first cell.
+    /// Lower end of the first cell.
     low: f64,
-    /// The width of a cell; 0 before the first sample.
+    /// Width of a cell; 0 before the first sample.
     width: f64,
     counts: Vec<u64>,
-    /// The first and the last cell with samples.
+    /// First and last cell with samples.
     filled: (usize, usize),
 }
 
@@ -20,7 +20,7 @@ impl Quantiles {
         Self { low: 0.0, width: 0.0, counts: vec![0; CELLS], filled: (CELLS - 1, 0) }
     }
 
-    /// Takes the next sample, which is finite.
+    /// Adds the next sample, which must be finite.
     pub(super) fn observe(&mut self, sample: f64) {
         if self.width == 0.0 {
             // So narrow that a second value widens it.
@@ -40,8 +40,8 @@ impl Quantiles {
         self.filled = (self.filled.0.min(cell), self.filled.1.max(cell));
     }
 
-    /// Puts every two cells together, the first at a place. Between two far values this happens a thousand times, so
-    /// only those with samples are touched.
+    /// Merges pairs of cells; the first pair goes to the cell at `place`. Between two values that are far apart this
+    /// happens a thousand times, so only cells with samples are processed.
     fn double(&mut self, place: usize) {
         self.width *= 2.0;
         let (first, last) = (self.filled.0 / 2, self.filled.1 / 2);
@@ -55,7 +55,7 @@ impl Quantiles {
         self.counts[place + first..=place + last].copy_from_slice(&halved);
     }
 
-    /// The value below which this part of the samples lies, if there was one.
+    /// Returns the value below which this share of the samples lies; `None` without samples.
     pub(super) fn quantile(&self, part: f64) -> Option<f64> {
         let wanted = part * self.counts.iter().sum::<u64>() as f64;
         let mut below = 0.0;
@@ -74,7 +74,8 @@ impl Quantiles {
 mod tests {
     use super::Quantiles;
 
-    /// Against the sorted samples, for ranges near 0, far from it, tiny and large, and in any order.
+    /// The quantiles are compared with the sorted samples, for ranges near 0, far from it, tiny and large, in any
+    /// order.
     #[test]
     fn quantiles_of_what_was_seen() {
         for (scale, offset) in [(1.0, 0.0), (1e-9, 0.0), (1e9, -3e9), (0.5, -9.81), (1.0, 1e6)] {

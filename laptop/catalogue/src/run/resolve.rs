@@ -1,22 +1,22 @@
-//! From what a user asks for, and from the paper and the signal where that leaves something open, to complete settings.
+//! Completes the parameters that a user gave by values from the paper and the signal.
 
 use super::error::{End, Error, ErrorKind, Result};
 use super::words::Given;
 use super::{Asked, Calibrated, Needs, Settings, Value, filter};
 use crate::{Found, Info, Kind, Paper, Parameter, Scaled};
 
-/// The known figures of the signal.
+/// The figures of the signal that are known.
 #[derive(Clone, Copy)]
 pub struct Known<'a> {
-    /// A calibration over the whole of it, where one was needed.
+    /// Calibration over the whole signal, if it was needed.
     pub calibrated: Option<&'a Calibrated>,
-    /// The first samples, finite: as many as the encoder starts from, or all there are.
+    /// First samples, all finite: as many as the encoder starts from, or all there are.
     pub first: &'a [f64],
-    /// Whether the whole of it could be read before, as the paper's settings need.
+    /// Whether the whole signal can be read in advance, as the paper's values require.
     pub can_calibrate: bool,
 }
 
-/// The parameters in whose place a calibration stands, if one of them is not given. A list of centres needs none.
+/// Returns the parameters that a calibration would replace, if one of them is missing. A list of centres needs none.
 pub fn missing(info: &Info, asked: &Asked) -> Option<Needs> {
     if let Some(Value::Numbers(_)) = asked.get("centres") {
         return None;
@@ -29,14 +29,14 @@ pub fn missing(info: &Info, asked: &Asked) -> Option<Needs> {
     Some(Needs::All(found.iter().map(|own| own.name).collect()))
 }
 
-/// The parameters that a user asks of a scheme, and all that may stand in for those not given.
+/// The parameters that a user gave to a scheme, and everything that may replace missing ones.
 pub struct Resolve<'a> {
     info: &'static Info,
     /// The parameters given.
     pub asked: &'a Asked,
-    /// The known figures of the signal.
+    /// The figures of the signal that are known.
     pub known: &'a Known<'a>,
-    /// The range of the signal over that of the paper's, if the paper's settings are wanted.
+    /// Ratio of the signal's range to that of the paper's signal, if the paper's values are wanted.
     scale: Option<f64>,
 }
 
@@ -59,10 +59,10 @@ impl<'a> Resolve<'a> {
         Ok(resolve)
     }
 
-    /// Settings with all parameters that a file records.
+    /// Makes settings with all parameters that a file records.
     ///
     /// # Errors
-    /// One is missing or makes no sense.
+    /// Returns an error if a parameter is missing or invalid.
     pub fn all(&self) -> Result<Settings> {
         let mut settings = Settings::default();
         for parameter in self.info.parameters.iter().filter(|parameter| parameter.is_recorded) {
@@ -71,7 +71,8 @@ impl<'a> Resolve<'a> {
         Ok(settings)
     }
 
-    /// Checks that the lower end of a range is below the upper one, which the user, or one of them the signal, has given.
+    /// Checks that the lower end of a range is below the upper one. Both come from the user, or one of them from the
+    /// signal.
     pub(super) fn check_range(&self, settings: &Settings) -> Result<()> {
         let ends = ["min", "max"].map(|name| settings.get(name).and_then(Value::number));
         let [Some(min), Some(max)] = ends else { return Ok(()) };
@@ -86,11 +87,11 @@ impl<'a> Resolve<'a> {
         Err(Error::of(given, ErrorKind::NotBelow { end }))
     }
 
-    /// Settings of a population whose `centres` are a list, which says what its neurons and its range would; `None` if
-    /// they are one of these words.
+    /// Makes settings of a population whose `centres` are a list, which also determines its neurons and its range;
+    /// `None` if `centres` is one of these words.
     ///
     /// # Errors
-    /// It is neither, or one of those is given, too.
+    /// Returns an error if it is neither, or if neurons or range are given too.
     pub fn own_centres(&self, words: &[&str]) -> Result<Option<Settings>> {
         let Some(centres) = self.list("centres", words)? else { return Ok(None) };
         if let Some(option) =
@@ -104,10 +105,10 @@ impl<'a> Resolve<'a> {
         Ok(Some(settings))
     }
 
-    /// Sets one parameter as given, as in the paper, by default, or as the signal tells.
+    /// Sets one parameter: to the value given, or that of the paper, the default, or a figure of the signal.
     ///
     /// # Errors
-    /// Returns an error if the value is missing or makes no sense.
+    /// Returns an error if the value is missing or invalid.
     pub fn settle(&self, name: &'static str, settings: &mut Settings) -> Result<()> {
         let parameter = self.parameter(name)?;
         let value = match (self.value(name)?, parameter.found) {
@@ -131,7 +132,7 @@ impl<'a> Resolve<'a> {
         Ok(())
     }
 
-    /// A number as given, as in the paper or by default.
+    /// Returns a number: the value given, or that of the paper, or the default.
     ///
     /// # Errors
     /// Returns an error if the value is missing or not a finite number.
@@ -141,19 +142,19 @@ impl<'a> Resolve<'a> {
         value.number().ok_or_else(wrong)
     }
 
-    /// A value as given, as in the paper or by default.
+    /// Returns a value: the one given, or that of the paper, or the default.
     ///
     /// # Errors
-    /// Returns an error if the value is missing or not one of this parameter.
+    /// Returns an error if the value is missing, or is not of the parameter's kind.
     pub fn needed(&self, name: &'static str) -> Result<Value> {
         let value = self.value(name)?;
         value.ok_or_else(|| self.needs(&[name]))
     }
 
-    /// A list of finite numbers; `None` if it is one of these words instead.
+    /// Returns a list of finite numbers; `None` if the value is one of these words.
     ///
     /// # Errors
-    /// Returns an error if the value is missing, or neither a list nor one of the words.
+    /// Returns an error if the value is missing, or is neither a list nor one of the words.
     pub fn list(&self, name: &'static str, words: &[&str]) -> Result<Option<Vec<f64>>> {
         let value = self.needed(name)?;
         match value.word() {
@@ -169,15 +170,15 @@ impl<'a> Resolve<'a> {
         }
     }
 
-    /// The value that the user gave.
+    /// Returns the value that the user gave.
     pub fn user(&self, name: &str) -> Option<&Value> {
         self.asked.get(name)
     }
 
-    /// The value that the user gave, else the paper's if that is wanted, else the default.
+    /// Returns the value that the user gave, or the paper's if that is wanted, or the default.
     ///
     /// # Errors
-    /// The scheme has no such parameter, or the value is none of it.
+    /// Returns an error if the scheme has no such parameter, or if the value is not of its kind.
     pub fn value(&self, name: &'static str) -> Result<Option<Value>> {
         let parameter = self.parameter(name)?;
         if let Some(value) = self.user(name) {
@@ -187,14 +188,14 @@ impl<'a> Resolve<'a> {
         self.paper(parameter).or_else(default).transpose()
     }
 
-    /// The error that one of these parameters is missing.
+    /// Makes the error that one of these parameters must be given.
     pub fn needs(&self, or: &[&'static str]) -> Error {
         let or = or.to_vec();
         let can_be_papers = self.known.can_calibrate;
         ErrorKind::Missing { scheme: self.info, or, can_be_papers }.into()
     }
 
-    /// The samples that an encoder starts from: the value before the first, again and again, or the first themselves.
+    /// Returns the samples from which an encoder starts: the value before the first, repeated, or the first samples.
     pub(super) fn first_window(&self, count: usize) -> Result<Vec<f64>> {
         Ok(match self.user("start") {
             Some(_) => vec![self.number("start")?; count],

@@ -1,47 +1,48 @@
-//! Settings as firmware has them: a constant in Rust, its memory, and which measured codec stands for its work.
+//! Settings for firmware: a Rust constant, its memory, and the measured codec whose work is comparable.
 
 use spikewire::Scheme;
 
 use super::{ErrorKind, Result, SampleType, Settings, Value};
 use crate::{Info, Unit};
 
-/// A scheme as a constant.
+/// A scheme as a Rust constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// Its type, with its path.
+    /// Type of the scheme, with its path.
     pub scheme: String,
-    /// Its value.
+    /// Value of the constant.
     pub value: String,
 }
 
-/// The codec of the measured table that stands for a scheme's work.
+/// The codec in the table of measurements whose work is comparable to that of a scheme.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counted {
-    /// The name in the table.
+    /// Name in the table.
     pub codec: &'static str,
-    /// How many times its work this is, at most.
+    /// How many times the codec's work the scheme takes, at most.
     pub times: f64,
 }
 
 impl Counted {
-    /// A codec of another length. A part of its work does not grow with the length, so that this bounds a longer one
-    /// from above; for a shorter one the codec itself does.
+    /// Makes the bound for a codec that is `longer` times as long as the measured one. For a longer one this is an
+    /// upper bound, as a part of the work does not grow with the length; for a shorter one the measured codec itself
+    /// is.
     pub fn at_most(codec: &'static str, longer: f64) -> Self {
         Self { codec, times: longer.max(1.0) }
     }
 }
 
-/// The bytes of a channel's state in a scheme's encoder.
+/// Returns the size in bytes of a channel's state in a scheme's encoder.
 pub const fn state<P: Scheme>() -> usize {
     size_of::<P::EncoderState>()
 }
 
-/// Extrapolates a size that grows evenly with a length, from its values at 8 and at 16.
+/// Extrapolates a size that grows linearly with a length, from its values at 8 and 16.
 pub const fn lengthened([at_8, at_16]: [usize; 2], length: usize) -> usize {
     (at_8 + (at_16 - at_8) * length / 8).saturating_sub(at_16 - at_8)
 }
 
-/// How the mean of spikes is taken, in Rust: its type, and its value.
+/// Writes the averaging of spikes in Rust: its type, and its value.
 fn mean(settings: &Settings) -> Result<[String; 2]> {
     let power = settings.count("power", 0..=15)?;
     let (scheme, words) = if settings.takes_window()? {
@@ -53,19 +54,19 @@ fn mean(settings: &Settings) -> Result<[String; 2]> {
     Ok([format!("{scheme}{words}"), format!("{scheme}::new({power})")])
 }
 
-/// Writes settings in a sample type.
+/// Writes settings as Rust, in a sample type.
 #[derive(Clone, Copy, Debug)]
 pub struct Rust {
     sample: SampleType,
 }
 
 impl Rust {
-    /// In this sample type.
+    /// Writes in this sample type.
     pub const fn new(sample: SampleType) -> Self {
         Self { sample }
     }
 
-    /// The sample type, with its path.
+    /// Returns the sample type, with its path.
     pub fn sample(self) -> String {
         match self.sample {
             SampleType::F32 => "f32".to_owned(),
@@ -79,7 +80,7 @@ impl Rust {
         }
     }
 
-    /// A number of the sample type.
+    /// Writes a number of the sample type.
     fn number(self, value: f64) -> String {
         let bits = (value / self.sample.step() + 0.5).floor() as i64;
         match self.sample {
@@ -89,7 +90,7 @@ impl Rust {
         }
     }
 
-    /// A parameter in the signal's unit, as it runs.
+    /// Writes a parameter in the signal's unit.
     ///
     /// # Errors
     /// Returns an error if the setting is missing or not a finite number.
@@ -97,7 +98,7 @@ impl Rust {
         Ok(self.number(settings.number(name)?))
     }
 
-    /// From `min` to `max`, as they run.
+    /// Writes the range from `min` to `max`.
     ///
     /// # Errors
     /// See [`signal`](Self::signal).
@@ -105,7 +106,7 @@ impl Rust {
         Ok(format!("{}..={}", self.signal(settings, "min")?, self.signal(settings, "max")?))
     }
 
-    /// Numbers in the signal's unit, as an array.
+    /// Writes numbers in the signal's unit, as an array.
     ///
     /// # Errors
     /// Returns an error if the settings are missing or not finite.
@@ -115,7 +116,7 @@ impl Rust {
         Ok(format!("[{}]", numbers.join(", ")))
     }
 
-    /// The filter.
+    /// Writes the filter.
     ///
     /// # Errors
     /// See [`signals`](Self::signals).
@@ -123,9 +124,9 @@ impl Rust {
         Ok(format!("spikewire::rate::Taps::new({})", self.signals(settings, "taps")?))
     }
 
-    /// Fills in a template, in which `{name}` stands for a parameter as it runs, and besides `{range}` for that from `min`
-    /// to `max`, `{taps}` for the filter, `{length}` for the number of its taps, `{averaging}` for the type of the mean
-    /// of spikes and `{mean}` for its value.
+    /// Fills in a template, in which `{name}` stands for the parameter of that name. Also, `{range}` stands for the
+    /// range from `min` to `max`, `{taps}` for the filter, `{length}` for the number of its taps, `{averaging}` for the
+    /// type of the averaging of spikes, and `{mean}` for its value.
     ///
     /// # Errors
     /// Returns an error if a setting is missing.
@@ -150,10 +151,10 @@ impl Rust {
         Ok(all.concat())
     }
 
-    /// The constant of a scheme in the crate, with what its type takes besides the sample type, and its constructor.
+    /// Makes the constant of a scheme from its type, the type's arguments after the sample type, and its constructor.
     ///
     /// # Errors
-    /// The sample type has fewer bits before the point than a constant can say.
+    /// Returns an error if the sample type has fewer integer bits than a constant can express.
     pub fn constant(self, scheme: &str, shape: &str, value: &str) -> Result<Constant> {
         let sample = self.sample();
         if sample.contains("::I0F") {

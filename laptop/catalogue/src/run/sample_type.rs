@@ -1,13 +1,14 @@
-//! The numbers that samples are encoded in.
+//! The number types in which samples are encoded.
 
 use super::error::{Error, ErrorKind};
+use spikewire::SampleKind;
 use std::fmt;
 use std::str::FromStr;
 
-/// A sample type, by the name that options and files use.
+/// A sample type, with the name that options and files use.
 ///
-/// Fixed point is arithmetic on raw integers, whatever their unit. So every format of 16 bits runs as
-/// the crate's `i16` and every format of 32 bits as its `FixedI32`, in the unit that the name states.
+/// Fixed point is arithmetic on raw integers, in any unit. Therefore every format of 16 bits runs as the crate's `i16`,
+/// and every format of 32 bits as its `FixedI32`, in the unit that the name states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SampleType {
     /// `f32`.
@@ -28,7 +29,7 @@ pub enum SampleType {
 /// The type as which every format of 32 bits runs.
 pub type Fixed32 = fixed::types::I16F16;
 
-/// Evaluates an expression with a type parameter set to the crate's type.
+/// Evaluates an expression with a type parameter set to the crate's type for a sample type.
 #[macro_export]
 macro_rules! for_sample_type {
     ($sample:expr, $S:ident => $body:expr) => {
@@ -49,7 +50,7 @@ macro_rules! for_sample_type {
     };
 }
 impl SampleType {
-    /// The value of 1 in the unit of the crate's type: a power of two.
+    /// Returns the number that represents 1 in the unit of the crate's type: a power of two.
     pub fn one(self) -> f64 {
         match self {
             Self::F32 => 1.0,
@@ -58,7 +59,7 @@ impl SampleType {
         }
     }
 
-    /// From one value to the next; 0 in floating point.
+    /// Returns the distance between adjacent values; 0 for floating point.
     pub fn step(self) -> f64 {
         match self {
             Self::F32 => 0.0,
@@ -68,7 +69,7 @@ impl SampleType {
         }
     }
 
-    /// The smallest and the largest value that it holds.
+    /// Returns the smallest and the largest value.
     pub fn range(self) -> (f64, f64) {
         let (bits, fraction) = match self {
             Self::F32 => return (f32::MIN.into(), f32::MAX.into()),
@@ -77,6 +78,17 @@ impl SampleType {
         };
         let (half, step) = (2_f64.powi(bits), 2_f64.powi(-i32::from(fraction)));
         (-half * step, (half - 1.0) * step)
+    }
+}
+
+/// The type as a link names it.
+impl From<SampleType> for SampleKind {
+    fn from(sample: SampleType) -> Self {
+        match sample {
+            SampleType::F32 => Self::F32,
+            SampleType::Fixed16 { fraction } => Self::Fixed16 { fraction },
+            SampleType::Fixed32 { fraction } => Self::Fixed32 { fraction },
+        }
     }
 }
 

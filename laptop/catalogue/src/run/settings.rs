@@ -1,4 +1,4 @@
-//! The parameters of a scheme, complete: all that encoding and decoding need.
+//! Complete parameters of a scheme: all that encoding and decoding need.
 
 use std::ops::RangeInclusive;
 
@@ -11,27 +11,27 @@ use super::words::Given;
 use super::{Asked, SampleType, Value};
 use crate::{Found, Info};
 
-/// Parameters in the signal's unit, as they run in a sample type and as a file of spikes lists them.
+/// Parameters in the signal's unit, rounded to a sample type, in the order of a file of spikes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     values: Vec<(&'static str, Value)>,
-    /// The sample type that they run in.
+    /// Sample type to which they are rounded.
     pub sample: SampleType,
-    /// The samples that an encoder starts from: one, or a moving window's first. Decoding needs none.
+    /// Samples from which an encoder starts: one, or the first window of a moving window. Not needed for decoding.
     pub first: Vec<f64>,
-    /// The stream of the generator that codes by chance draw from: channels of one seed have one each, by their
-    /// number.
+    /// Stream of the random generator, for codes that draw by chance. Channels with the same seed have different
+    /// streams, by their number.
     pub stream: u64,
-    /// The values that the sample type has rounded, as they were before.
+    /// Values that the sample type has changed, as they were before.
     pub rounded: Vec<(&'static str, Value)>,
 }
 
-/// What a file calls the first sample, where the decoder starts with the value of that very sample; the value before
-/// it is called as the parameter is.
+/// Key of the first sample in a file, if the decoder starts with the value of that sample. If it starts with the value
+/// before it, the key is the parameter's name.
 const FIRST: &str = "first";
 
 impl Settings {
-    /// The names and values, in the order of a file.
+    /// Returns names and values, in the order of a file.
     pub fn entries(&self) -> &[(&'static str, Value)] {
         &self.values
     }
@@ -40,12 +40,12 @@ impl Settings {
         &mut self.values
     }
 
-    /// The value of an entry.
+    /// Returns the value of an entry.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.values.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    /// Sets an entry, in its place or at the end.
+    /// Sets an entry; a new one is appended.
     pub fn set(&mut self, name: &'static str, value: impl Into<Value>) {
         match self.values.iter_mut().find(|(own, _)| *own == name) {
             Some((_, old)) => *old = value.into(),
@@ -53,28 +53,28 @@ impl Settings {
         }
     }
 
-    /// Sets the value of the first sample, from which the decoder starts; its spike changes nothing.
+    /// Sets the value of the first sample, from which the decoder starts; its spike then changes nothing.
     pub(super) fn set_first(&mut self, value: f64) {
         self.set(FIRST, value);
     }
 
-    /// The decoder's first value: the first sample's, or the one before it.
+    /// Returns the value from which the decoder starts: that of the first sample, or the one before it.
     pub fn first_value(&self) -> Option<f64> {
         self.get(self.first_key()?)?.number()
     }
 
-    /// The entry with the decoder's first value: the first sample's, or the one before it.
+    /// Returns the key of the value from which the decoder starts: that of the first sample, or the one before it.
     pub(super) fn first_key(&self) -> Option<&'static str> {
         let mut names = self.values.iter().map(|(name, _)| *name);
         names.find(|name| [FIRST, "start"].contains(name))
     }
 
-    /// Whether the decoder's first value is that of the first sample, whose spike then changes nothing.
+    /// Returns whether the decoder starts with the value of the first sample, whose spike then changes nothing.
     pub fn starts_at_first(&self) -> bool {
         self.get(FIRST).is_some()
     }
 
-    /// The request that gives these settings again.
+    /// Returns parameters that resolve to these settings again.
     pub fn to_asked(&self, info: &Info) -> Asked {
         let mut asked = Asked::default();
         for parameter in info.parameters.iter().filter(|parameter| parameter.is_recorded) {
@@ -85,10 +85,10 @@ impl Settings {
         asked
     }
 
-    /// The entries of a scheme among the keys of a file, which are taken from these.
+    /// Takes the entries of a scheme out of the keys of a file.
     ///
     /// # Errors
-    /// The text of a key is no value of its parameter.
+    /// Returns an error if the text of a key is not a value of its parameter.
     pub fn take(info: &Info, sample: SampleType, keys: &mut Vec<(String, String)>) -> Result<Self> {
         let mut settings = Self { sample, ..Self::default() };
         for parameter in info.parameters.iter().filter(|parameter| parameter.is_recorded) {
@@ -109,17 +109,17 @@ impl Settings {
         Ok(settings)
     }
 
-    /// A value.
+    /// Returns a value.
     ///
     /// # Errors
-    /// Returns an error if the setting is missing, as in a file that is none of spikes.
+    /// Returns an error if the setting is missing, as in a file that is not one of spikes.
     pub fn value(&self, name: &str) -> Result<&Value> {
         let lacking =
             || Error::of(Given::listed(name, None::<&str>), ErrorKind::Lacking { or: None });
         self.get(name).ok_or_else(lacking)
     }
 
-    /// The word in the place of a list; `None` where there is a list.
+    /// Returns the word that stands in place of a list; `None` if there is a list.
     ///
     /// # Errors
     /// Returns an error if the setting is missing.
@@ -127,7 +127,7 @@ impl Settings {
         Ok(self.value(name)?.word())
     }
 
-    /// A finite number.
+    /// Returns a finite number.
     ///
     /// # Errors
     /// Returns an error if the setting is missing or not a number.
@@ -137,7 +137,7 @@ impl Settings {
         value.number().ok_or_else(wrong)
     }
 
-    /// Finite numbers.
+    /// Returns finite numbers.
     ///
     /// # Errors
     /// Returns an error if the setting is missing or a word.
@@ -147,7 +147,7 @@ impl Settings {
         value.numbers().ok_or_else(wrong)
     }
 
-    /// A whole number within this range.
+    /// Returns an integer within `range`.
     ///
     /// # Errors
     /// Returns an error if the setting is missing, not an integer, or outside `range`.
@@ -170,13 +170,13 @@ impl Settings {
         }
     }
 
-    /// The same, with draws from this stream.
+    /// Returns the settings with another stream of the random generator.
     #[must_use]
     pub fn with_stream(&self, stream: u64) -> Self {
         Self { stream, ..self.clone() }
     }
 
-    /// Starts the generator of a code by chance, on the settings' seed and stream.
+    /// Makes the random generator, with the settings' seed and stream.
     ///
     /// # Errors
     /// Returns an error if the seed is missing or not an integer.
@@ -186,10 +186,10 @@ impl Settings {
         Ok(generator)
     }
 
-    /// One of these words.
+    /// Returns a word, which must be one of these.
     ///
     /// # Errors
-    /// Returns an error if the setting is missing or none of the words.
+    /// Returns an error if the setting is missing or is none of the words.
     pub fn choice(&self, name: &str, words: &'static [&'static str]) -> Result<&'static str> {
         let value = self.value(name)?;
         match words.iter().find(|own| value.word() == Some(own)) {
@@ -198,7 +198,7 @@ impl Settings {
         }
     }
 
-    /// How many neurons there are.
+    /// Returns the number of neurons.
     ///
     /// # Errors
     /// See [`count`](Self::count).
@@ -206,7 +206,7 @@ impl Settings {
         self.count("neurons", 3..=dynamic::NEURONS)
     }
 
-    /// How many taps the filter has.
+    /// Returns the number of taps in the filter.
     ///
     /// # Errors
     /// See [`numbers`](Self::numbers).
@@ -214,7 +214,7 @@ impl Settings {
         Ok(self.numbers("taps")?.len())
     }
 
-    /// A number in the signal's unit, in the sample type.
+    /// Returns a number in the signal's unit, as a sample.
     ///
     /// # Errors
     /// See [`number`](Self::number).
@@ -222,7 +222,7 @@ impl Settings {
         Ok(S::from_f64(self.number(name)? * self.sample.one()))
     }
 
-    /// Numbers in the signal's unit, in the sample type.
+    /// Returns numbers in the signal's unit, as samples.
     ///
     /// # Errors
     /// See [`numbers`](Self::numbers).
@@ -231,7 +231,7 @@ impl Settings {
         Ok(self.numbers(name)?.iter().map(|number| S::from_f64(number * one)).collect())
     }
 
-    /// Numbers in the signal's unit, in that of the sample type, but not rounded to it.
+    /// Returns numbers in the signal's unit, scaled to the unit of the sample type, but not rounded to it.
     ///
     /// # Errors
     /// See [`numbers`](Self::numbers).
@@ -240,7 +240,7 @@ impl Settings {
         Ok(self.numbers(name)?.iter().map(|number| (number * one) as f32).collect())
     }
 
-    /// From `min` to `max`.
+    /// Returns the range from `min` to `max`.
     ///
     /// # Errors
     /// See [`number`](Self::number).
@@ -248,15 +248,15 @@ impl Settings {
         Ok(self.signal("min")?..=self.signal("max")?)
     }
 
-    /// Whether the mean of spikes is taken over a window, and not as an average.
+    /// Returns whether spikes are averaged over a window, rather than by a running average.
     ///
     /// # Errors
-    /// Returns an error if the setting is missing or another word.
+    /// Returns an error if the setting is missing or is another word.
     pub fn takes_window(&self) -> Result<bool> {
         Ok(self.choice("mean", &["average", "window"])? == "window")
     }
 
-    /// A mean over a window, in the room of the largest.
+    /// Makes the average over a window, with the capacity of the largest.
     ///
     /// # Errors
     /// See [`count`](Self::count).
@@ -264,7 +264,7 @@ impl Settings {
         Ok(rate::Window::try_new(self.count("power", 0..=12)? as u8)?)
     }
 
-    /// A mean as an average.
+    /// Makes the running average.
     ///
     /// # Errors
     /// See [`count`](Self::count).
@@ -272,10 +272,10 @@ impl Settings {
         Ok(rate::Average::try_new(self.count("power", 1..=15)? as u8)?)
     }
 
-    /// The filter.
+    /// Returns the filter.
     ///
     /// # Errors
-    /// Returns an error if there are too many taps or none, or they make no filter.
+    /// Returns an error if there are no taps or too many, or if they do not form a filter.
     pub fn taps<S: Sample>(&self) -> Result<dynamic::Taps<S>> {
         Ok(dynamic::Taps::try_new(&self.signals("taps")?)?)
     }

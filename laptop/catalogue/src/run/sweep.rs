@@ -1,25 +1,25 @@
-//! Many values of one parameter of a rate code in one pass over a signal.
+//! Compares many values of one parameter of a rate code in one pass over a signal.
 
-/// Values that a pass compares: as many as a few vector registers hold.
+/// Number of values that are compared in a pass; they fit a few vector registers.
 pub const LANES: usize = 16;
 
-/// One number for each value that a pass compares.
+/// A number for each value that is compared.
 type Lane = [f32; LANES];
 
-/// When a rate code spikes, by what is left of the signal in the filter's window.
+/// The rule by which a rate code spikes, applied to the rest of the signal in the filter's window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// It falls short of no tap, and the window does not reach past the end.
+    /// No sample is below its tap, and the window does not extend beyond the end.
     Hough,
-    /// It falls short of the taps by the threshold at most, in all.
+    /// The samples are below their taps by no more than the threshold, in total.
     ThresholdHough,
-    /// Subtracting the taps lowers the sum of its magnitudes by the threshold at least.
+    /// Subtracting the taps reduces the sum of the magnitudes by at least the threshold.
     Bsa,
 }
 
-/// Codes stretches with `LANES` pairs of a factor on the taps and a threshold at once, and returns the number of spikes
-/// and the sum of the squared errors of each pair. What spikes leave of a sample is its error, so that nothing needs to
-/// be decoded. In `f32`, with sums in another order than the codec's: to choose settings, not to report them.
+/// Codes stretches with `LANES` pairs of a factor of the taps and a threshold at once; returns the number of spikes and
+/// the sum of squared errors for each pair. The rest of a sample after all spikes is its error, so nothing is decoded.
+/// It computes in `f32`, with sums in another order than the codec's: use it to choose settings, not to report them.
 pub fn sweep(
     rule: Rule,
     stretches: &[&[f64]],
@@ -53,7 +53,7 @@ pub fn sweep(
     found
 }
 
-/// Decides the first sample of a window in all lanes, and subtracts the taps where it spikes.
+/// Decides the first sample of a window in all lanes, and subtracts the taps in those that spike.
 fn spike(
     rule: Rule,
     window: &mut [Lane],
@@ -93,7 +93,7 @@ mod tests {
     use super::{LANES, Rule, sweep};
     use crate::schemes::{bsa, hsa, t_hsa};
 
-    /// Each lane does what the transcription of the paper's pseudo-code does.
+    /// Each lane agrees with the transcription of the paper's pseudo-code.
     #[test]
     fn lanes_are_the_transcriptions() {
         let signal: Vec<f64> = (0..300)

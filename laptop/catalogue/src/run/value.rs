@@ -1,4 +1,4 @@
-//! Values of parameters, and how they are read from text.
+//! Values of parameters, and their parsing.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -13,16 +13,17 @@ use crate::{Kind, Parameter};
 pub enum Value {
     /// A finite number.
     Number(f64),
-    /// A whole number, 0 or more.
+    /// An integer, 0 or more.
     Count(u64),
-    /// A word such as `linear`, a filter's shape such as `triang:15`, or a number of thresholds such as `2x`.
+    /// A word, such as `linear`; the shape of a filter, such as `triang:15`; or a multiple of the threshold, such as
+    /// `2x`.
     Word(Cow<'static, str>),
-    /// Finite numbers: centres, edges or taps. Of a parameter that takes one number, one for each channel.
+    /// Finite numbers: centres, edges or taps. For a parameter that takes one number, a number for each channel.
     Numbers(Vec<f64>),
 }
 
 impl Value {
-    /// The number, if it is one.
+    /// Returns the value, if it is a number.
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -31,7 +32,7 @@ impl Value {
         }
     }
 
-    /// The numbers, if it is a list or a number.
+    /// Returns the numbers, if the value is a list or a number.
     pub fn numbers(&self) -> Option<&[f64]> {
         match self {
             Self::Numbers(numbers) => Some(numbers),
@@ -40,7 +41,7 @@ impl Value {
         }
     }
 
-    /// The word, if it is one.
+    /// Returns the word, if the value is one.
     pub fn word(&self) -> Option<&str> {
         match self {
             Self::Word(word) => Some(word),
@@ -49,7 +50,7 @@ impl Value {
     }
 }
 
-/// The value as a file of spikes holds it: numbers have commas between.
+/// Writes the value as a file of spikes contains it; numbers are separated by commas.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -101,10 +102,11 @@ impl From<Vec<f64>> for Value {
 pub const SET: Value = Value::Word(Cow::Borrowed("true"));
 
 impl Parameter {
-    /// Reads a value from text, as the command line and files hold it.
+    /// Parses a value, as the command line and files contain it.
     ///
     /// # Errors
-    /// The text is no value of this parameter's kind. The error names both, and says what is allowed.
+    /// Returns an error if the text is not a value of this parameter's kind. The error has both, and says what is
+    /// allowed.
     pub fn read(&self, text: &str) -> Result<Value> {
         self.parsed(text).map_err(|kind| Error::of(Given::new(self.name, text), kind))
     }
@@ -135,7 +137,7 @@ impl Parameter {
         self.checked(value)
     }
 
-    /// Reads a value from a file of spikes, which holds a filter's taps and one value for each channel.
+    /// Parses a value in a file of spikes, which contains a filter's taps, and one value for each channel.
     ///
     /// # Errors
     /// See [`read`](Self::read).
@@ -153,17 +155,17 @@ impl Parameter {
         }
     }
 
-    /// Takes a value as its parameter has it: whole numbers become numbers where the parameter is one, and the reverse.
+    /// Converts a value to the parameter's kind: integers to numbers, and the reverse.
     ///
     /// # Errors
-    /// The value is none of this parameter's kind. The error names both, and says what is allowed.
+    /// Returns an error if the value is not of this parameter's kind. The error has both, and says what is allowed.
     pub fn check(&self, value: Value) -> Result<Value> {
         let text = value.to_string();
         self.checked(value).map_err(|kind| Error::of(Given::new(self.name, text), kind))
     }
 
     fn checked(&self, value: Value) -> Result<Value, ErrorKind> {
-        /// Above it, not every whole number has a number of its own.
+        /// Largest number up to which every integer can be represented.
         const WHOLE: f64 = 9_007_199_254_740_992.0;
         if let Some(number) =
             value.numbers().and_then(|all| all.iter().find(|own| !own.is_finite()))
@@ -196,7 +198,7 @@ impl Parameter {
         })
     }
 
-    /// Reads a text of the catalogue, whose words need no copy.
+    /// Parses a text of the catalogue, whose words need not be copied.
     pub(super) fn read_own(&self, text: &'static str) -> Result<Value> {
         match self.read(text)? {
             Value::Word(_) => Ok(Value::from(text)),
@@ -206,7 +208,7 @@ impl Parameter {
 }
 
 impl Kind {
-    /// The names of its kinds of values.
+    /// Describes the kind of values in words.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Number => "a number",

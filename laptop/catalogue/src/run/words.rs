@@ -1,37 +1,37 @@
-//! Wording of values that name settings. The library says a thing once; each front has its own spelling of a setting:
-//! an option, a keyword, a box of a page.
+//! Texts that name settings. The library words each text once, and each front end spells the settings in its own way:
+//! as an option, a keyword, or a box of a page.
 
 use std::borrow::Cow;
 use std::fmt;
 
-/// Spells the name of a setting as a front does, such as `--loop-bandwidth` for `loop_bandwidth`.
+/// Spells the name of a setting for a front end, such as `--loop-bandwidth` for `loop_bandwidth`.
 pub type Spell = fn(&str) -> String;
 
-/// Spells a setting as the library does: its name in backticks.
+/// Spells a setting as the library does by default: its name in backticks.
 pub fn quoted(name: &str) -> String {
     format!("`{name}`")
 }
 
-/// Spells settings, with this between them.
+/// Spells several settings, separated by `between`.
 pub fn joined<N: AsRef<str>>(names: &[N], spell: Spell, between: &str) -> String {
     names.iter().map(|name| spell(name.as_ref())).collect::<Vec<_>>().join(between)
 }
 
-/// A value that can be said in words, in which a front spells the settings.
+/// A value that can be put into words, in which a front end spells the settings.
 pub trait Worded {
     /// Writes the words.
     ///
     /// # Errors
-    /// Those of the formatter.
+    /// Returns the formatter's errors.
     fn word(&self, f: &mut fmt::Formatter<'_>, spell: Spell) -> fmt::Result;
 
-    /// The words, by a front's spelling.
+    /// Returns the words, with the spelling of a front end.
     fn spelled(&self, spell: Spell) -> Spelled<'_, Self> {
         Spelled(self, spell)
     }
 }
 
-/// A value in the words of a front.
+/// A value in words, with the spelling of a front end.
 pub struct Spelled<'a, T: ?Sized>(&'a T, Spell);
 
 impl<T: Worded + ?Sized> fmt::Display for Spelled<'_, T> {
@@ -40,35 +40,35 @@ impl<T: Worded + ?Sized> fmt::Display for Spelled<'_, T> {
     }
 }
 
-/// A setting that an error is about, and the value that it has.
+/// The setting that an error is about, with its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Given {
-    /// The name, as the catalogue and requests have it.
+    /// Name, as in the catalogue and in requests.
     pub name: Cow<'static, str>,
-    /// The value as text, if one was given.
+    /// Value as text, if one was given.
     pub value: Option<String>,
-    /// Whether it stands in a file, or among complete settings, by this very name, which no front spells otherwise.
+    /// Whether the name is that in a file, or in complete settings; front ends do not respell it.
     pub is_listed: bool,
 }
 
 impl Given {
-    /// A setting without a value.
+    /// Makes a setting without a value.
     pub fn named(name: impl Into<Cow<'static, str>>) -> Self {
         Self { name: name.into(), value: None, is_listed: false }
     }
 
-    /// A setting with its value.
+    /// Makes a setting with its value.
     pub fn new(name: impl Into<Cow<'static, str>>, value: impl fmt::Display) -> Self {
         Self { name: name.into(), value: Some(value.to_string()), is_listed: false }
     }
 
-    /// A setting that is listed by its own name.
+    /// Makes a setting whose name front ends do not respell.
     pub fn listed(name: &str, value: Option<impl fmt::Display>) -> Self {
         let value = value.map(|value| value.to_string());
         Self { name: name.to_owned().into(), value, is_listed: true }
     }
 
-    /// The name as it is spelled, and the value behind it.
+    /// Returns the spelled name, followed by the value.
     pub fn subject(&self, spell: Spell) -> String {
         let name = if self.is_listed { self.name.to_string() } else { spell(&self.name) };
         match &self.value {
@@ -79,7 +79,7 @@ impl Given {
 }
 
 /// Declares kinds of errors, each with its data and its words. In the words, `subject` stands for the setting with its
-/// value and `spell` for the front's spelling.
+/// value, and `spell` for the front end's spelling.
 #[macro_export]
 macro_rules! kinds {
     ($(#[$about:meta])* pub enum $Kinds:ident by $spell:ident of $subject:ident {
@@ -94,17 +94,17 @@ macro_rules! kinds {
         }
 
         impl $Kinds {
-            /// The kind's name, for programs.
+            /// Returns the name of the kind, for programs.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$kind { .. } => stringify!($kind)),*
                 }
             }
 
-            /// Writes the words about a setting; what would follow on it stands alone where there is none.
+            /// Writes the words about a setting. If there is none, the words after it stand alone.
             ///
             /// # Errors
-            /// Those of the formatter.
+            /// Returns the formatter's errors.
             pub fn word_about(
                 &self,
                 f: &mut std::fmt::Formatter<'_>,
@@ -147,21 +147,21 @@ enum Part {
 }
 
 impl Words {
-    /// Adds a text.
+    /// Appends a text.
     #[must_use]
     pub fn text(mut self, text: impl fmt::Display) -> Self {
         self.0.push(Part::Text(text.to_string()));
         self
     }
 
-    /// Adds the name of a setting.
+    /// Appends the name of a setting.
     #[must_use]
     pub fn setting(mut self, name: &'static str) -> Self {
         self.0.push(Part::Setting(name));
         self
     }
 
-    /// Adds other words.
+    /// Appends other words.
     #[must_use]
     pub fn words(mut self, other: Self) -> Self {
         self.0.extend(other.0);

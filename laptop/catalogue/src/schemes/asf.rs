@@ -92,7 +92,7 @@ impl Build for Scheme {
     }
 }
 
-/// The exponent behind the spike at `i`.
+/// Returns the exponent after the spike at `i`.
 fn adapted(spikes: &[i8], i: usize, run: usize, doublings: u8, exponent: u8) -> u8 {
     let mut is_run = spikes[i] != 0 && i + 1 >= run;
     for j in 1..run {
@@ -101,7 +101,7 @@ fn adapted(spikes: &[i8], i: usize, run: usize, doublings: u8, exponent: u8) -> 
     if is_run { doublings.min(exponent + 1) } else { exponent.saturating_sub(1) }
 }
 
-/// The definition.
+/// Encodes by the definition.
 #[inline(never)]
 pub fn transcribed<S: Plain>(
     input: &[S],
@@ -127,7 +127,7 @@ pub fn transcribed<S: Plain>(
     }
 }
 
-/// Adds up the steps.
+/// Decodes by adding up the steps.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(
     spikes: &[i8],

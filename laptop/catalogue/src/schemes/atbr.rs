@@ -86,7 +86,7 @@ impl Build for Scheme {
     }
 }
 
-/// The exponent before the spike at `i`.
+/// Returns the exponent before the spike at `i`.
 fn exponent(spikes: &[i8], i: usize, doublings: u8) -> u8 {
     let mut count = 0;
     for j in i.saturating_sub(16)..i {
@@ -97,7 +97,7 @@ fn exponent(spikes: &[i8], i: usize, doublings: u8) -> u8 {
     doublings.min(count * (doublings + 1) / 16)
 }
 
-/// The definition.
+/// Encodes by the definition.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], threshold: S, doublings: u8, spikes: &mut [i8]) {
     for i in 1..input.len() {
@@ -113,7 +113,7 @@ pub fn transcribed<S: Plain>(input: &[S], threshold: S, doublings: u8, spikes: &
     }
 }
 
-/// Adds up the thresholds.
+/// Decodes by adding up the thresholds.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(spikes: &[i8], threshold: S, doublings: u8, values: &mut [S]) {
     let mut value = S::Wide::default();

@@ -78,12 +78,12 @@ impl Build for Scheme {
     }
 }
 
-/// The generator of what is counted, whose work is counted with it.
+/// Makes the random generator for the counted code, whose work is counted too.
 fn generator() -> Pcg32 {
     Pcg32::new(2, 2)
 }
 
-/// The definition.
+/// Encodes by the definition.
 #[inline(never)]
 pub fn transcribed<S: Plain>(
     input: &[S],

@@ -22,7 +22,7 @@ const TOOLBOX_TAPS: usize = 9;
 const TOOLBOX_PEAK: f64 = 0.2;
 const TOOLBOX_FACTOR: f32 = 1.15;
 
-/// The words of `form` and of `criterion`.
+/// Values of the parameter `form`; those of `criterion` follow.
 const FORMS: &[&str] = &["aligned", "toolbox"];
 const CRITERIA: &[&str] = &["sub", "mul"];
 
@@ -177,13 +177,13 @@ impl Build for Scheme {
         Ok(settings)
     }
 
-    /// A difference is a sample, a factor is none.
+    /// Returns whether the threshold is a sample: a difference is one, a factor is not.
     fn is_in_samples(parameter: &Parameter, settings: &Settings) -> bool {
         let is_difference = settings.get("criterion").and_then(Value::word) == Some("sub");
         parameter.unit == Unit::Signal || parameter.name == "threshold" && is_difference
     }
 
-    /// A factor has another range than a difference.
+    /// Returns the range of the threshold, which is different for a factor and for a difference.
     fn search(parameter: &Parameter, asked: &Asked) -> Option<Search> {
         let is_factor =
             asked.word("form") == Some("toolbox") || asked.word("criterion") == Some("mul");
@@ -304,7 +304,7 @@ fn toolbox<V: Count>(signal: &Scaled<V::Sample>, visitor: &mut V) -> Result<(), 
     })
 }
 
-/// BSA as published, subtractive, on the shifted input.
+/// Encodes by BSA as published, in its subtractive form, on the shifted input.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], threshold: S, spikes: &mut [i8]) {
     for i in 0..input.len() {
@@ -327,7 +327,7 @@ pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], threshold: S, spikes
     }
 }
 
-/// The paper's algorithm 5, on the shifted input; the ratio in 14 bits of fraction where products are whole.
+/// Encodes by the paper's algorithm 5, on the shifted input. For integers the ratio has 14 fractional bits.
 #[inline(never)]
 pub fn transcribed_toolbox<S: Plain>(
     input: &mut [S],

@@ -13,7 +13,7 @@ const SPIKES: u8 = 5;
 const SHORTEST: u8 = 2;
 const LONGEST: u8 = 10;
 
-/// Slots enough for five spikes at intervals from 2 to 10.
+/// Number of slots: enough for five spikes at intervals from 2 to 10.
 const SLOTS: usize = 19;
 
 impl Entry for Scheme {
@@ -103,17 +103,17 @@ impl Build for Scheme {
     }
 }
 
-/// A burst as the transcription writes it: 16 times the count and the interval.
+/// Converts a burst to the transcription's form: 16 times the count, plus the interval.
 fn byte_of<const N: usize>(burst: BurstSpikes<N>) -> i8 {
     (burst.count() * 16 + burst.interval()) as i8
 }
 
-/// A burst as the transcription reads it.
+/// Converts a burst from the transcription's form.
 fn burst_of<const N: usize>(byte: i8) -> BurstSpikes<N> {
     BurstSpikes::new(byte as u8 / 16, byte as u8 % 16).unwrap_or_default()
 }
 
-/// Up to five spikes, at an interval from 10 down to 2.
+/// Encodes up to five spikes, at an interval from 10 down to 2.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, bursts: &mut [i8]) {
     let range: S::Wide = max.into() - min.into();
@@ -129,7 +129,7 @@ pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, bursts: &mut [i8]) {
     }
 }
 
-/// Decodes bursts by a list of what each stands for.
+/// Decodes bursts with a list of the value of each.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(codes: &[i8], bursts: &[(i8, S)], values: &mut [S]) {
     for i in 0..codes.len() {

@@ -108,7 +108,7 @@ impl Build for Scheme {
     }
 }
 
-/// The definition.
+/// Encodes by the definition.
 #[inline(never)]
 pub fn transcribed<S: Plain>(
     input: &[S],

@@ -67,7 +67,7 @@ impl Build for Scheme {
     });
 }
 
-/// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the winner.
+/// Encodes by the paper's algorithm 2, with its exponentials, in `f32` for every sample type: finds the winner.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], centres: &[f32], sigma: f32, neurons: &mut [i8]) {
     for i in 0..input.len() {

@@ -13,7 +13,7 @@ pub struct Scheme;
 const NEURONS: usize = 20;
 const COMPANDED_BY: f32 = 5.0;
 
-/// The places of the centres.
+/// Parameter for the spacing of the centres.
 pub(super) const CENTRES: Parameter = Parameter::new(
     "centres",
     Kind::Text,
@@ -23,7 +23,7 @@ pub(super) const CENTRES: Parameter = Parameter::new(
 .with_default("companded")
 .searched(Search::Words(&["companded", "quantiles"]));
 
-/// How wide the fields are.
+/// Parameter for the widths of the fields.
 pub(super) const WIDTHS: Parameter = Parameter::new(
     "widths",
     Kind::Text,
@@ -32,7 +32,7 @@ pub(super) const WIDTHS: Parameter = Parameter::new(
 )
 .with_default("spacing");
 
-/// How dense the middle is.
+/// Parameter for the density of the centres in the middle.
 pub(super) const COMPANDING: Parameter = Parameter::new(
     "companding",
     Kind::Number,
@@ -104,7 +104,7 @@ impl Entry for Scheme {
     }
 }
 
-/// Settings of fields: a list of centres and widths says it all.
+/// Makes settings; a list of centres and widths determines all of them.
 #[cfg(feature = "run")]
 pub(super) fn resolve(asked: &Resolve, info: &Info) -> Result<Settings> {
     let has_quantiles = asked.needed("centres")?.word() == Some("quantiles");
@@ -141,7 +141,7 @@ pub(super) fn resolve(asked: &Resolve, info: &Info) -> Result<Settings> {
     Ok(settings)
 }
 
-/// Centres at the signal's quantiles.
+/// Returns centres at the signal's quantiles.
 #[cfg(feature = "run")]
 fn quantiles(asked: &Resolve) -> Result<Vec<f64>> {
     let mut settings = Settings::default();
@@ -153,7 +153,7 @@ fn quantiles(asked: &Resolve) -> Result<Vec<f64>> {
     calibrated.quantiles(neurons).ok_or_else(|| ErrorKind::NoSample.into())
 }
 
-/// The signal's range or its quantiles, unless there is a list of centres.
+/// Returns the need for the signal's range or quantiles, unless a list of centres is given.
 #[cfg(feature = "run")]
 pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<Needs> {
     match asked.word("centres") {
@@ -162,7 +162,7 @@ pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<Needs> {
     }
 }
 
-/// The number of neurons: that of the centres.
+/// Returns the number of neurons, which is that of the centres.
 #[cfg(feature = "run")]
 pub(super) fn neurons(settings: &Settings) -> Result<usize> {
     match settings.preset("centres")? {
@@ -171,7 +171,7 @@ pub(super) fn neurons(settings: &Settings) -> Result<usize> {
     }
 }
 
-/// The centres, in the sample type.
+/// Returns the centres, in the sample type.
 #[cfg(feature = "run")]
 pub(super) fn centres<S: Sample, const M: usize>(settings: &Settings) -> Result<Vec<S>> {
     Ok(match settings.preset("centres")? {
@@ -186,7 +186,7 @@ pub(super) fn centres<S: Sample, const M: usize>(settings: &Settings) -> Result<
     })
 }
 
-/// The widths, unless they are those of the spacing.
+/// Returns the widths; `None` if they follow from the spacing.
 #[cfg(feature = "run")]
 pub(super) fn widths(settings: &Settings, neurons: usize) -> Result<Option<Vec<f32>>> {
     if settings.preset("widths")? == Some("spacing") {
@@ -195,7 +195,7 @@ pub(super) fn widths(settings: &Settings, neurons: usize) -> Result<Option<Vec<f
     Ok(Some(repeated(settings.reals("widths")?, neurons)))
 }
 
-/// One width for all fields, or one each.
+/// Returns a width for each field; a single width is repeated.
 #[cfg(feature = "run")]
 fn repeated(widths: Vec<f32>, neurons: usize) -> Vec<f32> {
     match widths[..] {
@@ -204,14 +204,14 @@ fn repeated(widths: Vec<f32>, neurons: usize) -> Vec<f32> {
     }
 }
 
-/// The constructor of companded centres, with what it takes besides.
+/// Writes the constructor of companded centres, with its further arguments.
 #[cfg(feature = "run")]
 pub(super) fn companded(settings: &Settings, rust: Rust, besides: &str) -> Result<String> {
     let companding = settings.number("companding")? as f32;
     Ok(format!("companded({}, {companding:?}{besides})", rust.range(settings)?))
 }
 
-/// The constructor of fields with widths of their own.
+/// Writes the constructor of fields with widths of their own.
 #[cfg(feature = "run")]
 pub(super) fn with_widths(settings: &Settings, rust: Rust, constructor: &str) -> Result<String> {
     if settings.preset("centres")? == Some("companded") {
@@ -232,7 +232,7 @@ impl Build for Scheme {
         needs_signal(asked, &Self::INFO)
     }
 
-    /// Widths stay as they are.
+    /// Returns whether a parameter is rounded to the sample type; widths are not.
     fn is_in_samples(parameter: &Parameter, _: &Settings) -> bool {
         parameter.unit == Unit::Signal && parameter.name != WIDTHS.name
     }
@@ -262,7 +262,7 @@ impl Build for Scheme {
     });
 }
 
-/// The strongest of the responses, with their exponentials, in `f32` for every sample type.
+/// Encodes by the strongest response, with exponentials, in `f32` for every sample type.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], centres: &[f32], sigmas: &[f32], neurons: &mut [i8]) {
     for i in 0..input.len() {

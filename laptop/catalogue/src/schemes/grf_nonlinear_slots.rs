@@ -109,7 +109,7 @@ impl Build for Scheme {
         grf_nonlinear::needs_signal(asked, &Self::INFO)
     }
 
-    /// Widths stay as they are.
+    /// Returns whether a parameter is rounded to the sample type; widths are not.
     fn is_in_samples(parameter: &Parameter, _: &Settings) -> bool {
         parameter.unit == Unit::Signal && parameter.name != grf_nonlinear::WIDTHS.name
     }
@@ -152,15 +152,15 @@ impl Build for Scheme {
     });
 }
 
-/// The code that the transcription writes: the slot of each neuron, or -1.
+/// Converts a code from the transcription's form: the slot of each neuron, or -1.
 fn spikes_of(slots: &[i8]) -> NeuronSlots<15, 10> {
     let fired = (0..).zip(slots).filter(|&(_, &slot)| slot >= 0);
     NeuronSlots::new(fired.map(|(neuron, &slot)| (neuron, slot as u16)))
         .unwrap_or(NeuronSlots::EMPTY)
 }
 
-/// The responses with their exponentials, in `f32` for every sample type: the slot of each neuron, or -1, one sample
-/// after the other.
+/// Encodes by the responses, with exponentials, in `f32` for every sample type. Writes the slot of each neuron, or -1,
+/// one sample after the other.
 #[allow(clippy::needless_range_loop)] // index by index, as the definition
 #[inline(never)]
 pub fn transcribed<S: Plain>(

@@ -69,19 +69,19 @@ impl Build for Scheme {
     });
 }
 
-/// The generator of what is counted, whose work is counted with it.
+/// Makes the random generator for the counted code, whose work is counted too.
 fn generator() -> Pcg32 {
     Pcg32::new(2, 2)
 }
 
-/// The code that the transcription writes: 1 for each neuron that fired.
+/// Converts a code from the transcription's form: 1 for each neuron that fired.
 fn fired_of(fired: &[i8]) -> FiredNeurons<15> {
     let neurons = (0..).zip(fired).filter(|&(_, &fired)| fired == 1).map(|(neuron, _)| neuron);
     FiredNeurons::new(neurons).unwrap_or(FiredNeurons::EMPTY)
 }
 
-/// Probabilistic spiking with its exponentials, in `f32` for every sample type: a draw for each neuron that responds,
-/// of a number below the levels; whether each fired, one sample after the other.
+/// Encodes by chance, with exponentials, in `f32` for every sample type: draws a number below the levels for each
+/// neuron that responds. Writes whether each neuron fired, one sample after the other.
 #[inline(never)]
 pub fn transcribed<S: Plain>(
     input: &[S],
@@ -101,7 +101,7 @@ pub fn transcribed<S: Plain>(
     }
 }
 
-/// The mean of the centres that fired; where none did, the value before.
+/// Decodes to the mean of the centres that fired, or to the previous value if none did.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(fired: &[i8], centres: &[S], mut value: S, values: &mut [S]) {
     for i in 0..values.len() {

@@ -96,7 +96,7 @@ impl Build for Scheme {
     });
 }
 
-/// The code that the transcription writes: the slot or rank of each neuron, or -1.
+/// Converts a code from the transcription's form: the slot or rank of each neuron, or -1.
 pub(super) fn spikes_of<const N: usize>(slots: &[i8]) -> SlotSpikes<15, N> {
     let mut fired = [0; 15];
     let mut length = 0;
@@ -110,8 +110,8 @@ pub(super) fn spikes_of<const N: usize>(slots: &[i8]) -> SlotSpikes<15, N> {
     SlotSpikes::new(first as u16, fired).unwrap_or(SlotSpikes::EMPTY)
 }
 
-/// The paper's algorithm 2 with its exponentials, in `f32` for every sample type: the slot of each neuron, or -1, one sample
-/// after the other.
+/// Encodes by the paper's algorithm 2, with its exponentials, in `f32` for every sample type. Writes the slot of each
+/// neuron, or -1, one sample after the other.
 #[inline(never)]
 pub fn transcribed<S: Plain>(
     input: &[S],
@@ -129,7 +129,7 @@ pub fn transcribed<S: Plain>(
     }
 }
 
-/// The mean of the centres weighted by their levels; where none fired, the value before.
+/// Decodes to the mean of the centres, weighted by their levels, or to the previous value if none fired.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(
     slots: &[i8],

@@ -14,7 +14,7 @@ const THRESHOLD: f64 = 0.2;
 const POWER: u8 = 3;
 const SPIKES: usize = 8;
 
-/// The parameters of the neuron with and without a leak.
+/// Parameters of the neuron, with and without a leak.
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::new(
         "threshold",
@@ -87,13 +87,13 @@ impl Entry for Scheme {
     }
 }
 
-/// One neuron, whose spikes come one after the other.
+/// Returns the shape: one neuron, whose spikes are in consecutive slots.
 #[cfg(feature = "run")]
 pub(super) fn shape(settings: &Settings) -> Result<Shape> {
     Ok(Shape { neurons: 1, slots: settings.count("spikes", 1..=127)? })
 }
 
-/// The neuron, with room for the most spikes.
+/// Builds the neuron, with room for the largest number of spikes.
 #[cfg(feature = "run")]
 pub(super) fn built<S: Sample>(settings: &Settings) -> Result<IntegrateAndFire<S, 127>> {
     let power = settings.count("power", 1..=15)? as u8;
@@ -121,7 +121,7 @@ impl Build for Scheme {
     }
 }
 
-/// The definition, with 0 as the reference.
+/// Encodes by the definition, with 0 as the reference.
 #[inline(never)]
 pub fn transcribed<S: Plain>(
     input: &[S],
@@ -149,7 +149,7 @@ pub fn transcribed<S: Plain>(
     }
 }
 
-/// Less its `2^power`th part, whatever its sign.
+/// Subtracts the `2^power`th part, rounded alike for both signs.
 fn leaked<S: Plain>(potential: S::Wide, power: u8) -> S::Wide {
     let zero = S::Wide::default();
     if potential < zero {
@@ -159,7 +159,7 @@ fn leaked<S: Plain>(potential: S::Wide, power: u8) -> S::Wide {
     }
 }
 
-/// The leaky mean, with 0 as the reference.
+/// Decodes by the leaky mean, with 0 as the reference.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(counts: &[i8], threshold: S, power: u8, values: &mut [S]) {
     let mut potential = S::Wide::default();

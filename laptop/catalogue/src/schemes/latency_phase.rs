@@ -11,7 +11,7 @@ pub struct Scheme;
 // As the checks fly it.
 const SPACING: u16 = 1;
 
-/// Four neurons, 32 latencies and a period of four slots.
+/// The instance that is counted: four neurons, 32 latencies and a period of four slots.
 type Four<S> = LatencyPhase<S, 4, 32, 4>;
 
 impl Entry for Scheme {
@@ -108,13 +108,13 @@ impl Build for Scheme {
     }
 }
 
-/// The code that the transcription writes: the slot of each neuron.
+/// Converts a code from the transcription's form: the slot of each neuron.
 fn spikes_of<const W: usize, const P: usize>(slots: &[i8]) -> PhaseSpikes<4, W, P> {
     let slots = core::array::from_fn(|i| slots.get(i).map(|&slot| slot as u16));
     PhaseSpikes::new(slots).unwrap_or(PhaseSpikes::SILENT)
 }
 
-/// The first peak of each neuron from the latency on, slot by slot; one sample after the other.
+/// Encodes by the first peak of each neuron at or after the latency, slot by slot, one sample after the other.
 #[inline(never)]
 pub fn transcribed<S: Plain>(
     input: &[S],
@@ -138,7 +138,7 @@ pub fn transcribed<S: Plain>(
     }
 }
 
-/// The middle of the cells whose latencies agree with every spike; `starts` are the lower ends of all.
+/// Decodes to the middle of the cells whose latencies agree with every spike; `starts` are the lower ends of all cells.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(
     slots: &[i8],

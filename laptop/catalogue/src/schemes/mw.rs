@@ -76,7 +76,7 @@ impl Build for Scheme {
         Ok(lengthened(sizes, settings.count("window", 0..=dynamic::WIDEST - 1)? + 1))
     }
 
-    /// Long windows take no more: the sum is carried along.
+    /// Returns the codec that stands for any window: a longer one takes no more work, as its sum is carried along.
     fn counted(_: &Settings) -> Result<Counted> {
         Ok(Counted::at_most("mw-5", 1.0))
     }
@@ -131,7 +131,8 @@ fn window<V: Count, const N: usize>(
     })
 }
 
-/// The paper's algorithm 8, from its second loop on; times the samples averaged, as the mean of whole numbers need not be one.
+/// Encodes by the paper's algorithm 8, from its second loop on. Both sides are multiplied by the number of samples
+/// averaged, as the mean of integers need not be an integer.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], averaged: usize, threshold: S, spikes: &mut [i8]) {
     let count = S::wide(averaged as f64);

@@ -92,7 +92,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    /// A list of centres says it all.
+    /// Makes settings; a list of centres determines all of them.
     fn resolve(asked: &Resolve) -> Result<Settings> {
         asked.own_centres(&["linear", "gaussian"])?.map_or_else(|| asked.all(), Ok)
     }
@@ -142,17 +142,17 @@ fn linear<V: Flight>(channel: &Channel<V::Sample>, visitor: &mut V) -> Result<()
     visitor.visit("position", Scheme::INFO.words, &scheme, Position::<V::Sample, NEURONS>::START)
 }
 
-/// A neuron as the transcription writes it.
+/// Converts a neuron to the transcription's form.
 pub fn index_of<const M: usize>(neuron: Option<Neuron<M>>) -> i8 {
     neuron.map_or(-1, |neuron| neuron.index() as i8)
 }
 
-/// A neuron as the transcription reads it.
+/// Converts a neuron from the transcription's form.
 pub fn neuron_of<const M: usize>(index: i8) -> Option<Neuron<M>> {
     Neuron::new(index as u16)
 }
 
-/// The paper's algorithm 1.
+/// Encodes by the paper's algorithm 1.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], centres: &[S], neurons: &mut [i8]) {
     for i in 0..input.len() {

@@ -84,7 +84,7 @@ impl Entry for Scheme {
 
 #[cfg(feature = "run")]
 impl Build for Scheme {
-    /// A list of centres says which neurons there are.
+    /// Makes settings; a list of centres determines the neurons.
     fn resolve(asked: &Resolve) -> Result<Settings> {
         let Some(mut settings) = asked.own_centres(&["linear"])? else { return asked.all() };
         asked.settle("spikes", &mut settings)?;
@@ -126,8 +126,8 @@ impl Build for Scheme {
     });
 }
 
-/// The nearest centre that has not fired, again and again, of two alike the lower: the rank of each neuron, or -1, one
-/// sample after the other.
+/// Encodes by choosing the nearest centre that has not fired, repeatedly; of two equally near ones the lower. Writes
+/// the rank of each neuron, or -1, one sample after the other.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], centres: &[S], spikes: usize, ranks: &mut [i8]) {
     for i in 0..input.len() {
@@ -150,7 +150,8 @@ pub fn transcribed<S: Plain>(input: &[S], centres: &[S], spikes: usize, ranks: &
     }
 }
 
-/// The middle of the values nearer to each neuron than to all that fire after it, or not at all.
+/// Decodes to the middle of the values that are nearer to each neuron that fired than to all that fired after it or not
+/// at all.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(
     ranks: &[i8],

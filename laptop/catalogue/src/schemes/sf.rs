@@ -65,8 +65,9 @@ impl Build for Scheme {
 
     costs!(StepForward<S>, "sf");
 
-    /// Lists the outcomes one by one: the spikes depend on those before, and a run at a threshold tells the next higher
-    /// one at which they differ. Passes over thresholds that lie closer than `most` of them fill the range.
+    /// Lists the outcomes one by one. Each spike depends on those before it, so every outcome takes a run, which also
+    /// finds the next higher threshold at which spikes differ. If thresholds lie too close to list all, about `most`
+    /// runs are spread over the range.
     fn outcomes(
         _: &Settings,
         stretches: &[&[f64]],
@@ -91,7 +92,8 @@ impl Build for Scheme {
     }
 }
 
-/// The outcome of step forward on stretches just above a threshold, and the next threshold at which its spikes differ.
+/// Returns the outcome of step forward on stretches just above a threshold, and the next threshold at which its spikes
+/// differ.
 #[cfg(feature = "run")]
 fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
     let (mut parabola, mut spikes, mut next) = (Parabola::default(), 0, f64::INFINITY);
@@ -130,7 +132,7 @@ fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
     (Outcome { threshold: step, step, spikes, squares, apart: squares }, next)
 }
 
-/// The paper's algorithm 7.
+/// Encodes by the paper's algorithm 7.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], threshold: S, spikes: &mut [i8]) {
     let threshold = threshold.into();
@@ -154,7 +156,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Whole numbers, so that samples lie at a threshold exactly.
+        /// The values are integers, so that samples lie exactly at a threshold.
         #[test]
         fn outcomes_are_those_of_the_law(values in prop::collection::vec(-9_i8..9, 2..40)) {
             let values: Vec<f64> = values.into_iter().map(f64::from).collect();

@@ -112,7 +112,7 @@ impl Build for Scheme {
     }
 }
 
-/// The definition.
+/// Encodes by the definition.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, spikes: &mut [i8]) {
     let range = max.into() - min.into();

@@ -83,7 +83,7 @@ impl Build for Scheme {
     }
 }
 
-/// The definition.
+/// Encodes by the definition.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], most: i8, threshold: S, steps: &mut [i8]) {
     let threshold = threshold.into();
@@ -101,7 +101,7 @@ pub fn transcribed<S: Plain>(input: &[S], most: i8, threshold: S, steps: &mut [i
     }
 }
 
-/// Adds up the steps.
+/// Decodes by adding up the steps.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(steps: &[i8], threshold: S, values: &mut [S]) {
     let mut value = S::Wide::default();

@@ -113,7 +113,7 @@ impl Build for Scheme {
     }
 }
 
-/// The paper's algorithm 4, on the shifted input.
+/// Encodes by the paper's algorithm 4, on the shifted input.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &mut [S], filter: &[S], threshold: S, spikes: &mut [i8]) {
     for i in 0..input.len() {

@@ -109,7 +109,7 @@ impl Build for Scheme {
     const CONSTANT: Option<[&str; 3]> =
         Some(["temporal::TemporalContrast", "", "new({threshold}).with_step({step})"]);
 
-    /// The threshold is settings, or a number of deviations of the signal's differences.
+    /// Makes settings; the threshold is given, or is a number of standard deviations of the signal's differences.
     fn resolve(asked: &Resolve) -> Result<Settings> {
         let threshold = match (asked.user("threshold"), asked.value("factor")?) {
             (Some(_), _) if asked.user("factor").is_some() => {
@@ -173,7 +173,7 @@ impl Build for Scheme {
     }
 }
 
-/// The paper's algorithm 6.
+/// Encodes by the paper's algorithm 6.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], threshold: S, spikes: &mut [i8]) {
     let threshold = threshold.into();

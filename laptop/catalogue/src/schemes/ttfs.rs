@@ -122,7 +122,7 @@ impl Build for Scheme {
         Ok(state::<FirstSpike<S, 16>>())
     }
 
-    /// Slots are found by bisection.
+    /// Returns the codec that stands for any number of slots, which are found by bisection.
     fn counted(settings: &Settings) -> Result<Counted> {
         let codec =
             if settings.preset("edges")? == Some("linear") { "ttfs-16" } else { "ttfs-log-16" };
@@ -139,7 +139,7 @@ impl Build for Scheme {
         rust.constant("timing::FirstSpike", &slots, &value)
     }
 
-    /// A list of edges says how many slots there are; a ratio goes with logarithmic edges.
+    /// Makes settings. A list of edges determines the number of slots; a ratio is needed for logarithmic edges.
     fn resolve(asked: &Resolve) -> Result<Settings> {
         let edges = asked.needed("edges")?;
         let unused: &[&'static str] = match edges.word() {
@@ -186,17 +186,17 @@ impl Build for Scheme {
     }
 }
 
-/// A slot as the transcription writes it.
+/// Converts a slot to the transcription's form.
 pub fn index_of<const N: usize>(slot: Option<Slot<N>>) -> i8 {
     slot.map_or(-1, |slot| slot.index() as i8)
 }
 
-/// A slot as the transcription reads it.
+/// Converts a slot from the transcription's form.
 pub fn slot_of<const N: usize>(index: i8) -> Option<Slot<N>> {
     Slot::new(index as u16)
 }
 
-/// A threshold that falls slot by slot, from half a step below the maximum to half a step above the minimum.
+/// Encodes by a threshold that falls in each slot, from half a step below the maximum to half a step above the minimum.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], count: i16, min: S, max: S, slots: &mut [i8]) {
     let range: S::Wide = max.into() - min.into();
@@ -210,8 +210,8 @@ pub fn transcribed<S: Plain>(input: &[S], count: i16, min: S, max: S, slots: &mu
     }
 }
 
-/// A threshold that decays from the maximum, solved for the time, in `f32` for every sample type; -1 where it is never
-/// crossed.
+/// Encodes by a threshold that decays from the maximum, solved for the time, in `f32` for every sample type. Writes -1
+/// if the threshold is never crossed.
 #[inline(never)]
 pub fn transcribed_log<S: Plain>(
     input: &[S],
@@ -229,7 +229,7 @@ pub fn transcribed_log<S: Plain>(
     }
 }
 
-/// What the slots stand for, the last first; where there is none, the silence.
+/// Decodes with a table of values for the slots, the last slot first; `silence` is the value for none.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(slots: &[i8], table: &[S], silence: S, values: &mut [S]) {
     for i in 0..slots.len() {

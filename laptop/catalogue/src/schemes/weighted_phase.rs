@@ -88,7 +88,7 @@ impl Build for Scheme {
     }
 }
 
-/// A place in the range, doubled digit by digit.
+/// Encodes a position in the range by doubling it for each digit.
 #[inline(never)]
 pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, digits: &mut [i8]) {
     let range: S::Wide = max.into() - min.into();
@@ -109,7 +109,7 @@ pub fn transcribed<S: Plain>(input: &[S], min: S, max: S, digits: &mut [i8]) {
     }
 }
 
-/// The middle of the values with these digits.
+/// Decodes to the middle of the values with these digits.
 #[inline(never)]
 pub fn transcribed_decoder<S: Plain>(digits: &[i8], min: S, max: S, values: &mut [S]) {
     let range: S::Wide = max.into() - min.into();

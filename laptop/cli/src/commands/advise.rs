@@ -1,4 +1,4 @@
-//! `spikewire advise`: what a log is like, and which scheme suits each of its channels.
+//! `spikewire advise`: describes a log, and names the scheme that suits each of its channels.
 
 use crate::inputs::InputOptions;
 use crate::options::{answer, whole};
@@ -18,11 +18,12 @@ use lab::watch::{Progress, Watch};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Look at a log and say which bank suits it: one scheme for all channels, with which parameters, and why.
+/// Describe a log and advise a bank for it: one scheme for all channels, its parameters, and the reasons.
 ///
-/// Each scheme is tuned for a moment on each channel, with blocks held out. Of those that come as near to each signal as
-/// asked, on the blocks tuned on and on those held out, the one with the fewest bytes a second on the crate's link is
-/// advised. With --loop-bandwidth only codes are that a simulated drone flew well on, with frames lost.
+/// Each scheme is tuned briefly on each channel, with some blocks of the log held out. A scheme qualifies if it comes
+/// as near to each signal as asked, both on the tuned and on the held-out blocks. Of those that qualify, the one with
+/// the fewest bytes a second on the crate's link is advised. With --loop-bandwidth a scheme must also have flown a
+/// simulated drone well while frames were lost.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -35,39 +36,41 @@ pub(crate) struct Advise {
     /// Sample type of the codecs: f32, i16, i32, or fixed point such as q16.16
     #[arg(long, default_value_t)]
     sample: SampleType,
-    /// The RMSE that the control loop bears, in the signal's unit; a fifth of the signal's deviation unless given
+    /// Largest RMSE that the control loop tolerates, in the signal's unit; default: a fifth of the signal's standard
+    /// deviation
     #[arg(long, value_name = "RMSE", value_parser = lab::input::above_zero)]
     max_rmse: Option<f64>,
-    /// Samples until a code comes out at most
+    /// Maximum delay of the code, in samples
     #[arg(long, value_name = "SAMPLES")]
     max_latency: Option<f64>,
-    /// Hz up to which the control loop acts that is to fly on the code, a quarter of the samples a second at most: codes
-    /// that are late for it, or that fall behind the signal, are not advised
+    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate.
+    /// Codes that are too late for it, or that cannot keep up with the signal, are not advised
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
-    /// Percent of the frames that the link loses, 0 to 10: with --loop-bandwidth, codes that a simulated drone did not fly
-    /// on well at this loss are not advised
+    /// Share of frames that the link loses, in percent, 0 to 10. With --loop-bandwidth, a code is not advised if a
+    /// simulated drone flew badly on it at this loss
     #[arg(long, value_name = "PERCENT", default_value_t = AdviseRequest::FRAME_LOSS)]
     frame_loss: f64,
-    /// Core of the measured table: M0 or M4F
+    /// Core whose measured costs count: M0 or M4F
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
-    /// Stop after so many seconds in all, which makes the advice depend on the machine's speed; Ctrl-C stops as well
+    /// Stop after this many seconds in all; the advice then depends on the machine's speed. Ctrl-C stops as well
     #[arg(long, value_parser = lab::input::above_zero)]
     seconds: Option<f64>,
-    /// Settings of each scheme and channel to score at most
+    /// Maximum number of settings to score for each scheme and channel
     #[arg(long, default_value_t = AdviseRequest::EVALUATIONS, value_parser = whole::<usize>)]
     evaluations: usize,
     /// Seed of the search
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Draw one channel's signal, spikes and reconstruction by the scheme advised, `.svg` or `.png`
+    /// Draw one channel's signal, spikes and reconstruction with the advised scheme, `.svg` or `.png`
     #[arg(long)]
     picture: Option<PathBuf>,
-    /// Write the bank advised as a flight's file, TOML, for `emit`, `encode`, `listen`, Python and a firmware's build script
+    /// Write the advised bank as a flight's file (TOML), for `emit`, `encode`, `listen`, Python and a firmware's build
+    /// script
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// All of it as JSON, for programs
+    /// Print the whole report as JSON
     #[arg(long)]
     json: bool,
 }
@@ -75,7 +78,7 @@ pub(crate) struct Advise {
 /// Runs the command.
 ///
 /// # Errors
-/// The log or the options are not good, or there is nothing to say of any channel.
+/// Returns an error if the log or the options are invalid, or if no channel can be judged.
 pub(crate) fn run(options: &Advise) -> Result<()> {
     let recordings = Recording::read_all(&options.input.to_lab().or_all()?)?;
     if options.picture.is_some() && recordings.len() > 1 {

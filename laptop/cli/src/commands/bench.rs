@@ -7,23 +7,23 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lab::bench::{self, paper};
 use std::time::Instant;
 
-/// Reproduce Tables I and II of the paper, cell by cell; an error if a cell is not the paper's.
+/// Reproduce Tables I and II of the paper, cell by cell; fails if a cell differs from the paper's.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire bench
   spikewire bench --tests 100 --cases 3 --json")]
 pub(crate) struct Bench {
-    /// Signals a case; fewer than the paper's 1000 hide larger differences
+    /// Signals per case; the paper has 1000, and fewer of them detect only larger differences
     #[arg(long, default_value_t = paper::TESTS)]
     tests: usize,
-    /// How many of the five cases, from the shortest signals on
+    /// Number of cases to run, 1 to 5, starting with the shortest signals
     #[arg(long, default_value_t = paper::CASES.len())]
     cases: usize,
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Figures as JSON, for programs
+    /// Print the figures as JSON
     #[arg(long)]
     json: bool,
 }
@@ -31,7 +31,7 @@ pub(crate) struct Bench {
 /// Runs the command.
 ///
 /// # Errors
-/// The options make no sense.
+/// Returns an error if an option is out of its range, or if a cell differs from the paper's.
 pub(crate) fn run(options: &Bench) -> Result<()> {
     let &Bench { tests, cases, seed, json } = options;
     if !(2..=bench::MOST_TESTS).contains(&tests) {

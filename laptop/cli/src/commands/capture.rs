@@ -1,30 +1,31 @@
-//! `spikewire capture`: what a board writes to RTT, through a debug probe, byte for byte.
+//! `spikewire capture`: copies what a board writes to RTT, byte for byte, through a debug probe.
 
 use anyhow::Result;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Read a channel of RTT through a debug probe: no cable but the probe's.
+/// Read an RTT channel through a debug probe; the board needs no other cable.
 ///
-/// Needs a build with `--features capture`. Pipe it on: `spikewire capture --chip STM32F405RG | spikewire listen`.
+/// Needs a build with `--features capture`. Usually piped on: `spikewire capture --chip STM32F405RG | spikewire
+/// listen`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Capture {
-    /// The chip, as probe-rs calls it: STM32F405RG, RP2040
+    /// The chip's name in probe-rs, such as STM32F405RG or RP2040
     #[arg(long)]
     pub chip: String,
-    /// The debug probe, where there are several
+    /// The debug probe to use, if several are connected
     #[arg(long, value_name = "VENDOR:PRODUCT[:SERIAL]")]
     pub probe: Option<String>,
-    /// Which of the board's channels
+    /// Number of the RTT channel on the board
     #[arg(long, default_value_t = 0)]
     pub channel: usize,
-    /// Where the control block is, such as 0x20000000; all RAM is searched unless given
+    /// Address of RTT's control block, such as 0x20000000; default: all RAM is searched
     #[arg(long, value_parser = address)]
     pub address: Option<u64>,
-    /// Stop after this time; Ctrl-C stops as well
+    /// Stop after this many seconds; Ctrl-C stops as well
     #[arg(long)]
     pub seconds: Option<f64>,
-    /// File of bytes; standard output unless given
+    /// File to write the bytes to; default: standard output
     #[arg(short, long)]
     pub output: Option<PathBuf>,
 }
@@ -40,7 +41,7 @@ fn address(text: &str) -> Result<u64, String> {
 /// Runs the command.
 ///
 /// # Errors
-/// There is no such chip, probe, board or channel, or one of them went away.
+/// Returns an error if the chip, probe, board or channel is not found, or if one of them disconnects.
 #[cfg(feature = "capture")]
 pub(crate) fn run(options: &Capture) -> Result<()> {
     use crate::stop::Stop;
@@ -58,10 +59,10 @@ pub(crate) fn run(options: &Capture) -> Result<()> {
     })?)
 }
 
-/// Returns an error that says how to build the program with this command.
+/// Stands in for the command in a build without it, and says how to build with it.
 ///
 /// # Errors
-/// Always.
+/// Always returns an error.
 #[cfg(not(feature = "capture"))]
 pub(crate) fn run(_: &Capture) -> Result<()> {
     anyhow::bail!(

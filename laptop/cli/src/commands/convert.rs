@@ -1,4 +1,4 @@
-//! `spikewire convert`: events from any format to any other, in constant memory.
+//! `spikewire convert`: converts events from any format to any other, in constant memory.
 
 use crate::inputs::StreamOptions;
 use crate::words::option;
@@ -12,11 +12,11 @@ use std::path::PathBuf;
 
 /// Convert events from one format to another.
 ///
-/// FORMAT is `link`, `edvs:e0` to `edvs:e4` (by how the camera sends times), `es` (Event Stream),
-/// `evt2` (a file .raw), `eieio` (datagrams one after the other) or `csv` (`tick,address,polarity`).
-/// After a comma: `link,period=5000,channels=6,jitter=5` for short frames; `edvs:e2,up=0` where a 0
-/// goes up; `eieio,base=0x70000,step=1000,signed=1` for the key of address 0, the µs of a time step,
-/// and two keys an address, down and up.
+/// FORMAT is `link`, `edvs:e0` to `edvs:e4` (the number is the camera's time format), `es` (Event Stream), `evt2` (a
+/// .raw file), `eieio` (datagrams one after the other) or `csv` (`tick,address,polarity`). Options follow after a
+/// comma. `link,period=5000,channels=6,jitter=5` makes frames short. `edvs:e2,up=0` encodes a rise as 0.
+/// `eieio,base=0x70000,step=1000,signed=1` sets the key of address 0, the length of a time step in µs, and two keys for
+/// each address, the first for down and the second for up.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -33,7 +33,7 @@ pub(crate) struct Convert {
     /// Format of the output
     #[arg(long, value_name = "FORMAT")]
     to: Format,
-    /// File of events; standard output unless given
+    /// File to write the events to; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -43,7 +43,7 @@ pub(crate) struct Convert {
 /// Runs the command.
 ///
 /// # Errors
-/// The input cannot be read, or the output not be written.
+/// Returns an error if the input cannot be read or the output cannot be written.
 pub(crate) fn run(options: &Convert) -> Result<()> {
     let Convert { input, from, to, output, stream } = options;
     let mut port = Port::open(input, None)?;

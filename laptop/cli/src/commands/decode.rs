@@ -1,4 +1,4 @@
-//! `spikewire decode`: spikes back to values, in constant memory.
+//! `spikewire decode`: decodes spikes to values, in constant memory.
 
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{Event, SampleType};
@@ -14,23 +14,23 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Decode a file of spikes, as `encode` writes it, from that file alone, or a log of the toolbox's messages.
+/// Decode a file of spikes that `encode` wrote, or a log of the toolbox's messages; neither needs another file.
 ///
-/// Writes `index,value`, with several channels a column for each by its name, and with recorded times
-/// `time_us`: exact where there are events and at gaps, between them evenly spaced.
+/// Writes `index,value`; with several channels, one column for each, under its name. Recorded times follow as
+/// `time_us`: exact at events and at gaps, evenly spaced between them.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
   spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
   spikewire decode spikes.csv -o decoded.csv")]
 pub(crate) struct Decode {
-    /// File of spikes, or ROS bag or MCAP file of them; `-` is a file of spikes on standard input
+    /// File of spikes, or a ROS bag or MCAP file with spikes; `-` reads a file of spikes from standard input
     #[arg(default_value = "-")]
     spikes: PathBuf,
-    /// Take the whole messages of a log that is cut short or damaged
+    /// Read what is whole of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
-    /// CSV file `index,value` and perhaps `time_us`; standard output unless given
+    /// CSV file to write, `index,value` and `time_us` if times were recorded; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
@@ -40,7 +40,7 @@ const BUFFER: usize = 1 << 18;
 /// Runs the command.
 ///
 /// # Errors
-/// The file of spikes or the output are not good.
+/// Returns an error if the file of spikes is invalid or the output cannot be written.
 pub(crate) fn run(options: &Decode) -> Result<()> {
     let Decode { spikes, output, accept_cut } = options;
     if let Some(output) = output {
@@ -74,7 +74,7 @@ fn decode(
     file: &str,
     open: impl FnOnce() -> lab::Result<Output>,
 ) -> Result<()> {
-    /// The number of events or times that are decoded at once.
+    /// Number of events or times that are decoded at once.
     const BATCH: usize = 4096;
     let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;
@@ -118,16 +118,16 @@ fn decode(
     }
 }
 
-/// A file of spikes on its way to values.
+/// The state of decoding one file of spikes.
 struct Decoding {
     bank: Bank,
     output: Output,
     is_single: bool,
     is_timed: bool,
     timeline: Timeline,
-    /// The number of the next sample, as the file counts.
+    /// Number of the next sample to write, counted as in the file.
     next: u64,
-    /// The number of samples before it that the encoder never saw.
+    /// Number of samples before `next` that the encoder never saw.
     skipped: u64,
     columns: Vec<Vec<f64>>,
     line: Vec<u8>,
@@ -169,7 +169,7 @@ impl Decoding {
         })
     }
 
-    /// Decodes all samples before `end`, and empties `events`, which holds theirs.
+    /// Decodes all samples before `end`; takes their events out of `events` and leaves it empty.
     fn advance(&mut self, end: u64, events: &mut Vec<Event>) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         for event in events.iter_mut() {
@@ -191,7 +191,7 @@ impl Decoding {
         Ok(())
     }
 
-    /// Writes `count` samples without a value, which the encoder never saw.
+    /// Writes `count` samples that the encoder never saw, and that therefore have no value.
     fn skip(&mut self, count: u64) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         self.skipped += count;
@@ -235,7 +235,7 @@ impl Decoding {
     }
 }
 
-/// The names of the columns: `value`, or with several channels as in the recording.
+/// Returns the names of the columns: `value` for one channel, or the recording's names for several.
 fn names(header: &Header) -> Vec<String> {
     let count = header.channels.len();
     if count == 1 {

@@ -1,4 +1,4 @@
-//! `spikewire emit`: sources for firmware, from a flight's file or files of parameters.
+//! `spikewire emit`: writes source code for firmware, from a flight's file or from files of parameters.
 
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
@@ -9,7 +9,7 @@ use lab::output::Output;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Write sources for firmware, from a flight's file or files of parameters.
+/// Write source code for firmware, from a flight's file or from files of parameters.
 #[derive(Args, Debug)]
 pub(crate) struct Emit {
     #[command(subcommand)]
@@ -22,7 +22,7 @@ enum What {
     C(C),
 }
 
-/// Write both ends of a flight in Rust, as a firmware's build script does: the module `flight`, for `include!`.
+/// Write both ends of a flight in Rust: the module `flight`, for `include!`, as a firmware's build script makes it.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -32,12 +32,12 @@ struct Rust {
     /// The flight's file, TOML
     #[arg(long, value_name = "FILE")]
     flight: PathBuf,
-    /// The module; standard output unless given
+    /// File to write the module to; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
 
-/// Write a crate that makes the library for C of exactly these codecs, their parameters in flash.
+/// Write a crate that builds a C library of exactly these codecs, with their parameters in flash.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -49,16 +49,17 @@ Example:
 
 The codec has the name of its file: sw_roll_encode, of sw_roll_codec.")]
 struct C {
-    /// Files of parameters, TOML, as `tune --emit toml` writes them
+    /// Files of parameters (TOML), as `tune --emit toml` writes them
     #[arg(required_unless_present = "flight", value_name = "FILE")]
     params: Vec<PathBuf>,
-    /// The flight's file, TOML, in their place: its codecs, and `flight.h` with its bank and its writer
+    /// Flight's file (TOML), in place of files of parameters: makes its codecs, and `flight.h` with its bank and its
+    /// writer
     #[arg(long, value_name = "FILE", conflicts_with = "params")]
     flight: Option<PathBuf>,
-    /// Directory of the crate, which must not be there
+    /// Directory to create for the crate; must not exist yet
     #[arg(short, long, value_name = "DIRECTORY")]
     output: PathBuf,
-    /// A checkout of spikewire; the published crates unless given
+    /// Path of a checkout of spikewire to build against; default: the published crates
     #[arg(long, value_name = "DIRECTORY")]
     spikewire: Option<PathBuf>,
 }
@@ -66,7 +67,7 @@ struct C {
 /// Runs the command.
 ///
 /// # Errors
-/// A file is bad, or the crate cannot be written.
+/// Returns an error if an input file is invalid, or if the output cannot be written.
 pub(crate) fn run(options: &Emit) -> Result<()> {
     let C { params, flight, output, spikewire } = match &options.what {
         What::Rust(Rust { flight, output }) => {
@@ -86,7 +87,7 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
     Ok(c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())?)
 }
 
-/// The file's name without its ending, as C takes it: `gyro-x.toml` gives `gyro_x`.
+/// Returns the codec's name in C, made from the file's name without its ending: `gyro-x.toml` gives `gyro_x`.
 fn codec_name(path: &Path) -> Result<String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let is_word = |letter: char| letter.is_ascii_alphanumeric();

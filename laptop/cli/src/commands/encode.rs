@@ -1,4 +1,4 @@
-//! `spikewire encode`: a recording to spikes, in constant memory.
+//! `spikewire encode`: encodes a recording as spikes, in constant memory.
 
 use crate::inputs::InputOptions;
 use crate::options::Coding;
@@ -11,10 +11,10 @@ use lab::output::Output;
 use lab::spikes::Format;
 use std::path::PathBuf;
 
-/// Encode channels of a recording: `index,address,polarity` and, where it has times, `time_us`.
+/// Encode channels of a recording: writes `index,address,polarity` and, if the recording has times, `time_us`.
 ///
-/// With several columns the address says which: the second column's neurons are numbered on from the
-/// first's. All columns have the same parameters; what is calibrated is each one's own.
+/// With several columns the address tells them apart: the neurons of the second column are numbered on from those of
+/// the first. All columns share the given parameters; parameters that are calibrated are calibrated for each column.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -26,13 +26,13 @@ Examples:
 pub(crate) struct Encode {
     #[command(flatten)]
     coding: Coding,
-    /// The flight's file, TOML, as `advise -o` writes it: its channels, as its sender encodes them
+    /// Flight's file (TOML) that `advise -o` wrote: encodes its channels as the flight's sender does
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
     #[command(flatten)]
     input: InputOptions,
-    /// File of spikes, `.csv`, `.txt` or without an ending, or of the toolbox's messages, `.bag` (ROS 1) or `.mcap` (ROS 2);
-    /// standard output unless given
+    /// File to write: spikes as `.csv`, `.txt` or without an ending, or messages of the toolbox as `.bag` (ROS 1) or
+    /// `.mcap` (ROS 2); default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
@@ -40,7 +40,7 @@ pub(crate) struct Encode {
 /// Runs the command.
 ///
 /// # Errors
-/// The recording, the parameters or the output are not good.
+/// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.
 pub(crate) fn run(options: &Encode) -> Result<()> {
     let Encode { coding, flight, input, output } = options;
     let format = output.as_deref().map(Format::of).transpose()?.flatten();

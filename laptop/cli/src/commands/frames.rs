@@ -1,4 +1,4 @@
-//! `spikewire frames`: a video to the events that an event camera would send, in constant memory.
+//! `spikewire frames`: converts a video to the events that an event camera would send, in constant memory.
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -11,12 +11,12 @@ use spikewire_cameras::frame::{
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
-/// Turn a video into the events of its pixels, as an event camera would send them.
+/// Convert a video to the events of its pixels, as an event camera would send them.
 ///
-/// VIDEO is YUV4MPEG2 (`.y4m`, or `-`), pictures (`.png`, `.jpg`, `.pgm`, as files or a directory, in the order of their
-/// names), or whatever `ffmpeg` reads, if it is there; only the brightness is taken. A pixel sends an event when it
-/// leaves what it sent last by `--threshold` grey levels, or by `--contrast` of its logarithm. The first frame sends
-/// nothing.
+/// VIDEO is YUV4MPEG2 (`.y4m`, or `-`), pictures (`.png`, `.jpg`, `.pgm`, as files or a directory, in the order of
+/// their names), or any format that an installed `ffmpeg` reads. Only the brightness counts. A pixel sends an event
+/// when its brightness differs from what it last sent by `--threshold` grey levels, or its logarithm by `--contrast`.
+/// The first frame sends nothing.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -25,43 +25,44 @@ Examples:
   spikewire frames pictures --fps 30 --preview figure.png
   spikewire frames clip.mp4 --preview figure.gif --until 100")]
 pub(crate) struct Frames {
-    /// Video, or pictures
+    /// Video file, or several pictures
     #[arg(required = true)]
     video: Vec<PathBuf>,
-    /// Grey levels, 1 to 254; the paper's figure has 1 and 10
+    /// Threshold in grey levels, 1 to 254; the paper's figure uses 1 and 10
     #[arg(long, conflicts_with = "contrast")]
     threshold: Option<u8>,
-    /// Contrast as of an event camera, on the natural logarithm: 0.2 is 22 % brighter
+    /// Contrast threshold, in natural logarithm as for an event camera: 0.2 means 22 % brighter
     #[arg(long)]
     contrast: Option<f64>,
-    /// Contrast of darker samples; that of brighter ones unless given
+    /// Contrast threshold for pixels that get darker; default: the same as for brighter ones
     #[arg(long, requires = "contrast")]
     contrast_off: Option<f64>,
-    /// The most events of a pixel and frame, 1 to 255
+    /// Maximum number of events of one pixel in a frame, 1 to 255
     #[arg(long, default_value_t = 1)]
     most: u8,
-    /// Frames for which a pixel is silent after one with events
+    /// Number of frames for which a pixel stays silent after a frame in which it sent events
     #[arg(long, default_value_t = 0)]
     refractory: u8,
-    /// The most events of a frame; what is beyond is sent later, and counted
+    /// Maximum number of events in a frame; the rest is sent in later frames, and counted
     #[arg(long)]
     budget: Option<u32>,
-    /// Spread the events of a pixel over the time since the frame before, in as many parts as --most
+    /// Spread the events of a pixel over the time since the previous frame, which is divided into --most parts
     #[arg(long)]
     interpolate: bool,
-    /// Frames a second, such as `30` or `30000/1001`; the video's own, and 30 for pictures, unless given
+    /// Frames a second, such as `30` or `30000/1001`; default: the video's own rate, or 30 for pictures
     #[arg(long)]
     fps: Option<Rate>,
-    /// File of events: `.es` (Event Stream), `.raw` (EVT2) or `.csv`
+    /// File of events to write: `.es` (Event Stream), `.raw` (EVT2) or `.csv`
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Picture of a frame and its events, `.png`, or of all, `.gif`
+    /// Picture to draw: one frame and its events as `.png`, or all frames as `.gif`
     #[arg(long)]
     preview: Option<PathBuf>,
-    /// Thresholds of the preview's panels, in grey levels
+    /// Thresholds of the preview's panels, in grey levels; one panel for each
     #[arg(long, value_delimiter = ',', default_value = "1,10", requires = "preview")]
     panels: Vec<u8>,
-    /// The frame that the preview shows, from 0 on, or ends with; 30, and the last of a `.gif`, unless given
+    /// Frame that a `.png` preview shows, or that a `.gif` ends with, counted from 0; default: 30, or the last for a
+    /// `.gif`
     #[arg(long, requires = "preview")]
     until: Option<u64>,
 }
@@ -69,7 +70,7 @@ pub(crate) struct Frames {
 /// Runs the command.
 ///
 /// # Errors
-/// The options, the video or the output are not good.
+/// Returns an error if the options or the video are invalid, or if the output cannot be written.
 pub(crate) fn run(options: &Frames) -> Result<()> {
     let Frames { threshold, contrast, most, .. } = options;
     match (threshold, contrast) {
@@ -88,9 +89,9 @@ pub(crate) fn run(options: &Frames) -> Result<()> {
     }
 }
 
-/// Returns a contrast in levels of the logarithm.
+/// Converts a contrast to levels of the logarithmic scale.
 fn levels(option: &str, contrast: f64) -> Result<u16> {
-    /// The levels of a factor of e. `MOST` is the highest that is of use.
+    /// Number of levels for a factor of e. `MOST` is the highest useful contrast in levels: that from black to white.
     const SCALE: f64 = 1024.0;
     const MOST: f64 = 5673.0;
     let levels = (SCALE * contrast).round();
@@ -193,7 +194,7 @@ fn encoder<C: PixelCode>(
     })
 }
 
-/// A bar of the frames so far, with their total if it is known; hidden unless standard error is a terminal.
+/// Makes a progress bar of frames, with their total if it is known. It is hidden unless standard error is a terminal.
 fn bar(frames: Option<u64>) -> Result<ProgressBar> {
     if !io::stderr().is_terminal() {
         return Ok(ProgressBar::hidden());

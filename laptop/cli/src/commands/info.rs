@@ -1,4 +1,4 @@
-//! `spikewire info`: what a log or a table holds.
+//! `spikewire info`: lists the content of a log or a table.
 
 use crate::words::option;
 use anyhow::Result;
@@ -11,20 +11,20 @@ use lab::output::Output;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// List a log's topics with their fields, rates and gaps, and what its logger missed; of a table its columns, rows, rate
+/// List a log's topics with their fields, rates and gaps, and what the logger missed; or a table's columns, rows, rate
 /// and gaps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
   spikewire info flight.ulg")]
 pub(crate) struct Info {
-    /// PX4's `ULog`, a bag of ROS 1 or 2, an MCAP file, Betaflight's blackbox or a CSV table, also compressed by gzip; `-` is
-    /// a table on standard input
+    /// PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an MCAP file, Betaflight's
+    /// blackbox or a CSV table, also compressed; `-` is a table on standard input
     log: PathBuf,
-    /// Report steps in time above this many usual steps
+    /// Report time steps that are longer than this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
     gap: f64,
-    /// Take the whole messages of a log that is cut short or damaged
+    /// Read what is whole of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
 }
@@ -32,7 +32,7 @@ pub(crate) struct Info {
 /// Runs the command.
 ///
 /// # Errors
-/// The log cannot be read.
+/// Returns an error if the log cannot be read.
 pub(crate) fn run(options: &Info) -> Result<()> {
     let Info { log, gap, accept_cut } = options;
     let (gap, accept_cut) = (*gap, *accept_cut);

@@ -1,4 +1,4 @@
-//! `spikewire listen`: what a board sends, as events or values, while it comes.
+//! `spikewire listen`: shows what a board sends, as events or as decoded values, while it arrives.
 
 use crate::inputs::StreamOptions;
 use crate::live::Live;
@@ -20,13 +20,13 @@ use lab::values::with_receiver;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Listen to what a board sends: events, or with `--scheme` the values they mean.
+/// Listen to a board: write the events that it sends, or with `--scheme` the values that they encode.
 ///
-/// Formats are called as in `convert`. Values come from a link, by the receiver that runs on boards. Those
-/// marked `exact` are bit for bit those of a decoder on the sender's side: of a temporal code from a keyframe on until
-/// something is lost, of a rate code after as many samples as its filter has taps, of a population code from the next
-/// spike on. A temporal code has a value for each event; the others have one for each sample and channel, from the
-/// first event of the channel on.
+/// Formats have the names that `convert` uses. Values need the format `link`, and are decoded by the same receiver that
+/// runs on boards. A value marked `exact` equals, bit for bit, that of a decoder on the sender. It is exact: for a
+/// temporal code, from a keyframe on until something is lost; for a rate code, once as many samples as its filter has
+/// taps have arrived; for a population code, from the next spike on. A temporal code gives one value for each event.
+/// The other codes give one for each sample and channel, from the channel's first event on.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -36,13 +36,13 @@ Examples:
   spikewire listen captured.bytes --flight flight.toml
   spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
-    /// Serial port, or file of captured bytes; `-` is standard input
+    /// Serial port, or a file of captured bytes; `-` reads standard input
     #[arg(default_value = "-")]
     input: PathBuf,
-    /// The input is a serial port of this speed in bits a second, 8 data bits, no parity, 1 stop bit
+    /// Speed in bits a second if the input is a serial port (8 data bits, no parity, 1 stop bit)
     #[arg(long)]
     baud: Option<u32>,
-    /// Stop after so many seconds; Ctrl-C stops as well
+    /// Stop after this many seconds; Ctrl-C stops as well
     #[arg(long, requires = "baud")]
     seconds: Option<f64>,
     /// Format of the bytes
@@ -51,24 +51,24 @@ pub(crate) struct Listen {
     /// Format to write
     #[arg(long, value_name = "FORMAT", default_value = "csv")]
     to: Format,
-    /// File of events or values; standard output unless given
+    /// File to write events or values to; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
     #[command(flatten)]
     stream: StreamOptions,
-    /// Decode a link's frames by this scheme, the sender's
+    /// Decode a link's frames by this scheme; must be the sender's
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
-    /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8; f32 unless given
+    /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8; default: f32
     #[arg(long)]
     sample: Option<SampleType>,
-    /// File of the sender's parameters, TOML, as `tune --emit toml` writes it; options override it
+    /// File of the sender's parameters (TOML), as `tune --emit toml` writes it; options on the command line override it
     #[arg(long, value_name = "FILE", value_parser = crate::options::read)]
     params: Option<Coding>,
-    /// The flight's file, TOML, as `advise -o` writes it, from which the sender was made
+    /// Flight's file (TOML) that `advise -o` wrote, and from which the sender was made
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
     flight: Option<PathBuf>,
-    /// Length of the sender's sub-timesteps in µs, of schemes that have them
+    /// Length in µs of the sender's sub-timesteps; only for schemes that have them
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
     #[command(flatten)]
@@ -79,7 +79,7 @@ fn is_recorded(parameter: &Parameter) -> bool {
     parameter.is_recorded
 }
 
-/// The parameters that decoding takes.
+/// The parameters that a decoder needs.
 #[derive(Clone, Debug)]
 struct DecoderOptions(Asked);
 
@@ -93,7 +93,7 @@ option_group!(
 /// Runs the command.
 ///
 /// # Errors
-/// The options, the port or the output are not good.
+/// Returns an error if the options are invalid, the port cannot be opened, or the output cannot be written.
 pub(crate) fn run(options: &Listen) -> Result<()> {
     if let Some(path) = &options.flight {
         if !options.parameters.0.is_empty() {
@@ -170,13 +170,13 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
 }
 
 impl Listen {
-    /// The scheme named, here or in the file of parameters.
+    /// Returns the scheme that an option or the file of parameters names.
     fn named(&self) -> Result<Option<Scheme>> {
         let Some(params) = &self.params else { return Ok(self.scheme) };
         Ok(Some(agreed(params, self.scheme)?))
     }
 
-    /// The sub-timesteps of the sender, of a scheme that has them.
+    /// Returns the length of the sender's sub-timesteps in µs; `None` if the scheme has none.
     fn slot_ticks(&self, scheme: Scheme, settings: &[Settings]) -> Result<Option<u32>> {
         // The spikes of a temporal code are all alike, whatever their sub-timestep.
         let has_slots = !scheme.info().has_first_value()
@@ -199,7 +199,7 @@ impl Listen {
         }
     }
 
-    /// Refuses formats that hold no values.
+    /// Returns an error if the input or output format cannot carry values.
     fn check_formats(&self, option: &str) -> Result<()> {
         if !matches!(self.from, Format::Link(_)) {
             bail!(
@@ -212,7 +212,7 @@ impl Listen {
         Ok(())
     }
 
-    /// The settings of one channel for all, or of each.
+    /// Returns one set of settings that all channels share, or one for each channel.
     fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
         self.check_formats("--scheme")?;
         let mut asked = match &self.params {

@@ -1,4 +1,4 @@
-//! One file a command.
+//! The commands, one in each file.
 
 pub(crate) mod advise;
 pub(crate) mod bench;

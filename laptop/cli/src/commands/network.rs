@@ -1,4 +1,5 @@
-//! `spikewire network`: a trained network onto a chip or the flight controller, and what that costs.
+//! `spikewire network`: brings a trained network onto a chip or the flight controller, and reports the cost in
+//! accuracy.
 
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
@@ -26,19 +27,20 @@ use std::fs;
 use std::io::{self, BufRead, Write, stdin};
 use std::path::{Path, PathBuf};
 
-/// Bring a trained network onto a chip or the flight controller itself: Rust constants for `spikewire-chips` or
-/// `spikewire-network`, and what that costs.
+/// Bring a trained network onto a chip, or onto the flight controller itself: writes Rust constants for
+/// `spikewire-chips` or `spikewire-network`, and reports how much accuracy that costs.
 ///
-/// A recording's spikes run through the network in double precision and, with the chip's weights and arithmetic, through
-/// its model, clock by clock; or as the controller computes it, bit by bit. NETWORK is a NIR graph (an HDF5 file of
-/// snnTorch, Norse, Rockpool, Sinabs, Lava and others) that is a chain of up to three layers, each Linear or Affine and
-/// LIF, IF or `CubaLIF` (whose currents last a step), which may lead back to itself, and on `ReckOn` Linear and LI, I or
-/// `CubaLI` as outputs; or JSON: {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...],
-/// "keep": 0.9, "threshold": 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}, with weights by neuron and
-/// then input, and the share of the potential that a step leaves.
+/// A recording's spikes run through the network twice: in double precision, and as the target computes it. A chip's
+/// weights and arithmetic run in its model, clock by clock; the controller's arithmetic is reproduced bit by bit.
+/// NETWORK is a NIR graph or JSON. A NIR graph is an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and others.
+/// It must be a chain of up to three layers, each Linear or Affine followed by LIF, IF or `CubaLIF` (whose currents may
+/// last one step only). A layer may be recurrent, and on `ReckOn` a last layer of Linear and LI, I or `CubaLI` may
+/// serve as outputs. JSON is {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep":
+/// 0.9, "threshold": 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}. Its weights are listed by
+/// neuron, then by input; `keep` is the factor by which a step multiplies the potential.
 ///
-/// The controller takes any number of layers, `CubaLIF` with currents of any length, and weights behind the last neurons.
-/// A NIR file does not say by which rule its neurons step: --as does, and the options behind it.
+/// The controller takes any number of layers, `CubaLIF` with currents of any length, and a last layer of weights alone.
+/// A NIR file does not say in which order its neurons decay, fire and reset: --as and the options after it do.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -48,19 +50,19 @@ pub(crate) struct Network {
     /// NIR graph, or network in JSON
     #[arg(value_name = "NETWORK")]
     trained: PathBuf,
-    /// The chip, or `controller`
+    /// Target: a chip, or `controller`
     #[arg(long = "on", visible_alias = "chip", default_value = CHIPS[0].name(), value_parser = places())]
     place: &'static str,
-    /// The scheme that makes the inputs: one for each neuron of each column, of codes with a direction two, up and
-    /// down. Without it INPUT holds the spikes themselves: a line for each step, with the numbers of the inputs that fire,
-    /// in order
+    /// Scheme that makes the network's inputs: one input for each neuron of each column, or two, up and down, if the
+    /// code has a direction. Without it INPUT holds spikes: a line for each step, with the numbers of the inputs that
+    /// fire, in order
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
-    /// Seconds of a step in the network's time constants, such as 1e-4 of snnTorch; a sample or sub-timestep of the
-    /// recording unless given, but for the controller
+    /// Length of a step in seconds, to convert the network's time constants, such as 1e-4 for snnTorch; default for a
+    /// chip: one sample or sub-timestep of the recording
     #[arg(long, value_name = "SECONDS", value_parser = above_zero)]
     dt: Option<f64>,
     #[command(flatten)]
@@ -69,38 +71,37 @@ pub(crate) struct Network {
     parameters: SchemeOptions,
     #[command(flatten)]
     rule: RuleOptions,
-    /// Another recording, which shows what the network is worth where it was not tuned; the last third of INPUT unless
-    /// given
+    /// Another recording, not used for tuning, on which the network is tested; default: the last third of INPUT
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
-    /// Tune on the whole recording, and hold nothing out
+    /// Tune on the whole recording, and test on nothing
     #[arg(long, conflicts_with = "held_out")]
     no_held_out: bool,
-    /// The outputs that fired where the network was trained, a line for each step of INPUT: the chip is compared with
-    /// them, and so is how the file is read
+    /// Spikes of the network's outputs in the training framework, a line for each step of INPUT. Both the chip and the
+    /// way in which the file is read are compared with them
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
-    /// When neurons of tinyODIN compare with their thresholds: after each spike, as the chip has it, or once a step, as in
-    /// training, which takes more events; what holds better unless given
+    /// When tinyODIN's neurons compare with their thresholds: after each spike, as the chip does by itself, or once a
+    /// step, as in training, which takes more events; default: the one that keeps more accuracy
     #[arg(long, value_parser = compares())]
     compare: Option<Compare>,
-    /// File of Rust; standard output unless given
+    /// Rust file to write; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// File of the network as bytes, which the driver loads at run time
+    /// Also write the network as a file of bytes, which the driver loads at run time
     #[arg(long, value_name = "FILE")]
     bytes: Option<PathBuf>,
-    /// Then run the network on the chip's model, step by step: each line of standard input is one, as those of spikes
-    /// are, and is answered by a line of the chip's clocks and the outputs that fire. The constant is not written
-    /// unless -o is given
+    /// Then run the network on the chip's model, step by step. Each line of standard input is a step, written as a line
+    /// of spikes; the answer is a line with the number of clocks that the chip took, and the outputs that fired. The
+    /// constant is not written unless -o is given
     #[arg(long)]
     live: bool,
 }
 
-/// The flight controller's name beside those of the chips.
+/// Name of the flight controller as a target, beside those of the chips.
 const CONTROLLER: &str = "controller";
 
-/// The names of the places where networks go.
+/// Parses the name of a target.
 fn places() -> impl TypedValueParser<Value = &'static str> {
     let names = || CHIPS.iter().map(|chip: &&dyn Chip| chip.name()).chain([CONTROLLER]);
     PossibleValuesParser::new(names())
@@ -112,7 +113,7 @@ fn compares() -> impl TypedValueParser<Value = Compare> {
         .map(|asked| if asked == "spike" { Compare::Spike } else { Compare::Step })
 }
 
-/// A network with the numbers of its place.
+/// A network in the numbers of its target.
 enum Placed {
     Chip(&'static dyn Chip, Trained),
     Controller(Model),
@@ -133,7 +134,7 @@ impl Placed {
         Ok(Self::Chip(*chip, file.on_chip(&rule.asked(*dt), seconds)?))
     }
 
-    /// How many inputs it has, and the name of its first layer.
+    /// Returns the number of inputs, and the name of the first layer.
     fn inputs(&self) -> (usize, &str) {
         match self {
             Self::Chip(_, trained) => (trained.inputs(), &trained.layers[0].name),
@@ -145,7 +146,8 @@ impl Placed {
 /// Runs the command.
 ///
 /// # Errors
-/// The network, the recording, the parameters or the output are not good, or the network does not fit the chip.
+/// Returns an error if the network, the recording or the parameters are invalid, if the network does not fit the chip,
+/// or if the output cannot be written.
 pub(crate) fn run(options: &Network) -> Result<()> {
     let Network { trained: path, output, .. } = options;
     let input = &options.input.to_lab();
@@ -234,7 +236,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     if options.live { live(&*brought.network, placed.inputs().0) } else { Ok(()) }
 }
 
-/// Steps in by standard input, answers out.
+/// Reads steps from standard input, and writes the network's answer to each.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| -> lab::Result<_> {
@@ -254,7 +256,7 @@ fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     Ok(())
 }
 
-/// A line of spikes.
+/// Parses a line of spikes: the numbers of the inputs that fire in a step.
 fn spikes(line: &str) -> lab::Result<Vec<u16>> {
     let of_word = |word: &str| {
         word.parse().map_err(|_| NetworkKind::NotAnInput { word: word.to_owned() }.into())
@@ -262,23 +264,23 @@ fn spikes(line: &str) -> lab::Result<Vec<u16>> {
     line.split_whitespace().map(of_word).collect()
 }
 
-/// The input of the network.
+/// The spikes that drive the network.
 struct Driven {
-    /// The input spikes, by step.
+    /// The inputs that fire, for each step.
     steps: Trains,
-    /// How many there are; of spikes as they are the highest is known.
+    /// Number of inputs. From a file of spikes it is only a lower bound: the highest input that fires, plus one.
     inputs: usize,
-    /// What the inputs are.
+    /// Description of the inputs, for error messages.
     words: String,
-    /// How long a step is, if that is known.
+    /// Length of a step in µs, if it is known.
     step_us: Option<f64>,
-    /// The settings of the columns.
+    /// Settings of the scheme, for each column.
     settings: Vec<Settings>,
     notes: Vec<Words>,
 }
 
 impl Driven {
-    /// Returns an error unless these are the network's inputs.
+    /// Returns an error if the network has another number of inputs.
     fn check(&self, (inputs, layer): (usize, &str), scheme: Option<Scheme>) -> Result<()> {
         let given = &self.words;
         match scheme {
@@ -293,7 +295,7 @@ impl Driven {
     }
 }
 
-/// The recording as spikes, with these settings or those that it calibrates.
+/// Encodes a recording. The scheme has the `known` settings, or is calibrated on the recording.
 fn driven(
     options: &Network,
     scheme: Scheme,
@@ -357,7 +359,7 @@ fn driven(
     })
 }
 
-/// Spikes as they are.
+/// Reads a file that holds spikes rather than samples.
 fn spiking(path: &Path) -> Result<Driven> {
     let name = || path.display().to_string();
     let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", name()))?;
@@ -375,12 +377,12 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// The share of agreeing steps below which a warning says so.
+/// Share of agreeing steps below which the report warns.
 const LOW: f64 = 0.5;
-/// The share below which the file may be read by another rule than it was trained by.
+/// Share of agreeing steps below which the file was probably trained by another rule than it is read by.
 const READ: f64 = 0.95;
 
-/// Prints the cost of quantising on standard error.
+/// Prints on standard error how much accuracy quantising costs.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out, costs, reading } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));

@@ -1,47 +1,48 @@
-//! The options that say by which rule a network's neurons step.
+//! Options that set the rule by which a network's neurons step.
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lab::network::{Asked, Current, Decay, Fires, Framework, Numbers, Reset};
 
-/// The rule of a network, which a NIR file does not say.
+/// The rule by which a network's neurons step: a NIR file does not contain it.
 #[derive(Args, Debug)]
 pub(crate) struct RuleOptions {
-    /// The framework whose rule the network follows: of a NIR file this, or --reset, and on the controller each of the
-    /// choices below
+    /// Framework whose rule the network follows. A NIR file needs this or --reset; on the controller, this or all of
+    /// the options below
     #[arg(long = "as", value_name = "FRAMEWORK", value_parser = of(&FRAMEWORKS))]
     framework: Option<Framework>,
-    /// What a spike does to its neuron: to all, or of each layer that fires, with commas between
+    /// What a spike does to its neuron's potential: one word for all layers, or one for each layer that fires,
+    /// comma-separated
     #[arg(long = "reset", value_delimiter = ',', value_parser = of(&RESETS))]
     resets: Vec<Reset>,
-    /// When a neuron fires
+    /// Comparison with the threshold by which a neuron fires
     #[arg(long, value_parser = of(&FIRES))]
     fires: Option<Fires>,
-    /// How potentials and currents decay
+    /// How a time constant becomes the decay of potentials and currents in a step
     #[arg(long, value_parser = of(&DECAYS))]
     decay: Option<Decay>,
-    /// The current that a potential takes, of neurons with both
+    /// Which current drives the potential, for neurons that have both
     #[arg(long, value_parser = of(&CURRENTS))]
     current: Option<Current>,
-    /// The controller's numbers
+    /// Number type on the controller
     #[arg(long, default_value = "f32", value_parser = of(&NUMBERS))]
     pub(crate) numbers: Numbers,
 }
 
 impl RuleOptions {
-    /// What is asked for, with these seconds of a step.
+    /// Returns the rule asked for, with `dt` as the length of a step in seconds.
     pub(crate) fn asked(&self, dt: Option<f64>) -> Asked {
         let &Self { framework, fires, decay, current, .. } = self;
         Asked { framework, resets: self.resets.clone(), fires, decay, current, dt }
     }
 }
 
-/// The reset that is also called `zero`.
+/// The reset that may also be written `zero`.
 const ZERO: &str = "to-value";
 
 type Choices<T> = [(&'static str, T, &'static str)];
 
-/// Reads one of these words.
+/// Parses one of these words.
 fn of<T: Copy + Send + Sync + 'static>(
     choices: &'static Choices<T>,
 ) -> impl TypedValueParser<Value = T> {

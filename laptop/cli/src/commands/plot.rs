@@ -1,4 +1,4 @@
-//! `spikewire plot`: signal and reconstruction over spikes.
+//! `spikewire plot`: draws signal and reconstruction over spikes.
 
 use super::score::chosen;
 use crate::inputs::InputOptions;
@@ -13,30 +13,31 @@ use lab::trial::{Recording, Trial};
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// Draw signal and reconstruction over spikes, as the paper's first figure.
+/// Draw signal and reconstruction over spikes, as in the paper's first figure.
 ///
-/// A scheme without parameters has the paper's settings, as with `--all`. A long recording is thinned to what the picture can show. The decoded curve stands at the samples it belongs
-/// to; what a rate code's look-ahead delays it by is told in the panel.
+/// A scheme without parameters runs with the paper's settings, as all do with `--all`. A long recording is thinned to
+/// what the picture can show. The decoded curve is drawn without the delay of a rate code's look-ahead, which the panel
+/// states.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
   spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
-    /// Panels A-G for the paper's schemes with its settings, and H with their efficiency
+    /// Draw panels A-G for the paper's schemes with the paper's settings, and H with their efficiency
     #[arg(long, conflicts_with_all = ["scheme", "params"])]
     all: bool,
     #[command(flatten)]
     coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    /// Samples to show, such as `1000..1400`; all of them are encoded
+    /// Samples to show, such as `1000..1400`; the samples outside are encoded too
     #[arg(long)]
     range: Option<String>,
-    /// The signal's unit, such as `rad/s`; told by the column's name, `gyro_x (rad/s)`, unless given
+    /// Unit of the signal, such as `rad/s`; default: the one in the column's name, such as `gyro_x (rad/s)`
     #[arg(long)]
     unit: Option<String>,
-    /// Picture, `.svg` or `.png`
+    /// Picture to write, `.svg` or `.png`
     #[arg(short, long)]
     output: PathBuf,
 }
@@ -44,7 +45,7 @@ pub(crate) struct Plot {
 /// Runs the command.
 ///
 /// # Errors
-/// The recording, the parameters or the output are not good.
+/// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.
 pub(crate) fn run(options: &Plot) -> Result<()> {
     let Plot { coding, input, range, output, .. } = options;
     if !options.all && !coding.is_named() {

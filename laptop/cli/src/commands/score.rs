@@ -1,4 +1,4 @@
-//! `spikewire score`: how few spikes, and how near to the signal.
+//! `spikewire score`: counts a scheme's spikes, and measures how near to the signal they decode.
 
 use crate::inputs::InputOptions;
 use crate::options::{Coding, answer};
@@ -13,13 +13,13 @@ use lab::trial::{Recording, Trial};
 use serde::Serialize;
 use std::io::Write;
 
-/// Score one scheme, or without `--scheme` all with the paper's settings, on one channel of a recording.
+/// Score one scheme on one channel of a recording, or without `--scheme` all schemes.
 ///
-/// A scheme without parameters takes the paper's settings. Of all schemes, one that does not take the recording is a
-/// row that says why.
+/// A scheme without parameters runs with the paper's settings. When all are scored, a scheme that cannot encode the
+/// recording gets a row with the reason.
 ///
-/// Efficiency is the percentage of samples without a spike; RMSE is in the signal's unit and compares each
-/// decoded value with the sample it belongs to, so without a rate code's latency; SNR is in dB.
+/// Efficiency is the percentage of samples without a spike. RMSE is in the signal's unit; it compares each decoded
+/// value with the sample that it belongs to, so a rate code's latency does not count. SNR is in dB.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -30,7 +30,7 @@ pub(crate) struct Score {
     coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    /// Figures and parameters as JSON, for programs
+    /// Print figures and parameters as JSON
     #[arg(long)]
     json: bool,
 }
@@ -40,7 +40,7 @@ pub(crate) struct Score {
 #[serde(untagged)]
 enum Scored {
     Figures(Box<Figures>),
-    /// The scheme does not take this recording, and why.
+    /// The scheme cannot encode this recording; holds the reason.
     Refused {
         scheme: String,
         refused: String,
@@ -50,7 +50,7 @@ enum Scored {
 /// Runs the command.
 ///
 /// # Errors
-/// The recording or the parameters are not good.
+/// Returns an error if the recording or the parameters are invalid.
 pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { coding, input, json } = options;
     let (schemes, sample, parameters) = chosen(coding)?;
@@ -92,10 +92,10 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     Ok(())
 }
 
-/// One scheme with its parameters, or with the paper's where none are given; or all with the paper's.
+/// Returns the scheme named, with the given parameters or else the paper's; or all schemes with the paper's parameters.
 ///
 /// # Errors
-/// Parameters without a scheme to take them.
+/// Returns an error if parameters are given without a scheme.
 pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Asked)> {
     let (scheme, sample, mut parameters) = coding.chosen()?;
     match scheme {

@@ -1,4 +1,4 @@
-//! `spikewire signal`: a signal of the paper's benchmark, to try things on.
+//! `spikewire signal`: writes a signal of the paper's benchmark, to experiment with.
 
 use crate::options::whole;
 use anyhow::Result;
@@ -14,18 +14,18 @@ use std::path::PathBuf;
 Example:
   spikewire signal --seconds 15 | spikewire encode --scheme sf --threshold 0.5 -")]
 pub(crate) struct Signal {
-    /// Its duration in seconds, 0 to 1000000
+    /// Duration in seconds, 0 to 1000000
     #[arg(long, default_value_t = 1, value_parser = seconds)]
     seconds: usize,
-    /// Seed of its noise
+    /// Seed of the noise
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// CSV file; standard output unless given
+    /// CSV file to write; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
 }
 
-/// Reads a number of seconds of which all samples fit into memory.
+/// Parses a number of seconds whose samples fit into memory.
 fn seconds(text: &str) -> Result<usize, String> {
     const MOST: usize = 1_000_000;
     let seconds = whole(text).ok().filter(|seconds| *seconds <= MOST);
@@ -35,7 +35,7 @@ fn seconds(text: &str) -> Result<usize, String> {
 /// Runs the command.
 ///
 /// # Errors
-/// The output cannot be written.
+/// Returns an error if the output cannot be written.
 pub(crate) fn run(options: &Signal) -> Result<()> {
     if let Some(output) = &options.output {
         is_table(output, "")?;

@@ -1,4 +1,4 @@
-//! `spikewire tune`: the parameters of a scheme, from flight logs.
+//! `spikewire tune`: finds the parameters of a scheme from flight logs.
 
 use crate::inputs::ChannelOptions;
 use crate::options::{FREE, answer, augment, given, option_group, whole};
@@ -24,12 +24,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Search a scheme's parameters for a goal: the least RMSE at a spiking efficiency, the greatest efficiency at an
-/// RMSE, or the front of both.
+/// Search a scheme's parameters for a goal: the least RMSE at a given spiking efficiency, the greatest efficiency at a
+/// given RMSE, or the front of both.
 ///
-/// Some blocks of each log are held out, and the settings are scored on them too. What is scored is the codec that
-/// flies, in the sample type given. Parameters that are given stay; the others are searched. Without a goal it is
-/// the least RMSE at the efficiency of the paper's settings.
+/// Some blocks of each log are held out, and the settings found are scored on them too. The codec that is scored is the
+/// one that flies, in the sample type given. Parameters that are given stay fixed; the others are searched. The default
+/// goal is the least RMSE at the efficiency that the paper's settings reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -39,77 +39,78 @@ Examples:
   spikewire tune flight.csv --scheme sod --spikes 8 --max-rmse 0.1 --emit flight -o flight.toml
   spikewire tune flight.csv --channel gyro_x,gyro_y --scheme all --front front.svg")]
 pub(crate) struct Tune {
-    /// CSV tables or PX4 flight logs, tuned on together
+    /// CSV tables or PX4 flight logs; the search tunes on all of them together
     #[arg(required = true, value_name = "LOG")]
     inputs: Vec<PathBuf>,
-    /// The scheme, or `all`
+    /// Scheme to tune, or `all`
     #[arg(long, value_parser = which)]
     scheme: Which,
-    /// Sample type of the codec that is scored: f32, i16, i32, or fixed point such as q16.16
+    /// Sample type of the codec: f32, i16, i32, or fixed point such as q16.16
     #[arg(long, default_value_t)]
     sample: SampleType,
     #[command(flatten)]
     channel: ChannelOptions,
     #[command(flatten)]
     parameters: Kept,
-    /// Least RMSE at so many percent of samples without a spike, or more
+    /// Goal: least RMSE, with at least this percentage of samples without a spike
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, help_heading = "Goal")]
     min_efficiency: Option<f64>,
-    /// Greatest efficiency at this RMSE, in the signal's unit, or less
+    /// Goal: greatest efficiency, with at most this RMSE, in the signal's unit
     #[arg(long, value_name = "RMSE", conflicts_with = "min_efficiency", value_parser = lab::input::above_zero, help_heading = "Goal")]
     max_rmse: Option<f64>,
-    /// The settings that no other beats in both, drawn here, `.svg` or `.png`
+    /// Goal: the front, that is all settings that no other beats in both RMSE and efficiency; drawn to this `.svg` or
+    /// `.png`
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["min_efficiency", "max_rmse", "emit"], help_heading = "Goal")]
     front: Option<PathBuf>,
-    /// Bytes of RAM of a channel's encoder at most
+    /// Maximum RAM of a channel's encoder, in bytes
     #[arg(long, value_name = "BYTES", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_ram: Option<f64>,
-    /// Instructions a sample to encode at most, in the mean, as measured on --core
+    /// Maximum of the mean number of instructions to encode a sample, as measured on --core
     #[arg(long, value_name = "COUNT", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_instructions: Option<f64>,
-    /// Samples until a code comes out at most
+    /// Maximum delay of the code, in samples
     #[arg(long, value_name = "SAMPLES", help_heading = "Limits")]
     max_latency: Option<f64>,
-    /// Events a second at most
+    /// Maximum number of events a second
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
-    /// Core of the measured table: M0 or M4F
+    /// Core whose measured costs count: M0 or M4F
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
-    /// The part of the blocks that is held out; 0 holds out nothing
+    /// Share of the blocks that is held out; 0 holds out nothing
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
-    /// Blocks of equal length that each log is cut into
+    /// Number of blocks of equal length into which each log is cut
     #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
-    /// Stop after so many seconds in all, which makes the settings depend on the machine's speed; Ctrl-C stops as well.
-    /// The best so far is kept
+    /// Stop after this many seconds in all and keep the best settings so far, which then depend on the machine's speed;
+    /// Ctrl-C stops as well
     #[arg(long, value_parser = lab::input::above_zero, help_heading = "Search")]
     seconds: Option<f64>,
-    /// Settings of each scheme and channel to score at most
+    /// Maximum number of settings to score for each scheme and channel
     #[arg(long, default_value_t = TuneRequest::EVALUATIONS, value_parser = whole::<usize>, help_heading = "Search")]
     evaluations: usize,
     /// Seed of the search; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>, help_heading = "Search")]
     seed: u64,
-    /// Search although the log says little: noise, all on the ground, full of holes, clipped
+    /// Search even if the log is a bad guide: only noise, never in the air, full of holes, or clipped
     #[arg(long, help_heading = "Search")]
     anyway: bool,
-    /// Tell the RMSE below this frequency too, such as `40Hz`
+    /// Also report the RMSE below this frequency, such as `40Hz`
     #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     below: Option<f64>,
-    /// Write the settings: a constant in Rust, a file for --params, or a flight's file of all channels
+    /// Write the settings as a constant in Rust, a file for --params, or a flight's file of all channels
     #[arg(long)]
     emit: Option<Emit>,
-    /// Where they are written; standard output unless given
+    /// File to write the settings to; default: standard output
     #[arg(short, long, requires = "emit")]
     output: Option<PathBuf>,
-    /// Figures and settings as JSON, for programs
+    /// Print figures and settings as JSON
     #[arg(long, conflicts_with = "emit")]
     json: bool,
 }
 
-/// One scheme or all.
+/// One scheme, or all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Which {
     One(Scheme),
@@ -126,30 +127,30 @@ fn which(name: &str) -> Result<Which> {
     Ok(Which::One(scheme))
 }
 
-/// `40Hz`, `40 Hz` or `40`.
+/// Parses a frequency in Hz: `40Hz`, `40 Hz` or `40`.
 fn hertz(text: &str) -> lab::Result<f64> {
     let number = text.trim_end_matches("Hz").trim_end();
     lab::input::above_zero(number)
 }
 
-/// The form of the output.
+/// The form in which settings are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Emit {
     /// A constant with parameters and taps, which compiles without std
     Rust,
-    /// A file of parameters
+    /// A file of parameters, for --params
     Toml,
     /// A flight's file of all channels
     Flight,
 }
 
-/// Parameters that stay as they are given.
+/// The parameters that the user gave, and that the search leaves as they are.
 #[derive(Clone, Debug)]
 struct Kept(Asked);
 
 option_group!(Kept, |command| augment(command, is_kept), |matches| given(matches, is_kept));
 
-/// Whether a parameter stays as it is given: all do but the seed, as the search has one of its own.
+/// Returns whether the search leaves a parameter as it is given. It does for all but the seed: the search has its own.
 fn is_kept(parameter: &Parameter) -> bool {
     parameter.name != "seed"
 }
@@ -157,7 +158,7 @@ fn is_kept(parameter: &Parameter) -> bool {
 /// Runs the command.
 ///
 /// # Errors
-/// The logs or options are not good, or nothing keeps to the limits.
+/// Returns an error if the logs or options are invalid, or if no settings keep to the limits.
 pub(crate) fn run(options: &Tune) -> Result<()> {
     let mut request = options.request()?;
     request.check()?;
@@ -210,7 +211,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// The request to the library, without the logs.
+    /// Makes the request to the library, except for its logs.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Which::One(scheme) => vec![scheme],
@@ -252,7 +253,7 @@ impl Tune {
         })
     }
 
-    /// The channels of all logs.
+    /// Reads the channels of all logs.
     fn logs(&self) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
         for input in &self.inputs {
@@ -278,7 +279,7 @@ impl Tune {
         }
     }
 
-    /// The text of a flight's file.
+    /// Returns the text of a flight's file with the settings found.
     fn flight(&self, request: &TuneRequest, told: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<String> {
         let rows: Vec<(&str, Scheme, &Row)> = told
             .iter()
@@ -295,7 +296,7 @@ impl Tune {
         Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
     }
 
-    /// The tables, on standard error where settings go to standard output.
+    /// Prints the tables: on standard error if the settings go to standard output, else on standard output.
     fn tell(&self, told: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
         if self.json {
             let channels: serde_json::Map<String, serde_json::Value> = told
@@ -321,10 +322,11 @@ impl Tune {
     }
 }
 
-/// The steps of the bar.
+/// Number of steps of the progress bar.
 const BAR: u64 = 1000;
 
-/// The position of the bar, from the parts of all settings and of the time that are done: whichever ends first.
+/// Returns the position of the progress bar: the larger of the share of settings scored and the share of time spent, as
+/// the search ends with whichever is complete first.
 fn position(settings: f64, time: f64) -> u64 {
     (settings.max(time).clamp(0.0, 1.0) * BAR as f64) as u64
 }

@@ -1,10 +1,10 @@
-//! Running the program.
+//! Runs the program, and reads what it writes.
 #![allow(dead_code, unreachable_pub, unused_imports, unused_macros)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// What a run left behind.
+/// The outcome of a run.
 pub struct Ran {
     pub status: i32,
     pub output: String,
@@ -12,32 +12,32 @@ pub struct Ran {
 }
 
 impl Ran {
-    /// Its output, which is JSON.
+    /// Parses the output as JSON.
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.output).unwrap()
     }
 }
 
-/// Runs `spikewire` with these words, which are formatted; nothing goes wrong.
+/// Runs `spikewire` with formatted arguments, and fails the test if the run fails.
 macro_rules! ran {
     ($($words:tt)*) => { $crate::common::good(&format!($($words)*), "") };
 }
 pub(crate) use ran;
 
-/// Runs `spikewire` with arguments separated by blanks, and with this on standard input.
+/// Runs `spikewire` with arguments separated by blanks, and with `input` on standard input.
 pub fn spikewire(arguments: &str, input: &str) -> Ran {
     let RanBytes { status, output, told } = spikewire_bytes(arguments, input.as_bytes());
     Ran { status, output: String::from_utf8(output).unwrap(), told }
 }
 
-/// What a run on bytes left behind.
+/// The outcome of a run whose output may be binary.
 pub struct RanBytes {
     pub status: i32,
     pub output: Vec<u8>,
     pub told: String,
 }
 
-/// The same with bytes.
+/// Runs `spikewire` as [`spikewire`] does, with bytes in and out.
 pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     use std::io::Write;
     let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
@@ -62,21 +62,21 @@ pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     }
 }
 
-/// The same with bytes where nothing goes wrong.
+/// Runs `spikewire` with bytes in and out, and fails the test if the run fails.
 pub fn good_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     let ran = spikewire_bytes(arguments, input);
     assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
     ran
 }
 
-/// The same where nothing goes wrong.
+/// Runs `spikewire`, and fails the test if the run fails.
 pub fn good(arguments: &str, input: &str) -> Ran {
     let ran = spikewire(arguments, input);
     assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
     ran
 }
 
-/// The same where it is refused, with words that the message holds.
+/// Runs `spikewire`, and fails the test unless it is refused with a message that holds all of `words`.
 pub fn refused(arguments: &str, input: &str, words: &[&str]) {
     let ran = spikewire_bytes(arguments, input.as_bytes());
     assert_eq!(ran.status, 2, "spikewire {arguments}: {}", ran.told);
@@ -85,13 +85,13 @@ pub fn refused(arguments: &str, input: &str, words: &[&str]) {
     }
 }
 
-/// A table of one column `x`.
+/// Returns a table of one column `x`.
 pub fn table(values: &[f64]) -> String {
     let lines = values.iter().map(|value| format!("{value}\n"));
     "x\n".to_owned() + &lines.collect::<String>()
 }
 
-/// The events of a file of spikes as (index, address, polarity).
+/// Parses the events of a file of spikes as (index, address, polarity).
 pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
     let lines = spikes.lines().filter(|line| !line.starts_with('#')).skip(1);
     lines
@@ -103,7 +103,7 @@ pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
         .collect()
 }
 
-/// The spikes of one neuron, one number a sample.
+/// Parses the spikes of one neuron, as one number for each sample.
 pub fn train(spikes: &str) -> Vec<i32> {
     let samples = spikes.lines().find_map(|line| line.strip_prefix("# samples=")).unwrap();
     let mut train = vec![0; samples.parse().unwrap()];
@@ -113,12 +113,12 @@ pub fn train(spikes: &str) -> Vec<i32> {
     train
 }
 
-/// The values of a decoded file of one channel.
+/// Parses the values of a decoded file of one channel.
 pub fn values(decoded: &str) -> Vec<f64> {
     decoded.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect()
 }
 
-/// A file that holds this, and its directory, which goes with the value.
+/// Writes a temporary file with this content; it is deleted together with the directory returned.
 pub fn file(name: &str, content: impl AsRef<[u8]>) -> (tempfile::TempDir, String) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join(name);
@@ -126,12 +126,12 @@ pub fn file(name: &str, content: impl AsRef<[u8]>) -> (tempfile::TempDir, String
     (directory, path.display().to_string())
 }
 
-/// A file of the repository's flight data.
+/// Returns the path of a file of the repository's flight data.
 pub fn flight(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name).display().to_string()
 }
 
-/// The flight logs that two published crates carry: name and path.
+/// Returns the paths of the flight logs that two published crates carry.
 pub fn flight_logs() -> [PathBuf; 2] {
     let metadata = cargo_metadata::MetadataCommand::new()
         .manifest_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))

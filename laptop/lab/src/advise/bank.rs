@@ -1,4 +1,4 @@
-//! Advice on a whole bank: one scheme for all channels, ranked by what its link takes in flight.
+//! Advice on a whole bank: one scheme for all channels, ranked by the bytes that its link takes in flight.
 
 use super::flown::{Error, Flown, flown};
 use super::{Advice, AdviseRequest, Tuning};
@@ -18,24 +18,24 @@ use serde::Serialize;
 use spikewire::link::{MAX_FRAME, Session, Transmitter};
 use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 
-/// Samples a second of the slowest loop that was flown.
+/// Sample rate of the slowest control loop that was flown, in Hz.
 const SLOWEST: f64 = 250.0;
 
-/// The time from keyframe to keyframe where no frame is lost, in seconds: a receiver that joins late waits so long.
+/// Seconds between keyframes if no frame is lost. A receiver that joins late waits up to this long.
 const ALONE: f64 = 1.0;
 
 /// The advice on all channels together.
 #[derive(Debug, Serialize)]
 pub struct BankAdvice {
-    /// The banks that may be taken, the advised one first.
+    /// The possible banks, the advised one first.
     banks: Vec<Bank>,
-    /// The schemes that no bank is made of, each with the reason.
+    /// The schemes of which no bank can be made, each with the reason.
     others: Vec<String>,
-    /// The names of the channels that nothing is tuned on; their pages say why.
+    /// The names of the channels that are unfit for tuning; their own advice says why.
     left_out: Vec<String>,
-    /// What neither the log nor the simulator tells.
+    /// Remarks on what neither the log nor the simulator can show.
     unknown: Vec<String>,
-    /// Percent of the frames that are lost.
+    /// Share of frames that are lost, in percent.
     frame_loss: f64,
 }
 
@@ -43,15 +43,15 @@ pub struct BankAdvice {
 #[derive(Debug, Serialize)]
 struct Bank {
     scheme: &'static str,
-    /// Bytes a second on the link, keyframes among them.
+    /// Bytes a second on the link, including keyframes.
     bytes_per_second: f64,
     /// Events a second, over all channels.
     events_per_second: f64,
-    /// Samples from one keyframe to the next.
+    /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
-    /// Whether it flew behind a filter that does not fit the rate.
+    /// Whether the scheme flew behind a filter that is not possible at this rate.
     lacks_filter: bool,
-    /// How a simulated drone strayed at that loss.
+    /// Mean error of the simulated drone at this loss of frames.
     flown: Option<Error>,
     channels: Vec<BankChannel>,
     #[serde(skip)]
@@ -66,10 +66,10 @@ struct BankChannel {
 }
 
 impl BankAdvice {
-    /// Finds the schemes that all channels with something to say can share, and ranks them by their bytes on the link.
+    /// Finds the schemes that suit all channels fit for tuning, and ranks them by their bytes on the link.
     ///
     /// # Errors
-    /// Returns an error if the channels have no rate, or one that no period in µs says.
+    /// Returns an error if the rate is unknown, or if its period cannot be expressed in whole µs.
     pub fn new(request: &AdviseRequest, advice: &[Advice], watch: &Watch) -> Result<Self> {
         let pairs = || advice.iter().zip(&request.recordings);
         let heard: Vec<(&Advice, &Recording)> =
@@ -102,22 +102,22 @@ impl BankAdvice {
         Ok(all)
     }
 
-    /// The flight advised, if there is one.
+    /// Returns the advised flight, if there is one.
     pub fn flight(&self) -> Option<&Flight> {
         self.banks.first().map(|bank| &bank.flight)
     }
 
-    /// The name of the scheme advised, if there is one.
+    /// Returns the name of the advised scheme, if there is one.
     pub fn scheme(&self) -> Option<&'static str> {
         self.banks.first().map(|bank| bank.scheme)
     }
 
-    /// The comments of the flight's file: how it came about, and what nobody knows.
+    /// Returns the comments for the flight's file: how the advice was found, and what remains unknown.
     pub fn comments(&self) -> Vec<String> {
         self.lines().map(|line| line.trim_start().to_owned()).collect()
     }
 
-    /// The advice as a page for people.
+    /// Formats the advice for reading.
     pub fn page(&self) -> String {
         let mut text = "the bank\n".to_owned();
         for line in self.lines() {
@@ -181,7 +181,7 @@ impl BankAdvice {
     }
 }
 
-/// The bank of a scheme, or the reason that there is none.
+/// Makes the bank of a scheme, or returns the reason that there is none.
 fn bank(
     request: &AdviseRequest,
     scheme: Scheme,
@@ -259,7 +259,7 @@ fn bank(
     }))
 }
 
-/// What neither a log nor the simulator tells.
+/// Lists what neither the log nor the simulator can show.
 fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     let mut all = Vec::new();
     if request.loop_bandwidth.is_none() {
@@ -281,7 +281,7 @@ fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     all
 }
 
-/// A filter in words.
+/// Describes a filter in words.
 fn words(filter: Filter) -> String {
     match filter {
         Filter::FirstOrder { corner } => format!("a low-pass of first order at {corner} Hz"),
@@ -290,8 +290,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// The parameters that all channels of a bank share, from what suits each: of counts the largest, of words and filters the
-/// first channel's.
+/// Merges the parameters that all channels of a bank must share: of counts the largest, of words and filters those of
+/// the first channel.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;
@@ -309,8 +309,8 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     shared
 }
 
-/// The number of events, and of bytes on the link: in a control loop each sample's frame leaves at once, else frames are
-/// filled.
+/// Returns the number of events, and of bytes on the link. In a control loop each sample's frame is sent at once;
+/// otherwise frames are filled first.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

@@ -1,18 +1,18 @@
-//! How codes flew on simulated drones whose rotors shake the sensor: the flights of `docs/loop.md`, which
-//! `cargo xtask write loop` measures.
+//! Flights of simulated drones whose rotors shake the sensor, by code: the figures of `docs/loop.md`, which `cargo
+//! xtask write loop` measures.
 
 use crate::flight::Filter;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The figures; a link, so that source packages have them.
+/// The figures; the file is a symbolic link, so that source packages contain it.
 const FIGURES: &str = include_str!("verdicts.json");
 
-/// A code flies if its error is within so many times that without a code.
+/// A code counts as flying if its error is at most this many times the error without a code.
 const WITHIN: f64 = 1.2;
 
-/// Percents of lost frames that were flown, from the lowest.
+/// Shares of lost frames that were flown, in percent, lowest first.
 pub(crate) const LOSSES: [f64; 2] = [1.0, 10.0];
 
 #[derive(Deserialize)]
@@ -20,35 +20,35 @@ struct Figures {
     banks: BTreeMap<String, Flown>,
 }
 
-/// A code's flights in the bank that was found for it by flying.
+/// Flights of a code, in the bank whose settings were found by flying.
 #[derive(Deserialize)]
 pub(crate) struct Flown {
-    /// The corner of the low-pass before it, in Hz.
+    /// Corner of the low-pass before the code, in Hz.
     low_pass: Option<f32>,
-    /// The time from keyframe to keyframe, in ms.
+    /// Time between keyframes, in ms.
     keyframe_ms: Option<f64>,
-    /// One drone and controller, with 1 % of the frames lost.
+    /// Flights of one drone and controller, with 1 % of the frames lost.
     here: Flights,
     #[serde(rename = "every tenth frame lost")]
     tenth: Flights,
-    /// Several drones, controllers and rates.
+    /// Flights of several drones and controllers, at several rates.
     everywhere: BTreeMap<String, Flights>,
 }
 
 #[derive(Deserialize)]
 struct Flights {
-    /// The manoeuvres that were lost, one entry a flight.
+    /// The manoeuvres in which the drone was lost, one entry for each flight.
     lost: Vec<String>,
     #[serde(rename = "flights")]
     count: usize,
-    /// The mean error in degrees, unless all were lost.
+    /// Mean error in degrees; `None` if all flights were lost.
     error: Option<f64>,
 }
 
 /// The mean errors of a simulated drone, in degrees.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Error {
-    /// On the code.
+    /// With the code.
     pub(crate) coded: f64,
     /// Without a code.
     pub(crate) plain: f64,
@@ -62,12 +62,12 @@ fn without_a_code() -> Option<&'static Flown> {
     BANKS.get("without a code")
 }
 
-/// How the scheme of this name flew, if it did.
+/// Returns the flights of the scheme of this name, if it was flown.
 pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
     BANKS.get(scheme)
 }
 
-/// Says why the scheme of this name is not to fly with this percent of its frames lost, if so.
+/// Returns the reason not to fly the scheme of this name with this percentage of its frames lost, if there is one.
 pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
     let Some(own) = flown(scheme) else {
         return Some("was not flown with rotors that shake the sensor".to_owned());
@@ -97,17 +97,17 @@ pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
 }
 
 impl Flown {
-    /// The filter before its code.
+    /// Returns the filter before the code.
     pub(crate) fn filter(&self) -> Option<Filter> {
         self.low_pass.map(|corner| Filter::LowPass { corner })
     }
 
-    /// The time from keyframe to keyframe, in seconds.
+    /// Returns the time between keyframes, in seconds.
     pub(crate) fn keyframes(&self) -> Option<f64> {
         self.keyframe_ms.map(|own| own * 1e-3)
     }
 
-    /// The errors with this percent of the frames lost.
+    /// Returns the mean errors with this percentage of the frames lost.
     pub(crate) fn error(&self, loss: f64) -> Option<Error> {
         let at = |own: &Self| {
             if loss > LOSSES[0] { own.tenth.error } else { own.here.error }
@@ -115,7 +115,7 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// The mean of the errors over those of another, wherever both flew.
+    /// Returns the mean ratio of the errors to those of `other`, over the places in which both flew.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

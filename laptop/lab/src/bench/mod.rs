@@ -14,21 +14,21 @@ use recipe::{COLUMNS, Outcome};
 use signal::Waveform;
 use statistics::Statistics;
 
-/// Signals a case, each with a generator of its own.
+/// Maximum number of signals in a case. Each has its own random generator.
 pub const MOST_TESTS: usize = 1_000_000;
 
 /// One case of the benchmark: the results of all its tests, by scheme.
 pub struct CaseResult {
-    /// The signals' duration in seconds.
+    /// Duration of the signals, in seconds.
     pub seconds: usize,
-    /// Spiking efficiency in percent, by column.
+    /// Spiking efficiency in percent, for each column of the table.
     pub efficiency: [Statistics; COLUMNS],
-    /// Root mean square error, by column.
+    /// Root mean square error, for each column of the table.
     pub rmse: [Statistics; COLUMNS],
 }
 
-/// Runs the first cases with this many signals each. Every signal has its own generator, so that the
-/// outcome does not depend on the number of cores.
+/// Runs the first `cases` cases, with `tests` signals in each. Each signal has its own random generator, so that the
+/// results do not depend on the number of cores.
 pub fn run(cases: usize, tests: usize, seed: u64, tick: impl Fn(u64) + Sync) -> Vec<CaseResult> {
     let cases = CASES.iter().take(cases).enumerate();
     cases.map(|(case, &seconds)| run_case(case, seconds, tests, seed, &tick)).collect()

@@ -1,28 +1,28 @@
 //! The figures of the paper's tables.
 
-/// The signals' durations in seconds.
+/// Durations of the signals, in seconds.
 pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];
 
-/// Signals a case.
+/// Number of signals in a case.
 pub const TESTS: usize = 1000;
 
-/// The schemes with figures, in the order of the tables' columns.
+/// The schemes for which the tables have figures, in the order of their columns.
 pub const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
 
 /// One of the two tables.
 pub struct Table {
-    /// Its title.
+    /// Title of the table.
     pub title: &'static str,
     /// Means by case and scheme.
     pub means: [[f64; 6]; 5],
     /// Standard deviations by case and scheme.
     pub deviations: [[f64; 6]; 5],
-    /// How many decimals are printed.
+    /// Number of decimals printed.
     pub decimals: usize,
 }
 
 impl Table {
-    /// The largest distance of a printed figure from the unrounded one.
+    /// Returns the largest difference between a printed figure and the unrounded one.
     pub fn rounding(&self) -> f64 {
         0.5 * 10_f64.powi(-(self.decimals as i32))
     }
@@ -70,5 +70,5 @@ pub const RMSE: Table = Table {
     decimals: 2,
 };
 
-/// The case and scheme of the deviation of [`RMSE`] that is a slip of the pen.
+/// Case and scheme of the one deviation in [`RMSE`] that is a misprint.
 pub const MISPRINT: (usize, usize) = (2, 5);

@@ -1,18 +1,18 @@
-//! How the paper's toolbox runs each scheme over a signal: its parameters, where its encoders start,
-//! what its decoders do with the first spike, and the last sample.
+//! Runs each scheme over a signal as the paper's toolbox does: with its parameters, the start of its encoders, and its
+//! treatment of the first spike and the last sample.
 
 use spikewire::population::{Gaussian, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
 use spikewire::{Calibration, Code, ConfigError, Output, Spike, Start};
 
-/// The schemes of the tables, and GRF and GRF with slots, of which the paper gives no figures.
+/// Number of columns: the schemes of the tables, then GRF and GRF with slots, for which the paper gives no figures.
 pub(super) const COLUMNS: usize = 8;
 
 /// The efficiency and error of a scheme on a signal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outcome {
-    /// `(1 - spikes / samples) * 100`. Below 0 where there are more spikes than samples.
+    /// `(1 - spikes / samples) * 100`; below 0 if there are more spikes than samples.
     pub efficiency: f64,
     /// The root mean square error between the signal and the decoded values.
     pub rmse: f64,
@@ -27,10 +27,10 @@ const HOUGH: Hough<f32, 15> = Hough::new(Taps::triangular(1.0));
 const THRESHOLD_HOUGH: ThresholdHough<f32, 15> = ThresholdHough::new(Taps::triangular(1.0), 0.85);
 const BETA: f32 = 1.5;
 
-/// Runs all schemes, in the order of the columns.
+/// Runs all schemes over a signal, in the order of the columns.
 ///
 /// # Panics
-/// If the signal is shorter than a window or never moves: none of the benchmark is or does.
+/// Panics if the signal is shorter than a window, or never moves; no signal of the benchmark is such.
 #[expect(clippy::expect_used, reason = "the signals are the benchmark's own")]
 pub(super) fn run(signal: &[f32]) -> [Outcome; COLUMNS] {
     try_run(signal).expect("the benchmark's signals rise and fall")
@@ -54,7 +54,7 @@ fn try_run(signal: &[f32]) -> Result<[Outcome; COLUMNS], ConfigError> {
     ])
 }
 
-/// Primed so that the first difference counts twice; decoded from 0 in steps of two thresholds.
+/// Runs temporal contrast: primed so that the first difference counts twice, decoded from 0 in steps of two thresholds.
 fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, ConfigError> {
     let threshold = TemporalContrast::from_calibration(calibration, CONTRAST_FACTOR)?.threshold();
     let scheme = TemporalContrast::try_new(threshold)?.try_with_step(2.0 * threshold)?;
@@ -65,7 +65,7 @@ fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, C
     Ok(step_outcome(signal, &scheme, &before, 0.0))
 }
 
-/// Primed with the first window; decoded from the first sample.
+/// Runs the moving window: primed with the first window, decoded from the first sample.
 fn moving_window(signal: &[f32]) -> Outcome {
     let window = signal.get(..WINDOW).unwrap_or_default();
     step_outcome(signal, &MOVING_WINDOW, window, first(signal))
@@ -79,7 +79,7 @@ fn first(signal: &[f32]) -> f32 {
     signal.first().copied().unwrap_or_default()
 }
 
-/// The toolbox's step decoders set the first value and add from the second spike on.
+/// Decodes a step code as the toolbox does: the first value is set, and steps are added from the second spike on.
 fn step_outcome<P>(signal: &[f32], scheme: &P, past: &[f32], start: f32) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Spike>,
@@ -103,7 +103,7 @@ where
     outcome(signal, count(&spikes), error)
 }
 
-/// The last sample takes no part in the windows of the toolbox, whose loops end one too early.
+/// Runs a rate code as the toolbox does: its loops end one sample early, so no window contains the last sample.
 fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,

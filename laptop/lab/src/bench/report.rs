@@ -1,4 +1,4 @@
-//! The cells of the paper's tables, beside those of the benchmark run here.
+//! Compares the cells of the paper's tables with those measured here.
 
 use super::CaseResult;
 use super::paper::{EFFICIENCY, MISPRINT, RMSE, SCHEMES, TESTS, Table};
@@ -7,21 +7,22 @@ use serde::Serialize;
 use serde_json::{Value, json as object};
 use std::fmt::Write;
 
-/// The most standard errors by which a mean may be off. A deviation may be off by `DEVIATION_PART` of itself.
+/// Largest difference of a mean from the paper's, in standard errors. A deviation may differ by the share
+/// `DEVIATION_PART`.
 const STANDARD_ERRORS: f64 = 4.0;
 const DEVIATION_PART: f64 = 0.15;
 
-/// A cell of ours and what the paper prints there.
+/// A measured cell, and the paper's figures for it.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Cell {
     ours: Statistics,
     paper_mean: f64,
     paper_deviation: f64,
-    /// The difference of the means beyond the paper's rounding, in standard errors of that difference.
+    /// Difference of the means beyond the paper's rounding, in standard errors of that difference.
     standard_errors: f64,
     mean_agrees: bool,
     deviation_agrees: bool,
-    /// Whether the paper's deviation is known to be a slip.
+    /// Whether the paper's deviation is the known misprint.
     is_misprint: bool,
 }
 
@@ -48,7 +49,7 @@ impl Cell {
     }
 }
 
-/// All cells of a table, by case and scheme.
+/// Returns all cells of a table, by case and scheme.
 fn cells(table: &Table, cases: &[CaseResult]) -> Vec<Vec<Cell>> {
     let is_rmse = table.title == RMSE.title;
     let of = |case: &CaseResult| if is_rmse { case.rmse } else { case.efficiency };
@@ -59,7 +60,7 @@ fn cells(table: &Table, cases: &[CaseResult]) -> Vec<Vec<Cell>> {
     cases.iter().enumerate().map(row).collect()
 }
 
-/// The tables, as Markdown, and how many cells agree.
+/// Formats the tables as Markdown, followed by the number of cells that agree.
 pub fn print(cases: &[CaseResult]) -> String {
     let mut text = String::new();
     let mut all = Vec::new();
@@ -94,7 +95,7 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// The largest difference that sampling error hides, as a part of the paper's mean, and where.
+/// Returns the largest difference that sampling error could hide, as a share of the paper's mean, and its cell.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {
@@ -107,7 +108,7 @@ fn unseen(cases: &[CaseResult]) -> (f64, String) {
     all.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
-/// The cells that are not the paper's, but for its slip.
+/// Lists the cells that differ from the paper's, except for the misprint.
 pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     let mut names = Vec::new();
     for (table, quantity) in [(&EFFICIENCY, "efficiency"), (&RMSE, "RMSE")] {
@@ -129,9 +130,9 @@ pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     names
 }
 
-/// Our figure of a cell, and the paper's.
+/// Selects the measured figure of a cell, and the paper's.
 type Figures = fn(&Cell) -> [f64; 2];
-/// Our figure of a column for which the paper has none.
+/// Selects the measured figure of a column for which the paper has none.
 type Figure = fn(&Statistics) -> f64;
 
 fn write_table(
@@ -189,7 +190,7 @@ fn write_table(
     writeln!(text)
 }
 
-/// The cells as JSON.
+/// Returns the cells as JSON.
 pub fn json(cases: &[CaseResult], seed: u64) -> Value {
     let table = |table: &Table| -> Value {
         let cells = cells(table, cases);

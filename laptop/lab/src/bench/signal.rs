@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
 
-/// `2 sin(2πT) - 0.5 cos(0.5πT) + 0.75 sin(10πT)` at T = 0.01, 0.02, ...
+/// The waveform `2 sin(2πT) - 0.5 cos(0.5πT) + 0.75 sin(10πT)` at T = 0.01, 0.02, ...
 pub struct Waveform {
     values: Vec<f64>,
 }
@@ -13,7 +13,7 @@ pub struct Waveform {
 pub const RATE: usize = 100;
 
 impl Waveform {
-    /// A waveform of this many seconds.
+    /// Computes a waveform of this many seconds.
     pub fn new(seconds: usize) -> Self {
         let at = |step: usize| {
             let t = step as f64 / RATE as f64;
@@ -22,7 +22,7 @@ impl Waveform {
         Self { values: (1..=seconds * RATE).map(at).collect() }
     }
 
-    /// The same with `- 0.5 U(0,1)`, from a generator of its own for every number.
+    /// Returns the waveform with `- 0.5 U(0,1)` added. Each `number` has its own random generator.
     pub fn with_noise(&self, seed: u64, number: u64) -> Vec<f32> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(number);
@@ -30,7 +30,7 @@ impl Waveform {
     }
 }
 
-/// A number from 0 up to 1.
+/// Draws a number from 0 up to, but not including, 1.
 fn uniform(generator: &mut ChaCha8Rng) -> f64 {
     (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }

@@ -7,14 +7,14 @@ use serde::Serialize;
 pub struct Statistics {
     /// The mean.
     pub mean: f64,
-    /// The standard deviation, with N-1.
+    /// The sample standard deviation (divided by N-1).
     pub deviation: f64,
     /// The number of tests.
     pub count: usize,
 }
 
 impl Statistics {
-    /// The statistics of these values.
+    /// Computes the statistics of these values.
     pub fn new(values: impl ExactSizeIterator<Item = f64> + Clone) -> Self {
         let count = values.len();
         let mean = values.clone().sum::<f64>() / count as f64;
@@ -22,7 +22,8 @@ impl Statistics {
         Self { mean, deviation: (squares / (count as f64 - 1.0)).sqrt(), count }
     }
 
-    /// The standard error of the difference to a mean over this many other tests, which vary alike.
+    /// Returns the standard error of the difference between this mean and one over `others` tests of the same
+    /// deviation.
     pub fn error_against(&self, others: usize) -> f64 {
         self.deviation * (1.0 / self.count as f64 + 1.0 / others as f64).sqrt()
     }

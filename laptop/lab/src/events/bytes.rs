@@ -1,4 +1,4 @@
-//! The formats of events one after the other: eDVS, Event Stream, EVT2.
+//! Formats that are a plain sequence of events: eDVS, Event Stream, EVT2.
 
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
@@ -7,17 +7,17 @@ use spikewire::{Event, Tick};
 use spikewire_cameras::format::{EventDecoder, EventFormat, FormatError};
 use std::io::Write;
 
-/// Reads a format.
+/// Reads events with the decoder of one format.
 pub(super) struct Reader<D> {
     decoder: D,
     hooks: Hooks<D>,
 }
 
-/// The steps that one format needs and others do not.
+/// Steps that only some formats need.
 pub(super) struct Hooks<D> {
-    /// Refuses another format's bytes.
+    /// Returns an error if the bytes were of another format.
     pub check: fn(&D) -> Result<()>,
-    /// Sets the time of events that bring none.
+    /// Sets the time of the following events, for a format whose events have none.
     pub set_arrival: Option<fn(&mut D, Tick)>,
 }
 
@@ -48,7 +48,7 @@ impl<D: EventDecoder> EventReader for Reader<D> {
     }
 }
 
-/// Writes a format, and reads back what it wrote to count what comes out otherwise.
+/// Writes events with the encoder of one format, and reads them back to count those that come out different.
 pub(super) struct Writer<E, D> {
     encoder: E,
     decoder: D,
@@ -59,8 +59,8 @@ pub(super) struct Writer<E, D> {
 }
 
 impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
-    /// Writes this header first. The decoder is the format's own. Events that the format has no word
-    /// for are an error, or dropped and counted.
+    /// Makes a writer that starts with `header`; `decoder` must be of the same format. An event that the format cannot
+    /// express is an error, or is dropped and counted if `drops`.
     pub(super) fn new(encoder: E, decoder: D, header: &'static [u8], drops: bool) -> Self {
         Self { encoder, decoder, header, drops, events: 0, omitted: Omitted::default() }
     }
@@ -91,7 +91,7 @@ impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
         }
     }
 
-    /// The header, once.
+    /// Writes the header, if it is not written yet.
     fn begin(&mut self, output: &mut dyn Write) -> Result<()> {
         let header = std::mem::take(&mut self.header);
         self.decoder.decode(header).for_each(drop);

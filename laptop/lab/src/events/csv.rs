@@ -1,4 +1,4 @@
-//! Tables of events: `tick,address,polarity`, and in comments what is no event.
+//! Tables of events, `tick,address,polarity`; comments hold all other items, such as keyframes.
 
 use super::{EventReader, EventWriter, EventsKind, Item, Known, Tally};
 use crate::error::At;
@@ -13,19 +13,19 @@ const VALUES: &str = "tick,address,value,known";
 /// Reads a table of events, or a file of spikes with times.
 pub(super) struct Reader {
     file: String,
-    /// The line that has not ended, and how many have.
+    /// The unfinished line, and the number of lines finished.
     line: Vec<u8>,
     number: u64,
     columns: Option<Columns>,
     events: u64,
-    /// Ticks of more than 32 bits.
+    /// Number of ticks of more than 32 bits.
     long_ticks: u64,
     is_file_of_spikes: bool,
-    /// The number of events that the end of a file of spikes tells.
+    /// Number of events according to the end of a file of spikes.
     told_events: Option<u64>,
 }
 
-/// The places of the columns in a line.
+/// Indices of the columns in a line.
 #[derive(Clone, Copy)]
 struct Columns {
     tick: usize,
@@ -47,7 +47,7 @@ impl Reader {
         }
     }
 
-    /// Takes a comment; gives the item that it stands for, if it is one of ours.
+    /// Reads a comment, and returns the item in it; `None` if the comment is not one of ours.
     fn note(&mut self, note: &str) -> Result<Option<Item>> {
         match note.split_once('=') {
             Some(("spikewire", _)) => self.is_file_of_spikes = true,
@@ -147,7 +147,7 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// The item that a comment stands for; `None` for comments that are not ours.
+/// Parses the item in a comment; `None` if the comment is not one of ours.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     let text = || value.to_owned();
@@ -182,7 +182,7 @@ fn heartbeat(value: &str) -> Option<Item> {
     Some(Item::Heartbeat(Tick::from(tick.parse::<u32>().ok()?), address.parse().ok()?))
 }
 
-/// The sample type of a name, such as `f32`, `i16` or `q8.8`.
+/// Parses the name of a sample type, such as `f32`, `i16` or `q8.8`.
 fn kind(name: &str) -> Option<SampleKind> {
     let kind = |byte| SampleKind::from_byte(byte).filter(|kind| name_of(*kind) == name);
     (0..=u8::MAX).find_map(kind)
@@ -224,7 +224,7 @@ impl Writer {
         self.line.push(b',');
     }
 
-    /// Writes a number with the fewest digits that read back to the same bits, in `f32` and in fixed point.
+    /// Writes a number with the fewest digits that read back as the same bits, in `f32` and in fixed point.
     fn value(&mut self, value: f64) {
         let mut digits = zmij::Buffer::new();
         let text = match self.values {

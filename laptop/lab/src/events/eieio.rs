@@ -1,4 +1,4 @@
-//! EIEIO datagrams, one after the other as in a recording of their payloads.
+//! EIEIO datagrams: their payloads one after the other, as a recording holds them.
 
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
@@ -8,19 +8,19 @@ use spikewire_cameras::format::eieio;
 use std::io::Write;
 use std::num::NonZeroU32;
 
-/// The meaning of a board's keys and time stamps.
+/// How a board's keys and time stamps map to addresses and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
     /// The key of address 0.
     pub base: u32,
-    /// A time step in µs.
+    /// Length of a time step, in µs.
     pub step: NonZeroU32,
     /// Whether an address has two keys, the first for down and the second for up.
     pub is_signed: bool,
 }
 
 impl Board {
-    /// The key of an event, if it has one.
+    /// Returns the key of an event; `None` if the address has none.
     fn key(self, event: Event) -> Option<u32> {
         let address = u32::from(event.address);
         match (self.is_signed, event.polarity) {
@@ -32,7 +32,7 @@ impl Board {
         }
     }
 
-    /// The event of a key at a time, if it is one of this board's.
+    /// Returns the event of a key at this tick; `None` if the key is not one of this board's.
     fn event(self, key: u32, tick: Tick) -> Option<Event> {
         let key = key.checked_sub(self.base)?;
         let (address, polarity) = match (self.is_signed, key & 1) {
@@ -45,7 +45,7 @@ impl Board {
 }
 
 const MAX_KEYS: usize = 255;
-/// The longest datagram.
+/// Length of the longest datagram, in bytes.
 const LONGEST: usize = 2 + 4 + 4 * MAX_KEYS;
 
 /// Reads datagrams.
@@ -61,7 +61,7 @@ impl Reader {
         Self { board, waiting: Vec::new(), time: Tick::from_micros(0), skipped: 0 }
     }
 
-    /// Takes whole datagrams from the front of what waits, and bytes that begin none.
+    /// Reads whole datagrams from the front of the buffer, and skips bytes that cannot begin one.
     fn datagrams(&mut self, is_end: bool, items: &mut Vec<Item>) {
         let Self { board, waiting, time, skipped } = self;
         let mut bytes = waiting.as_slice();
@@ -90,7 +90,7 @@ impl Reader {
     }
 }
 
-/// Whether these may be the first bytes of a datagram of the kinds that are written.
+/// Returns whether a datagram of the kinds that are written may begin with these bytes.
 fn begins(bytes: &[u8]) -> bool {
     let padded: Vec<u8> = bytes.iter().copied().chain([0; LONGEST]).collect();
     bytes.len() < 2 || eieio::decode(&padded).is_some()

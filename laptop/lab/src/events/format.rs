@@ -1,4 +1,4 @@
-//! Formats by name.
+//! Formats of events, by name.
 
 use super::bytes::{self, Hooks};
 use super::eieio::{self, Board};
@@ -12,25 +12,25 @@ use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
-/// A format and its settings, as options name it.
+/// A format and its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// The crate's link.
     Link(Coding),
-    /// eDVS, and how its events bring a time.
+    /// eDVS, with the way in which its events carry time.
     Edvs(Edvs, EdvsTime),
-    /// Event Stream, a file `.es`.
+    /// Event Stream, in a file `.es`.
     EventStream,
-    /// EVT2, a file `.raw`.
+    /// EVT2, in a file `.raw`.
     Evt2,
-    /// Datagrams of EIEIO.
+    /// EIEIO datagrams.
     Eieio(Board),
     /// A table of events.
     Csv,
 }
 
 impl Format {
-    /// The format's reader; errors name `file`.
+    /// Makes a reader of the format; `file` is the name in errors.
     pub fn reader(self, file: &str) -> Box<dyn EventReader> {
         match self {
             Self::Link(_) => Box::new(LinkReader::new(None)),
@@ -62,7 +62,8 @@ impl Format {
         }
     }
 
-    /// The format's writer. Events that the format has no word for are an error, or dropped and counted if `drops`.
+    /// Makes a writer of the format. An event that the format cannot express is an error, or is dropped and counted if
+    /// `drops`.
     pub fn writer(self, drops: bool) -> Box<dyn EventWriter> {
         match self {
             Self::Link(coding) => Box::new(link::Writer::new(coding)),
@@ -87,7 +88,7 @@ impl Format {
     }
 }
 
-/// The writer of decoded values of a sample type.
+/// Makes a writer of decoded values of a sample type.
 pub fn values_writer(sample: SampleType) -> Box<dyn EventWriter> {
     Box::new(csv::Writer::new(Some(sample)))
 }
@@ -110,7 +111,7 @@ impl fmt::Display for Format {
     }
 }
 
-/// Names of formats, as [`Format`] reads them.
+/// Names of the formats, as [`Format`] parses them.
 pub(crate) const NAMES: &str = "link, edvs:e0 to edvs:e4, es, evt2, eieio, csv";
 
 impl FromStr for Format {
@@ -158,7 +159,7 @@ fn edvs(time: EdvsTime, settings: &mut Settings) -> Result<Format> {
     Ok(Format::Edvs(edvs, time))
 }
 
-/// `key=value` pairs that are not taken yet.
+/// The `key=value` pairs that have not been read yet.
 struct Settings<'a>(Vec<(&'a str, &'a str)>);
 
 impl<'a> Settings<'a> {
@@ -170,7 +171,7 @@ impl<'a> Settings<'a> {
         Ok(Self(pairs.collect::<Result<_, _>>()?))
     }
 
-    /// The number of this key, decimal or `0x` and hexadecimal.
+    /// Reads the number of this key, decimal or hexadecimal with `0x`; `otherwise` if there is none.
     fn number<N: TryFrom<u32>>(&mut self, key: &str, otherwise: N) -> Result<N> {
         let Some(place) = self.0.iter().position(|pair| pair.0 == key) else {
             return Ok(otherwise);
@@ -185,7 +186,7 @@ impl<'a> Settings<'a> {
         number.ok_or_else(|| EventsKind::OutOfRange { key, text }.into())
     }
 
-    /// The 0 or 1 of this key.
+    /// Reads the 0 or 1 of this key; `otherwise` if there is none.
     fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
         match self.number::<u32>(key, otherwise.into())? {
             bit @ 0..=1 => Ok(bit == 1),

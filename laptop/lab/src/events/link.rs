@@ -1,4 +1,4 @@
-//! The crate's link.
+//! Reads and writes the crate's link.
 
 use super::{EventReader, EventWriter, Item, LinkTally, Tally};
 use crate::Result;
@@ -6,29 +6,29 @@ use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Se
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// Decodes the frames of a link into values.
+/// Decodes the frames of a link to values.
 pub trait Values {
-    /// Decodes a frame, and adds a value for each keyframe and event, or for each sample that is over.
+    /// Decodes a frame. Appends a value for each keyframe and event, or for each sample that has ended.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
-    /// Adds the values of the last sample, after the last frame.
+    /// Appends the values of the last sample, after the last frame.
     fn finish(&mut self, items: &mut Vec<Item>);
 
     /// Adds the decoders' counts to those of the link.
     fn count(&self, tally: &mut LinkTally);
 }
 
-/// Reads a link: its events, or its values.
+/// Reads a link, as events or as decoded values.
 pub struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
-    /// Zeros of our own that the reader skipped.
+    /// Number of zeros that were appended here and that the reader skipped.
     padding: u64,
     values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,
 }
 
 impl<'a> LinkReader<'a> {
-    /// A reader of values if there is a decoder for them, else of events.
+    /// Makes a reader of values if there is a decoder for them, or else of events.
     pub fn new(values: Option<Box<dyn Values + 'a>>) -> Self {
         Self { reader: Reader::new(), padding: 0, values, tally: LinkTally::default() }
     }
@@ -43,8 +43,8 @@ impl EventReader for LinkReader<'_> {
         }
     }
 
-    /// A frame whose length was damaged holds those after it back, until as many bytes follow as the
-    /// longest frame has.
+    /// Pads with zeros: a frame whose length was damaged holds back the frames after it until the longest possible
+    /// frame has arrived.
     fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
         self.read(&[0; MAX_FRAME], items)?;
         self.padding = MAX_FRAME as u64;
@@ -71,7 +71,7 @@ impl EventReader for LinkReader<'_> {
     }
 }
 
-/// Adds what a frame brings, in the order in which it holds.
+/// Appends the content of a frame, in the order in which it holds.
 fn take(
     received: &Received<'_>,
     is_first: bool,
@@ -107,24 +107,24 @@ fn take(
     tally.impossible += u64::from(!events.is_complete());
 }
 
-/// Writes a link, in frames as long as they may be.
+/// Writes a link, with frames as long as they may be.
 pub(super) struct Writer {
     framer: Framer,
     coding: Coding,
-    /// Keyframes that wait for their frame, all of one tick and sample type.
+    /// Keyframes that wait to be written, all of one tick and sample type.
     keyframes: Vec<Keyframe>,
-    /// The tick of the next item, as far as it is known.
+    /// Tick of the next item, as far as it is known.
     tick: Tick,
-    /// The number of restarts.
+    /// Number of restarts.
     starts: u32,
-    /// Whether the session has no frame yet.
+    /// Whether no frame of this session has been written yet.
     is_fresh: bool,
     events: Vec<Event>,
-    /// Whether a loss or restart still has to be told by a frame.
+    /// Whether a frame must still report a loss or restart.
     owes_mark: bool,
 }
 
-/// The most events that wait for their frames.
+/// Maximum number of events that wait to be written.
 const BATCH: usize = 1024;
 
 impl Writer {
@@ -142,7 +142,7 @@ impl Writer {
         }
     }
 
-    /// Writes all frames, and an empty one where none was left to say what was to be said.
+    /// Writes all frames. If a loss or restart is still to be reported, writes an empty frame for it.
     fn all_frames(&mut self, output: &mut dyn Write) -> Result<()> {
         self.frames(true, output)?;
         if std::mem::take(&mut self.owes_mark) {
@@ -152,7 +152,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Writes frames; the last only if nothing may be added to it.
+    /// Writes full frames, and with `with_last` also the last one, to which items could still be added.
     fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
         let Self { framer, keyframes, events, owes_mark, is_fresh, .. } = self;
         let mut buffer = [0; MAX_FRAME];
@@ -181,7 +181,7 @@ impl Writer {
     }
 }
 
-/// The number of items from the front that the frame took.
+/// Puts items into a frame until it is full, and returns their number.
 fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usize {
     items.iter().map(put).take_while(Result::is_ok).count()
 }

@@ -1,6 +1,6 @@
-//! Streams of events in every format, there and back, in constant memory.
+//! Reads and writes streams of events in every format, in constant memory.
 //!
-//! The formats themselves are the crate's; here bytes are moved, and what a format cannot hold is counted.
+//! The codecs of the formats are in the crate; this module moves bytes, and counts what a format cannot hold.
 
 mod bytes;
 mod csv;
@@ -24,54 +24,55 @@ use crate::Result;
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// One item of a stream, in its order.
+/// One item of a stream; items come in the order of the stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Item {
     /// A spike.
     Event(Event),
     /// The value that the sender's encoder held.
     Keyframe(Keyframe),
-    /// A sample of a code without keyframes, whose events are all told: its tick, and its bank's first address.
+    /// The tick of a sample, and the first address of its bank. Only codes without keyframes send it; it says that all
+    /// events before it have been sent.
     Heartbeat(Tick, u16),
-    /// The value of an address's decoder after an event or keyframe.
+    /// The value of a decoder after an event or keyframe.
     Value {
-        /// When.
+        /// Tick of the event or keyframe.
         tick: Tick,
-        /// Where.
+        /// Address of the decoder.
         address: u16,
         /// The value, in the recording's unit.
         value: f64,
-        /// The certainty of the value.
+        /// How certain the value is.
         known: Known,
     },
-    /// This many frames never arrived.
+    /// Frames were lost on the link; holds their number.
     LostFrames(u32),
-    /// The sender lost events.
+    /// Events were lost by the sender.
     LostEvents,
-    /// The sender began anew.
+    /// The sender restarted.
     Restart,
 }
 
-/// The certainty of a decoded value.
+/// How certain a decoded value is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// The value came as a keyframe.
+    /// The value is that of a keyframe.
     Keyframe,
-    /// The value is that of the sender's own decoder, bit for bit.
+    /// The value equals that of the sender's own decoder, bit for bit.
     Exact,
-    /// Something was lost since the last keyframe, or there was none yet.
+    /// The value may be off: something was lost since the last keyframe, or there was no keyframe yet.
     Estimate,
 }
 
-/// Turns bytes into items.
+/// Converts bytes of a format to items.
 pub trait EventReader {
-    /// Takes bytes, cut anywhere, and adds what they complete.
+    /// Reads bytes, which may be cut anywhere, and appends the items that they complete.
     ///
     /// # Errors
     /// Returns an error if the bytes are of another format.
     fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()>;
 
-    /// The end of the bytes; adds what was held back.
+    /// Ends the input; appends items that were held back.
     ///
     /// # Errors
     /// See [`read`](Self::read).
@@ -79,28 +80,28 @@ pub trait EventReader {
         Ok(())
     }
 
-    /// The counts of all that is no event.
+    /// Returns counts of everything that is not an event.
     fn tally(&self) -> Tally;
 
-    /// Tells a format without times the time of the bytes that come next.
+    /// Sets the time of arrival of the next bytes, for a format whose events have no times.
     fn set_arrival(&mut self, _: Tick) {}
 }
 
-/// Turns items into bytes.
+/// Converts items to bytes of a format.
 pub trait EventWriter {
-    /// Writes an item, or keeps it for later.
+    /// Writes an item, or keeps it to be written later.
     ///
     /// # Errors
-    /// The format cannot hold it, or the output failed.
+    /// Returns an error if the format cannot express the item, or if the output cannot be written.
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()>;
 
-    /// Writes what was kept.
+    /// Writes the items that were kept.
     ///
     /// # Errors
-    /// The output failed.
+    /// Returns an error if the output cannot be written.
     fn finish(&mut self, output: &mut dyn Write) -> Result<()>;
 
-    /// Sentences on what the format could not hold.
+    /// Returns notes on what the format could not hold.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }

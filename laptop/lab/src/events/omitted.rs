@@ -3,34 +3,34 @@
 use super::Item;
 use spikewire::Tick;
 
-/// Counts of items left out, and of events that will be read at another time.
+/// Counts of items that were left out, and of events that will be read back with another time.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Omitted {
     dropped: u64,
     retimed: u64,
     furthest: u32,
-    /// Keyframes and losses.
+    /// Number of keyframes and losses left out.
     others: u64,
 }
 
 impl Omitted {
-    /// Counts an event that the format has no word for.
+    /// Counts an event that the format cannot express.
     pub(super) fn drop_event(&mut self) {
         self.dropped += 1;
     }
 
-    /// Counts an event if it will be read at another time.
+    /// Counts an event if it will be read back with another time.
     pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());
     }
 
-    /// Counts what is no event.
+    /// Counts an item that is not an event.
     pub(super) fn leave_out(&mut self, item: Item) {
         self.others += u64::from(item != Item::Restart);
     }
 
-    /// Says so; `what` the dropped events have none of.
+    /// Formats the counts as notes; `what` names what the dropped events lack in this format.
     pub(super) fn notes(self, what: &str) -> Vec<String> {
         let Self { dropped, retimed, furthest, others } = self;
         let all = [

@@ -1,4 +1,4 @@
-//! Bytes of one format in, bytes of another out.
+//! Converts bytes of one format to bytes of another.
 
 use super::{EventReader, EventWriter, EventsKind, Format, Item, Tally};
 use crate::Result;
@@ -7,11 +7,11 @@ use spikewire::Tick;
 use std::fmt;
 use std::io::Write;
 
-/// A reader, a writer, and counts of what went through.
+/// A reader, a writer, and counts of the items between them.
 pub struct Stream<'a> {
     reader: Box<dyn EventReader + 'a>,
     writer: Box<dyn EventWriter>,
-    /// The tick that is subtracted from all, if they are to start at 0.
+    /// The tick that is subtracted from all, if the output is to start at 0.
     zero: Zero,
     items: Vec<Item>,
     bytes: u64,
@@ -30,7 +30,7 @@ enum Zero {
 }
 
 impl<'a> Stream<'a> {
-    /// A stream from a reader to a writer, with the ticks as they are or from 0 on.
+    /// Connects a reader to a writer. Ticks stay as they are, or are moved so that the first is 0.
     pub fn new(
         reader: Box<dyn EventReader + 'a>,
         writer: Box<dyn EventWriter>,
@@ -50,17 +50,17 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Takes bytes, cut anywhere, with the time at which they arrived if it means anything.
+    /// Converts bytes, which may be cut anywhere, with their time of arrival if it is known.
     ///
     /// # Errors
-    /// Returns an error if the bytes cannot be read, or their meaning cannot be written.
+    /// Returns an error if the bytes cannot be read, or if their items cannot be written.
     pub fn push(
         &mut self,
         bytes: &[u8],
         arrival: Option<Tick>,
         output: &mut dyn Write,
     ) -> Result<()> {
-        /// The most bytes read at once, so that their items take little memory.
+        /// Maximum number of bytes that are read at once, so that their items take little memory.
         const PIECE: usize = 1 << 14;
         if let Some(tick) = arrival {
             self.reader.set_arrival(tick);
@@ -136,25 +136,25 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// How many events, or values in their place, each address had.
+    /// Returns the number of events, or of decoded values, for each address.
     pub fn addresses(&self) -> &[u64] {
         &self.addresses
     }
 
-    /// How many events, or values in their place.
+    /// Returns the number of events, or of decoded values.
     pub fn count(&self) -> u64 {
         self.events + self.values
     }
 
-    /// How many bytes went in.
+    /// Returns the number of bytes read.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Refuses bytes of another format.
+    /// Checks that the bytes were of this format.
     ///
     /// # Errors
-    /// Returns an error if bytes were skipped, and there was neither event nor frame.
+    /// Returns an error if bytes were skipped and there was neither an event nor a frame.
     pub fn check_format(&self, format: Format, file: &str) -> Result<()> {
         let Tally { skipped, link, .. } = self.tally();
         let frames = link.map_or(0, |link| link.frames);
@@ -167,7 +167,7 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// A sentence that relates this many bytes to the items written.
+    /// Describes in a sentence how many items were written, in how many bytes.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),
@@ -178,13 +178,13 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// The counts of all that was no event.
+    /// Returns counts of everything that was not an event.
     pub fn tally(&self) -> Tally {
         self.reader.tally()
     }
 }
 
-/// The notes for the user at the end of the stream.
+/// Writes the notes for the user at the end of the stream.
 impl fmt::Display for Stream<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.word(f, quoted)

@@ -1,17 +1,17 @@
-//! Counts of all in a stream that is no event.
+//! Counts of everything in a stream that is not an event.
 
 use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
 use std::fmt;
 
-/// Counts of a reader.
+/// Counts kept by a reader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Bytes that belonged to nothing.
+    /// Number of bytes that belong to no item.
     pub skipped: u64,
-    /// Whether the end was cut.
+    /// Whether the stream ends within an item.
     pub is_cut: bool,
-    /// Ticks of more than 32 bits.
+    /// Number of ticks of more than 32 bits.
     pub long_ticks: u64,
     /// The counts of a link; `None` for other formats.
     pub link: Option<LinkTally>,
@@ -22,40 +22,40 @@ pub struct Tally {
 pub struct LinkTally {
     /// Frames that arrived whole.
     pub frames: u64,
-    /// Frames that never arrived.
+    /// Number of frames that never arrived.
     pub lost: u64,
     /// Number of places at which frames are missing.
     pub gaps: u64,
-    /// Checksums that did not match.
+    /// Number of checksums that did not match.
     pub bad_checksums: u64,
-    /// Frames that came twice.
+    /// Number of frames that arrived twice.
     pub repeated: u64,
-    /// Frames before which the sender lost events.
+    /// Number of frames before which the sender lost events.
     pub after_loss: u64,
-    /// The number of times that the sender began.
+    /// Number of times that the sender started.
     pub restarts: u64,
-    /// Keyframes.
+    /// Number of keyframes.
     pub keyframes: u64,
-    /// Frames whose events cannot be.
+    /// Number of frames with events that no sender can emit.
     pub impossible: u64,
-    /// Events and keyframes of an address without a decoder.
+    /// Number of events and keyframes whose address has no decoder.
     pub outside: u64,
-    /// Keyframes of another sample type.
+    /// Number of keyframes of another sample type.
     pub misfits: u64,
-    /// Keyframes for a scheme that has none.
+    /// Number of keyframes for a scheme that uses none.
     pub unused_keyframes: u64,
-    /// The comparison of keyframes with the values just before them.
+    /// How keyframes compare with the values decoded just before them.
     pub held: Held,
-    /// The reason that no value is exact, if frames are decoded.
+    /// The reason that no value is exact, if values are decoded.
     pub withheld: Option<Withheld>,
 }
 
-/// Keyframes of a code whose decoder should hold them already.
+/// Comparisons of keyframes with what the decoder held, for codes whose decoder should hold the same value already.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
     /// Number of keyframes that followed an exact value.
     pub compared: u64,
-    /// Number of those that differed from it.
+    /// Number of keyframes that differed from that exact value.
     pub contradicted: u64,
 }
 

@@ -1,22 +1,22 @@
-//! Whole recordings of events in memory.
+//! Reads and writes whole recordings of events in memory.
 
 use super::{EventsKind, Format, Item};
 use crate::Result;
 use spikewire::Event;
 
-/// Events of a stream.
+/// The events of a stream.
 #[derive(Clone, Debug, Default)]
 pub struct Events {
     /// The events, in their order.
     pub events: Vec<Event>,
-    /// Sentences on all that was no event, and on losses.
+    /// Notes on losses and on everything that is not an event.
     pub notes: Vec<String>,
 }
 
-/// Reads the events in bytes of a format by its name: `es`, `evt2`, `link`, `edvs:e2`…
+/// Reads all events in bytes of a format, given by name: `es`, `evt2`, `link`, `edvs:e2`…
 ///
 /// # Errors
-/// Returns an error if there is no such format, or the bytes are of another.
+/// Returns an error if the format is unknown, or if the bytes are of another format.
 pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     let format: Format = format.parse()?;
     let mut reader = format.reader("the bytes");
@@ -37,10 +37,10 @@ pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     Ok(Events { events: items.iter().filter_map(event).collect(), notes })
 }
 
-/// Writes events as bytes of a format by its name; returns the bytes, and notes of what the format could not hold.
+/// Writes events as bytes of a format, given by name. Returns the bytes, and notes on what the format could not hold.
 ///
 /// # Errors
-/// Returns an error if there is no such format, or it has no word for an event.
+/// Returns an error if the format is unknown, or if it cannot express an event.
 pub fn write_events(events: &[Event], format: &str) -> Result<(Vec<u8>, Vec<String>)> {
     let mut writer = format.parse::<Format>()?.writer(false);
     let mut bytes: Vec<u8> = Vec::new();

@@ -1,4 +1,4 @@
-//! Other containers, by way of `ffmpeg`.
+//! Reads other video containers by running `ffmpeg`.
 
 use super::FramesKind;
 use super::video::{Rate, Video};
@@ -10,11 +10,11 @@ use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::thread::JoinHandle;
 
-/// The pixel format asked for: 8 bits of full-range brightness. Full-range and grey sources pass unchanged, a limited
-/// range is expanded as [`Y4m`] expands it.
+/// Pixel format requested: 8 bits of full-range brightness. Sources that are grey or of full range pass unchanged;
+/// limited range is expanded as [`Y4m`] expands it.
 const GREY: &str = "gray";
 
-/// The frames that `ffmpeg` makes of a file.
+/// The frames into which `ffmpeg` converts a file.
 pub(super) struct Converted {
     video: Y4m<BufReader<ChildStdout>>,
     child: Child,
@@ -23,7 +23,7 @@ pub(super) struct Converted {
 }
 
 impl Converted {
-    /// Starts the program, the one that the variable `FFMPEG` names or the one on the path.
+    /// Starts the program named by the variable `FFMPEG`, or else `ffmpeg` on the path.
     ///
     /// # Errors
     /// Returns an error if `ffmpeg` is missing or cannot read the file.
@@ -69,7 +69,7 @@ impl Converted {
     }
 }
 
-/// The messages of `ffmpeg`, in one line.
+/// Returns the messages of `ffmpeg`, in one line.
 fn words(said: &mut Option<JoinHandle<String>>) -> String {
     let text = said.take().and_then(|said| said.join().ok()).unwrap_or_default();
     text.lines().collect::<Vec<_>>().join("; ")

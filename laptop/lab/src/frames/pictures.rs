@@ -1,4 +1,4 @@
-//! A sequence of pictures, a file each.
+//! A video that is a sequence of pictures, one in each file.
 
 use super::FramesKind;
 use super::video::{Rate, Video};
@@ -6,7 +6,7 @@ use crate::Result;
 use image::{DynamicImage, GrayImage};
 use std::path::{Path, PathBuf};
 
-/// Pictures in the order of their names, or as they were given.
+/// Pictures in the order of their names, or in the order given.
 pub(super) struct Pictures {
     files: Vec<PathBuf>,
     first: PathBuf,
@@ -14,7 +14,7 @@ pub(super) struct Pictures {
     index: usize,
 }
 
-/// Whether a file's name is that of a picture.
+/// Returns whether a file's name is that of a picture.
 pub(super) fn is_picture(path: &Path) -> bool {
     const ENDINGS: [&str; 6] = ["png", "jpg", "jpeg", "pgm", "ppm", "pnm"];
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -35,10 +35,10 @@ fn read(path: &Path) -> Result<GrayImage> {
 }
 
 impl Pictures {
-    /// Takes the size from the first.
+    /// Opens pictures, which must all have the size of the first.
     ///
     /// # Errors
-    /// The first cannot be read.
+    /// Returns an error if the first picture cannot be read.
     pub(super) fn open(files: Vec<PathBuf>) -> Result<Self> {
         let first = files.first().ok_or(FramesKind::NoPictures)?.clone();
         let picture = read(&first)?;

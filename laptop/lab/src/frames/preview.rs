@@ -1,4 +1,4 @@
-//! A picture of a video and its events, in the paper's layout: the frame, then a panel for each threshold.
+//! Draws a video and its events in the paper's layout: the frame, then a panel for each threshold.
 
 use super::FramesKind;
 use super::video::Rate;
@@ -12,26 +12,26 @@ use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Greys have the first colours of the palette, then come these.
+/// Number of greys, which are the first colours of the palette; the colours of events follow.
 const GREYS: u16 = 253;
 const UP: u8 = 253;
 const DOWN: u8 = 254;
 const PAPER: u8 = 255;
-/// The margin beside and between the panels.
+/// Margin around and between the panels, in pixels.
 const GAP: usize = 6;
-/// The most columns of a preview: small videos are enlarged by a whole factor up to this width.
+/// Maximum width in pixels. Small videos are enlarged by a whole factor up to this width.
 const WIDEST: usize = 1080;
 
-/// The frame that a picture shows unless told otherwise: a second into a usual video.
+/// Default frame to show: about a second into a video.
 const USUAL: u64 = 30;
 
-/// A picture, or an animated one.
+/// A picture of one frame, or an animation.
 pub struct Preview {
     panels: Vec<DynamicFrameEncoder<Intensity>>,
     size: (usize, usize),
     scale: usize,
     canvas: Vec<u8>,
-    /// The last frame to show.
+    /// Last frame to show.
     last: u64,
     file: Kind,
 }
@@ -45,7 +45,7 @@ impl Preview {
     /// Opens the file, `.png` or `.gif`, with a panel for each threshold in grey levels.
     ///
     /// # Errors
-    /// The name has another ending, or a threshold is 0 or 255.
+    /// Returns an error if the name has another ending, or if a threshold is 0 or 255.
     pub fn open(
         path: &Path,
         input: &Path,
@@ -84,10 +84,10 @@ impl Preview {
         Ok(Self { panels, size, scale, canvas, last, file })
     }
 
-    /// Takes a frame.
+    /// Draws the next frame of the video.
     ///
     /// # Errors
-    /// The picture cannot be written.
+    /// Returns an error if the picture cannot be written.
     pub fn frame(&mut self, index: u64, frame: &[u8]) -> Result<()> {
         if index > self.last {
             return Ok(());
@@ -122,7 +122,7 @@ impl Preview {
         (self.panels.len() + 1) * (self.scale * self.size.0 + GAP) + GAP
     }
 
-    /// Draws a panel, a colour for each pixel.
+    /// Fills a panel, with a colour for each pixel.
     fn fill(&mut self, panel: usize, colour: impl Fn(usize) -> u8) {
         let (columns, scale, (width, height)) = (self.columns(), self.scale, self.size);
         let left = GAP + panel * (scale * width + GAP);
@@ -135,7 +135,7 @@ impl Preview {
         }
     }
 
-    /// Puts the file in its place.
+    /// Finishes the file and moves it to its place.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -161,7 +161,7 @@ impl Preview {
     }
 }
 
-/// Red, green and blue of each colour: greys, ink for brighter, red for darker, and paper.
+/// Returns red, green and blue of each colour: greys, ink for brighter, red for darker, and paper.
 fn palette() -> Vec<u8> {
     let greys = (0..GREYS).flat_map(|grey| [(grey * 255 / (GREYS - 1)) as u8; 3]);
     greys.chain([0x2b, 0x2f, 0x36, 0xc2, 0x3b, 0x4e, 0xff, 0xff, 0xff]).collect()

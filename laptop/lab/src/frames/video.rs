@@ -1,4 +1,4 @@
-//! Videos, whatever file holds them.
+//! Videos, independent of their file format.
 
 use super::{FramesKind, ffmpeg, pictures, y4m};
 use crate::{Error, Result};
@@ -7,18 +7,18 @@ use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Grey frames of one size, one after the other.
+/// A sequence of grey frames of one size.
 pub trait Video {
-    /// Columns and rows.
+    /// Returns the numbers of columns and rows.
     fn size(&self) -> (u16, u16);
 
-    /// Frames a second, where the video tells.
+    /// Returns the frame rate, if the video contains it.
     fn rate(&self) -> Option<Rate>;
 
-    /// How many frames, where that is known before.
+    /// Returns the number of frames, if it is known in advance.
     fn frames(&self) -> Option<u64>;
 
-    /// Puts the next frame into the buffer, row-major; false at the end.
+    /// Reads the next frame into the buffer, row by row; returns false at the end.
     ///
     /// # Errors
     /// Returns an error if the frame cannot be read or has another size.
@@ -33,12 +33,12 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// The rate of this many frames in this many seconds; `None` if either is 0.
+    /// Makes the rate of `frames` in `seconds`; `None` if either is 0.
     pub fn new(frames: u64, seconds: u64) -> Option<Self> {
         (frames > 0 && seconds > 0).then_some(Self { frames, seconds })
     }
 
-    /// The time of a frame in µs.
+    /// Returns the time of a frame, in µs.
     pub fn micros(self, frame: u64) -> u64 {
         (u128::from(frame) * 1_000_000 * u128::from(self.seconds) / u128::from(self.frames)) as u64
     }
@@ -47,7 +47,7 @@ impl Rate {
 impl FromStr for Rate {
     type Err = Error;
 
-    /// `25`, `29.97` or `30000/1001`.
+    /// Parses `25`, `29.97` or `30000/1001`.
     fn from_str(text: &str) -> Result<Self> {
         let rate = if let Some((frames, seconds)) = text.split_once('/') {
             frames.parse().ok().zip(seconds.parse().ok())
@@ -60,7 +60,7 @@ impl FromStr for Rate {
     }
 }
 
-/// Opens a video: YUV4MPEG2, a sequence of pictures, or whatever `ffmpeg` reads.
+/// Opens a video: YUV4MPEG2, a sequence of pictures, or any format that `ffmpeg` reads.
 ///
 /// # Errors
 /// Returns an error if the video is missing or cannot be read.

@@ -1,6 +1,6 @@
-//! YUV4MPEG2, of which the brightness is taken, in full range: black is 0 and white 255.
+//! Reads the brightness of YUV4MPEG2 videos, in full range: black is 0 and white 255.
 //!
-//! Grey videos have full range. Those with colour have the limited one, 16 to 235, unless their header says
+//! Grey videos are taken to have full range, and those with colour the limited one, 16 to 235, unless their header says
 //! `XCOLORRANGE=FULL`.
 
 use super::FramesKind;
@@ -14,10 +14,10 @@ use y4m::{Decoder, Error};
 /// The first bytes of a YUV4MPEG2 file.
 pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
 
-/// The decoder takes no longer one.
+/// Maximum length of the header, in bytes; the decoder accepts no longer one.
 const LONGEST_HEADER: usize = 1024;
 
-/// A reader that counts what it has read.
+/// Counts the bytes read through it.
 struct Counting<R> {
     reader: R,
     bytes: Rc<Cell<u64>>,
@@ -31,10 +31,10 @@ impl<R: Read> Read for Counting<R> {
     }
 }
 
-/// The header, up to its end or that of the file, and then the frames.
+/// The bytes of the header, up to its end or that of the file, followed by the frames.
 type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
 
-/// Reads the header, whose columns and rows the decoder multiplies unchecked.
+/// Reads the header and checks its numbers of columns and rows, as the decoder multiplies them unchecked.
 fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
     let mut header = Vec::new();
     while !header.ends_with(b"\n") && header.len() < LONGEST_HEADER {
@@ -62,7 +62,7 @@ pub(super) struct Y4m<R: Read> {
     is_limited: bool,
     name: String,
     size: (u16, u16),
-    /// Number of bytes read so far, and up to the end of the last frame.
+    /// Number of bytes read so far, and number up to the end of the last frame.
     bytes: Rc<Cell<u64>>,
     end: u64,
     index: u64,
@@ -70,10 +70,10 @@ pub(super) struct Y4m<R: Read> {
 }
 
 impl<R: Read> Y4m<R> {
-    /// Reads the header; the length in bytes tells the number of frames.
+    /// Reads the header; `length` is the file's length in bytes, which gives the number of frames.
     ///
     /// # Errors
-    /// Returns an error if the file is of another format, or its pixels have more than 8 bits.
+    /// Returns an error if the file is of another format, or if its pixels have more than 8 bits.
     pub(super) fn open(reader: R, name: String, length: Option<u64>) -> Result<Self> {
         let bytes = Rc::new(Cell::new(0));
         let counting = Counting { reader, bytes: Rc::clone(&bytes) };
@@ -100,7 +100,7 @@ impl<R: Read> Y4m<R> {
     }
 }
 
-/// Expands brightness of limited range, 16 to 235, to full range; beyond it is black or white.
+/// Expands brightness of limited range, 16 to 235, to full range; values outside become black or white.
 fn full_range(limited: u8) -> u8 {
     const BLACK: u16 = 16;
     const STEPS: u16 = 219;
@@ -108,7 +108,7 @@ fn full_range(limited: u8) -> u8 {
     ((above * 255 + STEPS / 2) / STEPS) as u8
 }
 
-/// The bytes of a frame's brightness and of its colours.
+/// Returns the number of bytes that a frame's brightness and colours take.
 fn colours<R: Read>(decoder: &Decoder<R>) -> (u64, u64) {
     use y4m::Colorspace;
     let (width, height) = (decoder.get_width() as u64, decoder.get_height() as u64);

@@ -1,4 +1,4 @@
-//! The rate of a recording, and steps in time that are not as usual.
+//! Estimates the rate of a recording, and finds unusual steps in its times.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ pub enum Kind {
     Gap,
     /// The step goes back: samples are out of order.
     Backward,
-    /// The step goes back so far that the clock started anew, as after a reboot: a new segment begins.
+    /// The step goes back so far that the clock must have restarted, as after a reboot: a new segment begins.
     Restart,
 }
 
@@ -18,7 +18,7 @@ pub enum Kind {
 pub struct Step {
     /// The kind of the step.
     pub kind: Kind,
-    /// The sample before it.
+    /// Index of the sample before the step.
     pub after: u64,
     /// The length of the step in µs; negative if it goes back.
     pub microseconds: i64,
@@ -30,12 +30,12 @@ impl fmt::Display for Step {
     }
 }
 
-/// Another rate than before, for a while.
+/// A change of the sample rate.
 #[derive(Clone, Debug)]
 struct Jump {
-    /// Samples a second.
+    /// New rate, in samples a second.
     rate: f64,
-    /// The sample that it was seen from.
+    /// Index of the sample from which the new rate was seen.
     from: u64,
 }
 
@@ -45,14 +45,14 @@ impl fmt::Display for Jump {
     }
 }
 
-/// Watches the times of a recording.
+/// Watches the times of a recording for gaps, steps back, restarts and changes of rate.
 #[derive(Clone, Debug)]
 pub struct Clock {
     usual_step: f64,
     longest_step: f64,
-    /// A longer step back is a restart.
+    /// Longest step back that still counts as disorder; a longer one is a restart.
     longest_back: f64,
-    /// Samples a step forward, more than 1 where most times repeat the one before.
+    /// Number of samples for each step forward; more than 1 if most times repeat the one before.
     samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
@@ -60,24 +60,24 @@ pub struct Clock {
     backward: Told<Step>,
     restarts: Told<Step>,
     repeated: u64,
-    /// The earliest and the latest time of this segment, and the length of those before it in µs.
+    /// The earliest and the latest time of this segment; `before` is the length of the segments before it, in µs.
     span: Option<(i64, i64)>,
     before: i64,
-    /// The last times, up to a run of them, and the step from sample to sample in the run before.
+    /// The last times, up to [`RUN`] steps of them; `run_step` is the step between samples in the run before.
     run: Vec<i64>,
     run_step: f64,
     jumps: Told<Jump>,
     is_timed: bool,
 }
 
-/// Number of steps from which a rate is taken.
+/// Number of steps over which a rate is measured.
 const RUN: usize = 64;
-/// A clock that goes back by more than so many usual steps started anew.
+/// How far back a clock must step to count as restarted, in usual steps.
 const RESTART: f64 = 10.0;
-/// A rate jumps where it changes by more than this factor.
+/// Factor by which a rate must change to be reported.
 const JUMP: f64 = 1.5;
 
-/// The number of unusual things of a kind, and the first of them.
+/// The number of unusual things of one kind, and the first few of them.
 #[derive(Clone, Debug)]
 struct Told<T> {
     count: u64,
@@ -91,7 +91,7 @@ impl<T> Default for Told<T> {
 }
 
 impl Clock {
-    /// A clock that takes the usual step from the first times, or else from a given rate.
+    /// Takes the usual step from the first times, or else from `rate`. Steps above `steps` usual ones count as gaps.
     pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
         let are_sorted = !is_disordered(first_times);
         let usual = if are_sorted {
@@ -123,17 +123,17 @@ impl Clock {
         }
     }
 
-    /// Samples a second, if anything is known of it.
+    /// Returns the rate in samples a second, if it is known.
     pub fn rate(&self) -> Option<f64> {
         (self.usual_step > 0.0).then(|| 1e6 / self.usual_step * self.samples_a_step)
     }
 
-    /// The length of all segments in seconds, without the unknown time between them.
+    /// Returns the length of all segments in seconds, without the unknown time between them.
     pub fn seconds(&self) -> f64 {
         self.before.saturating_add(self.segment()) as f64 * 1e-6
     }
 
-    /// The usual step from sample to sample, in µs, as far as it is known.
+    /// Returns the usual time between samples, in µs, as far as it is known.
     pub fn period(&self) -> i64 {
         (self.usual_step / self.samples_a_step).round() as i64
     }
@@ -142,7 +142,7 @@ impl Clock {
         self.span.map_or(0, |(first, last)| last.saturating_sub(first))
     }
 
-    /// Takes the next times and gives the unusual steps among them.
+    /// Takes the next times, and returns the unusual steps among them.
     pub fn observe(&mut self, times: &[i64]) -> Vec<Step> {
         let mut steps = Vec::new();
         for &time in times {
@@ -187,8 +187,8 @@ impl Clock {
         steps
     }
 
-    /// Takes the rate of a run. Both its median and its mean tell a jump: a gap moves only the mean, steps of two
-    /// lengths by turns only the median.
+    /// Measures the rate of a run. Only a change of both its median and its mean counts: a gap moves the mean alone,
+    /// and steps that alternate between two lengths move the median alone.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {
@@ -230,7 +230,7 @@ impl<T: fmt::Display> fmt::Display for Told<T> {
     }
 }
 
-/// The report on the times.
+/// Writes a report on the times.
 impl fmt::Display for Clock {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_timed {
@@ -263,7 +263,8 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Whether samples are out of order: more than two times go back, and more than a tenth of those that change.
+/// Returns whether samples are out of order: more than two times step back, and more than a tenth of the times that
+/// change.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();
@@ -271,9 +272,9 @@ fn is_disordered(times: &[i64]) -> bool {
     back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
 }
 
-/// The median of the steps forward, and how many samples there are for each.
+/// Returns the median of the steps forward, and the number of samples for each step.
 ///
-/// A single step among many equal times tells nothing.
+/// Returns `None` if there are too few steps among many repeated times.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));

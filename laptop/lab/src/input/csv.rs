@@ -1,4 +1,4 @@
-//! Columns of a CSV table.
+//! Reads columns of a CSV table.
 
 mod overview;
 
@@ -18,19 +18,19 @@ use std::collections::VecDeque;
 use std::io::{self, BufReader, Cursor, Read};
 use std::rc::Rc;
 
-/// Names of columns that hold counts unless the user says otherwise.
+/// Names of columns that hold counts rather than samples; the user may still choose one.
 const COUNTS: [&str; 8] =
     ["index", "sample", "i", "", "unnamed: 0", "loopiteration", "lineno", "header.seq"];
-/// Rows that are looked at before the first is taken.
+/// Number of rows that are examined before the first is read.
 const AHEAD: usize = 64;
 
-/// Columns, and perhaps others with the times.
+/// The columns read from a table, and those with the times, if there are any.
 pub(super) struct Table {
     rows: Rows,
-    /// The number of comments below the header.
+    /// Number of comments below the header.
     comments: Rc<Cell<u64>>,
     ahead: VecDeque<ByteRecord>,
-    /// The row in hand, and whether it was one of those ahead.
+    /// The current row, and whether it is one of those examined in advance.
     record: ByteRecord,
     was_ahead: bool,
     file: String,
@@ -53,7 +53,7 @@ struct Column {
 struct Time {
     column: Column,
     reading: Reading,
-    /// Nanoseconds beside whole seconds.
+    /// The column with nanoseconds, if `column` has whole seconds.
     nanoseconds: Option<Column>,
     has_decimal_commas: bool,
 }
@@ -125,7 +125,7 @@ impl Table {
         Ok(table)
     }
 
-    /// The column of the times, and what its name says.
+    /// Finds the column of the times, and returns what its name says about them.
     fn time_column(
         &self,
         names: &[String],
@@ -151,7 +151,7 @@ impl Table {
         Ok(times.into_iter().next())
     }
 
-    /// Settles how the times are read, and what is to be said of them.
+    /// Decides how the times are read, and adds notes on that.
     fn read_times(
         &mut self,
         column: Column,
@@ -183,12 +183,12 @@ impl Table {
         self.time = Some(time);
     }
 
-    /// The first values of a column.
+    /// Returns the first values of a column.
     fn first(&self, index: usize) -> Vec<&[u8]> {
         self.ahead.iter().filter_map(|record| record.get(index)).map(<[u8]>::trim_ascii).collect()
     }
 
-    /// Takes the next row, if there is one.
+    /// Goes to the next row; returns false at the end.
     fn advance(&mut self) -> Result<bool> {
         let record = self.ahead.pop_front();
         self.was_ahead = record.is_some();
@@ -229,7 +229,7 @@ impl Table {
         Ok(value)
     }
 
-    /// The error of a row whose time cannot be read.
+    /// Makes the error of a row whose time cannot be read.
     fn no_time(&self, time: &Time) -> Error {
         let field = self.record.get(time.column.index).unwrap_or_default();
         let value = shown(field.trim_ascii());
@@ -240,7 +240,7 @@ impl Table {
         Place::spot(&self.file, Spot::Column(self.line(), column.name.clone()))
     }
 
-    /// The line at which the row in hand begins.
+    /// Returns the line at which the current row begins.
     fn line(&self) -> u64 {
         let record = &self.record;
         if self.was_ahead { line(record) } else { self.rows.line(record) }
@@ -248,7 +248,7 @@ impl Table {
 }
 
 impl Time {
-    /// The time, in ps.
+    /// Reads the time of a row, in ps.
     fn read(&self, record: &ByteRecord) -> Option<i128> {
         let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
         let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;
@@ -295,7 +295,7 @@ impl Source for Table {
     }
 }
 
-/// Whether a field is a spelling of a missing value, such as `NA`.
+/// Returns whether a field is a spelling of a missing value, such as `NA`.
 pub(super) fn is_missing(field: &[u8]) -> bool {
     const WORDS: [&str; 8] = ["", "na", "n/a", "#n/a", "<na>", "null", "none", "-"];
     WORDS.iter().any(|word| field.eq_ignore_ascii_case(word.as_bytes()))
@@ -304,12 +304,12 @@ pub(super) fn is_missing(field: &[u8]) -> bool {
 /// The rows of a table.
 struct Rows {
     reader: Reader<Box<dyn Read>>,
-    /// Whether lines end in CR and LF, of which the reader counts the LF to the next line.
+    /// Whether lines end in CR and LF; the reader counts the LF as part of the next line.
     is_of_windows: bool,
 }
 
 impl Rows {
-    /// The rows of a table whose start was read already; the comments among the others are counted.
+    /// Continues a table whose first lines are in `start`; counts the comments in the rest.
     fn new(start: Start, input: impl Read + 'static, delimiter: u8, count: &Rc<Cell<u64>>) -> Self {
         let is_of_windows = start.is_of_windows();
         // With it the last line ends as the others do; an empty line is none.
@@ -325,13 +325,13 @@ impl Rows {
         Self { reader, is_of_windows }
     }
 
-    /// Takes the next row, if there is one.
+    /// Reads the next row; returns false at the end.
     fn next(&mut self, record: &mut ByteRecord, file: &str) -> Result<bool> {
         let read = self.reader.read_byte_record(record);
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// The line at which the row that was read last begins: the reader itself counts comments before it in.
+    /// Returns the line at which the last row begins. The reader itself counts comments before it as part of it.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
@@ -342,7 +342,7 @@ impl Rows {
 /// Counts the lines that begin with `#` while they are read.
 struct Comments<R> {
     input: R,
-    /// The byte read last.
+    /// The last byte read.
     before: u8,
     count: Rc<Cell<u64>>,
 }
@@ -360,7 +360,7 @@ impl<R: Read> Read for Comments<R> {
     }
 }
 
-/// The first rows, each with the line that it begins at as its position.
+/// Reads the first rows; each has the line at which it begins as its position.
 fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     let mut records = VecDeque::new();
     let mut record = ByteRecord::new();
@@ -373,7 +373,7 @@ fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     Ok(records)
 }
 
-/// The line of a row ahead.
+/// Returns the line of a row that [`ahead`] has read.
 fn line(record: &ByteRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
 }
@@ -387,7 +387,7 @@ fn unreadable(error: csv::Error, line: u64) -> TableKind {
     }
 }
 
-/// The nanoseconds that ROS writes beside whole seconds.
+/// Finds the column of nanoseconds that ROS writes beside whole seconds.
 fn nanoseconds(seconds: &Column, names: &[String]) -> Option<Column> {
     let lower = seconds.name.to_lowercase();
     let stem = lower.strip_suffix("secs").or_else(|| lower.strip_suffix("sec"))?;
@@ -418,7 +418,7 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
     }
 }
 
-/// The columns that are neither times nor counts.
+/// Returns the columns that hold neither times nor counts.
 fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
     let is_signal = move |&(index, name): &(usize, &String)| {
         time.is_none_or(|time| time.index != index)
@@ -428,7 +428,7 @@ fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Colu
     signals.map(|(index, name)| Column { index, name: name.clone() })
 }
 
-/// The first names, and how many more there are: a table may have a million columns.
+/// Lists the first names, and how many more there are: a table may have a million columns.
 pub(super) fn first_of(names: &[String]) -> String {
     const MOST: usize = 20;
     let first = names.get(..MOST).unwrap_or(names).join(", ");
@@ -438,7 +438,7 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// The column that is neither a time nor a count, if there is just one.
+/// Returns the only column that holds neither times nor counts.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {

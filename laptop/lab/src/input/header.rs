@@ -1,4 +1,5 @@
-//! The header of a table: its first line, or the comment above its first row, as `EuRoC`, TUM-VI and `NumPy` write it.
+//! Finds the header of a table: its first line, or a comment above its first row, as `EuRoC`, TUM-VI and `NumPy` write
+//! it.
 
 use super::csv::is_missing;
 use super::text::name;
@@ -7,11 +8,11 @@ use csv::{ByteRecord, ReaderBuilder};
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
 
-/// The comments that a table begins with, and its first line that is none.
+/// The comments at the start of a table, and the first line after them.
 pub(super) struct Start {
-    /// The bytes of comments and first line, as the file has them.
+    /// The bytes of the comments and of that line, as in the file.
     pub text: Vec<u8>,
-    /// The place in `text` at which the first line without a comment begins.
+    /// Offset in `text` of the first line that is not a comment.
     line: usize,
 }
 
@@ -39,17 +40,17 @@ impl Start {
         }
     }
 
-    /// Whether its lines end as Windows ends them.
+    /// Returns whether lines end in CR and LF.
     pub(super) fn is_of_windows(&self) -> bool {
         self.text.ends_with(b"\r\n")
     }
 
-    /// The delimiter that separates most names, if the first line that is no comment is the header.
+    /// Returns the delimiter that separates most names, if the first line after the comments is the header.
     pub(super) fn delimiter(&self) -> u8 {
         delimiter(&self.text[self.line..])
     }
 
-    /// The last comment that has a name for each column of the line below, where that line has a number.
+    /// Returns the last comment that has as many names as the line below has columns, if that line contains a number.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = self.text.split_at(self.line);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
@@ -63,7 +64,8 @@ impl Start {
     }
 }
 
-/// Whether the first of these rows holds samples and no names: it has numbers, and no text stands above a number.
+/// Returns whether the first row holds samples rather than names: it contains numbers, and no text stands above a
+/// number.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);
@@ -80,7 +82,7 @@ fn is_number(field: &[u8], delimiter: u8) -> bool {
     number(field.trim_ascii(), delimiter != b',').is_some()
 }
 
-/// The fields of a line.
+/// Splits a line into fields.
 fn split(line: &[u8], delimiter: u8) -> ByteRecord {
     let mut record = ByteRecord::new();
     let mut builder = ReaderBuilder::new();

@@ -1,4 +1,4 @@
-//! Recordings: channels of a CSV table or of a log, a chunk at a time.
+//! Reads recordings in chunks: channels of a CSV table or of a log.
 
 mod clock;
 mod csv;
@@ -27,18 +27,17 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 pub use time::TimeUnit;
 
-/// All columns that are neither times nor counts.
+/// The name that stands for all columns except times and counts.
 const ALL: &str = "all";
 
-/// How many samples a chunk holds.
+/// Number of samples in a chunk.
 pub const CHUNK: usize = 8192;
 
 /// A recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// CSV table with a header, also compressed by gzip, or log: PX4's `ULog`, bag of ROS 1 or
-    /// 2, MCAP, Betaflight's blackbox; `-` is a CSV table on
-    /// standard input
+    /// CSV table with a header, or log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or
+    /// 2, MCAP, Betaflight's blackbox; also compressed; `-` is a CSV table on standard input
     pub input: PathBuf,
     /// The channel to read.
     pub channel: ChannelOptions,
@@ -55,32 +54,32 @@ impl Deref for InputOptions {
 /// The channel of a recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct ChannelOptions {
-    /// Column of a CSV table, by name or by number from 1; `encode` takes several
+    /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
-    /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; of a log `TOPIC.FIELD`
+    /// Several columns at once, separated by commas: `gyro_x,gyro_y,gyro_z`, or `all`; for a log `TOPIC.FIELD`.
     pub columns: Vec<String>,
-    /// Column that holds the time; found by its name, as Betaflight, `ArduPilot`, PX4, ROS and pandas
-    /// write it, unless given. In a ROS log a field such as `header.stamp`; when a message was recorded unless given
+    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default a table's is found
+    /// by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a ROS log's is the time at which a
+    /// message was recorded.
     pub time: Option<String>,
-    /// Unit of that column; told by its name, such as `time (us)` or `stamp_ns`, or by its values,
-    /// unless given
+    /// Unit of the time column; by default taken from its name, such as `time (us)` or `stamp_ns`, or from its values.
     pub time_unit: Option<TimeUnit>,
-    /// Delimiter of columns: `,` `;` `|` `tab` `space`; found in the header unless given
+    /// Delimiter of columns: `,` `;` `|` `tab` `space`; by default found in the header.
     pub delimiter: Option<Delimiter>,
-    /// Topic of a log; in a PX4 log with `:1` after it for its second instance
+    /// Topic of a log; `:1` after it means the second instance of a sensor.
     pub topic: Option<String>,
-    /// Field of that topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several
+    /// Fields of that topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,
-    /// Several fields at once: `gyro_rad[0],gyro_rad[1]`
+    /// Several fields at once, separated by commas: `gyro_rad[0],gyro_rad[1]`.
     pub fields: Vec<String>,
-    /// Samples a second, where no time is recorded
+    /// Samples a second, for a recording without times.
     pub rate: Option<f64>,
-    /// Report steps in time above this many usual steps
+    /// Number of usual steps above which a step in time is reported as a gap.
     pub gap: f64,
-    /// Go on over rows with a value that is missing (empty, `NA`) or not finite: they emit nothing and
-    /// are counted
+    /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise they are
+    /// an error.
     pub skip_non_finite: bool,
-    /// Take the whole messages of a log that is cut short or damaged
+    /// Whether a log that is cut short or damaged is read as far as it is whole.
     pub accept_cut: bool,
 }
 
@@ -120,34 +119,34 @@ impl FromStr for Delimiter {
     }
 }
 
-/// Samples in order, with their times where there are any.
+/// Consecutive samples, with their times if the recording has any.
 #[derive(Debug, Default)]
 pub struct Chunk {
-    /// The samples by channel, perhaps not finite; all channels have the same number.
+    /// The samples of each channel, which may be not finite; all channels have the same number.
     pub columns: Vec<Vec<f64>>,
-    /// Their times in µs: as many, or none at all.
+    /// Their times in µs: one for each sample, or none at all.
     pub times: Vec<i64>,
 }
 
 impl Chunk {
-    /// How many samples a channel has.
+    /// Returns the number of samples in a channel.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }
 
-    /// Whether there is no sample.
+    /// Returns whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Removes all samples, and prepares this many channels.
+    /// Removes all samples, and sets the number of channels.
     fn clear(&mut self, channels: usize) {
         self.columns.resize(channels, Vec::new());
         self.columns.iter_mut().for_each(Vec::clear);
         self.times.clear();
     }
 
-    /// Adds the samples of another.
+    /// Moves the samples of another chunk to the end of this one.
     pub fn append(&mut self, other: &mut Self) {
         self.columns.resize(other.columns.len(), Vec::new());
         for (column, more) in self.columns.iter_mut().zip(&mut other.columns) {
@@ -156,7 +155,7 @@ impl Chunk {
         self.times.append(&mut other.times);
     }
 
-    /// For each row, whether all its values are finite.
+    /// Returns for each row whether all its values are finite.
     pub fn finite_rows(&self) -> Vec<bool> {
         let mut rows = vec![true; self.len()];
         for column in &self.columns {
@@ -167,7 +166,7 @@ impl Chunk {
         rows
     }
 
-    /// The values of the rows marked, by channel.
+    /// Returns the values of the rows that are marked true, by channel.
     pub fn kept(&self, rows: &[bool]) -> Vec<Vec<f64>> {
         let kept = |column: &Vec<f64>| {
             column.iter().zip(rows).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
@@ -176,15 +175,15 @@ impl Chunk {
     }
 }
 
-/// Channels of a recording.
+/// A recording that is being read.
 pub trait Source {
-    /// Replaces the chunk by the next samples; none are left if it stays empty.
+    /// Replaces the chunk's content with the next samples; it stays empty at the end.
     ///
     /// # Errors
     /// Returns an error that names what cannot be read, and its place.
     fn next(&mut self, chunk: &mut Chunk) -> Result<()>;
 
-    /// Reads all samples that are left.
+    /// Reads all remaining samples.
     ///
     /// # Errors
     /// See [`next`](Self::next).
@@ -199,21 +198,21 @@ pub trait Source {
         }
     }
 
-    /// The channels' names: those of columns or fields, which may hold commas.
+    /// Returns the channels' names, which are those of columns or fields and may contain commas.
     fn names(&self) -> Vec<&str>;
 
-    /// The channels' origin, as keys and values for the header of a file of spikes.
+    /// Returns the channels' origin, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
 
-    /// Notes for the user on how the recording is read, a line each.
+    /// Returns notes for the user on how the recording is read, a line each.
     fn notes(&self) -> &[Words];
 }
 
 impl InputOptions {
-    /// Opens the recording at its start. Times of a clock that runs over go on behind it.
+    /// Opens the recording at its start. The times of a clock that wraps around are continued.
     ///
     /// # Errors
-    /// Returns an error if there is no such file, column, topic or field, or nothing in it.
+    /// Returns an error if the file, column, topic or field is missing, or if it is empty.
     pub fn open(&self) -> Result<Box<dyn Source>> {
         Ok(Box::new(rollover::Unwrapped::new(self.open_as_is()?)))
     }
@@ -258,7 +257,7 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Splits columns `TOPIC.FIELD` of one topic into the topic and its fields.
+    /// Splits columns of the form `TOPIC.FIELD` into their topic, which must be the same, and the fields.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
@@ -276,10 +275,10 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// These options with all columns of a table, unless some are asked for.
+    /// Returns these options, with all columns of a table if none are chosen.
     ///
     /// # Errors
-    /// The file cannot be opened.
+    /// Returns an error if the file cannot be opened.
     pub fn or_all(&self) -> Result<Self> {
         let mut own = self.clone();
         if self.columns().next().is_none()
@@ -290,30 +289,30 @@ impl InputOptions {
         Ok(own)
     }
 
-    /// Whether it can be read only once.
+    /// Returns whether the input is standard input, which can be read only once.
     pub fn is_stdin(&self) -> bool {
         self.input == Path::new("-")
     }
 
-    /// Its name, for messages.
+    /// Returns the input's name for messages.
     pub fn name(&self) -> String {
         if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
     }
 
-    /// The columns asked for.
+    /// Returns the columns that were chosen.
     fn columns(&self) -> impl Iterator<Item = &str> {
         self.column.iter().chain(&self.columns).map(String::as_str)
     }
 
-    /// The fields asked for.
+    /// Returns the fields that were chosen.
     fn fields(&self) -> impl Iterator<Item = &str> {
         self.field.iter().chain(&self.fields).map(String::as_str)
     }
 
-    /// Refuses several channels.
+    /// Checks that only one channel is chosen.
     ///
     /// # Errors
-    /// More than one is asked for.
+    /// Returns an error if several are.
     pub fn single(&self, command: &str) -> Result<()> {
         match self.columns().count().max(self.fields().count()) {
             _ if self.columns().any(|name| name == ALL) => {
@@ -338,10 +337,10 @@ impl InputOptions {
     }
 }
 
-/// Reads a number that must be above 0 and finite.
+/// Parses a number that must be above 0 and finite.
 ///
 /// # Errors
-/// The text is no such number.
+/// Returns an error if the text is not such a number.
 pub fn above_zero(text: &str) -> Result<f64> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),

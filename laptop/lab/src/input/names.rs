@@ -1,6 +1,6 @@
 //! Suggestions for a misspelt name.
 
-/// Names that resemble the one asked for, or all if they are few: ` (did you mean ..?)`.
+/// Lists the names that resemble the one asked for, or all if they are few: ` (did you mean ..?)`.
 pub fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     const FEW: usize = 8;
     const MOST: usize = 3;

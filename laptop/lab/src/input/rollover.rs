@@ -1,31 +1,31 @@
-//! Clocks of 32 bits that run over: 71.6 minutes in µs, 49.7 days in ms.
+//! Continues the times of 32-bit clocks that wrap around: after 71.6 minutes in µs, after 49.7 days in ms.
 
 use super::{Chunk, Source};
 use crate::Result;
 use catalogue::run::Words;
 
-/// The values that a clock of 32 bits has, in µs where it counts µs and where it counts ms.
+/// Range of a 32-bit clock in µs: of one that counts µs, and of one that counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// A clock runs over within a step of a second or four steps before it, whichever is longer.
+/// Longest step over which a clock may wrap around, in µs: a second, or four times the step before if that is longer.
 const SECOND: i64 = 1_000_000;
 const STEPS: i64 = 4;
 
-/// Times of a clock, as if it had more bits.
+/// Extends the times of a clock beyond its 32 bits.
 #[derive(Debug, Default)]
 pub struct Rollover {
     previous: Option<i64>,
     /// The last step forward.
     step: i64,
     samples: u64,
-    /// The number of times that the clock ran over; `range` is what it lost each time, `first` the sample before the first.
+    /// How often the clock wrapped around; `range` is what it lost each time, `first` the sample before the first wrap.
     count: i64,
     range: i64,
     first: u64,
 }
 
 impl Rollover {
-    /// The time of the next sample, in µs, from what its clock shows.
+    /// Returns the time of the next sample, in µs, from what the clock shows.
     pub fn take(&mut self, shown: i64) -> i64 {
         let previous = self.previous.unwrap_or(shown);
         let step = shown.saturating_sub(previous);
@@ -55,7 +55,7 @@ impl Rollover {
         shown.saturating_add(self.count.saturating_mul(self.range))
     }
 
-    /// A note for the user.
+    /// Returns a note for the user, if the clock wrapped around.
     pub fn note(&self) -> Option<String> {
         let Self { count, first, .. } = self;
         (*count > 0).then(|| {
@@ -66,7 +66,7 @@ impl Rollover {
     }
 }
 
-/// A recording with the times of a clock that does not run over.
+/// A recording whose times are continued where its clock wraps around.
 pub(super) struct Unwrapped {
     source: Box<dyn Source>,
     rollover: Rollover,

@@ -1,4 +1,4 @@
-//! Tables as they come: compressed, or in another encoding than UTF-8.
+//! Opens tables that are compressed, or in another encoding than UTF-8.
 
 use super::TableKind;
 use crate::Result;
@@ -8,14 +8,14 @@ use flight_logs::GZIP;
 use flight_logs::zstd::{Frames, ZSTD};
 use std::io::{self, BufReader, Cursor, Read};
 
-/// The number of bytes that tell the kind of a file.
+/// Number of bytes from which the kind of a file is recognised.
 const HEAD: usize = 16;
 
-/// The first bytes of files that are no tables, the name of each kind, and the way to export it.
+/// Files that are not tables: their first bytes, the name of the kind, and how to export a table from it.
 const OTHERS: [(&[u8], &str); 11] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
-    (b"\xa3\x95", "an ArduPilot log; `mavlogdump.py --format csv --types IMU` exports it"),
+    (b"\xa3\x95", "an ArduPilot log; it is read from a file only"),
     (b"H Product:Blackbox", "a Betaflight log; it is read from a file only"),
     (b"#ROSBAG", "a ROS bag; it is read from a file only"),
     (b"SQLite format 3", "a database, perhaps a ROS 2 bag; those are read from a file only"),
@@ -26,10 +26,10 @@ const OTHERS: [(&[u8], &str); 11] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// The text of a file as UTF-8, or in bytes that extend ASCII.
+/// Reads a file as text in UTF-8, or in another encoding that extends ASCII.
 ///
 /// # Errors
-/// Returns an error if the file is no text.
+/// Returns an error if the file is not text.
 pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     let (head, input) = peek(input).at(|| name)?;
     let unpacked: Box<dyn Read> = if head.starts_with(&GZIP) {
@@ -44,7 +44,7 @@ pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     decode(&head, input, name)
 }
 
-/// A name in a table, from UTF-8 or else from Latin-1.
+/// Decodes a name in a table, from UTF-8 or else from Latin-1.
 pub(super) fn name(bytes: &[u8]) -> String {
     match str::from_utf8(bytes) {
         Ok(text) => text.trim().to_owned(),
@@ -52,7 +52,8 @@ pub(super) fn name(bytes: &[u8]) -> String {
     }
 }
 
-/// Bytes as a message shows them: bytes that are no UTF-8 and control characters as escapes, the first of many only.
+/// Formats bytes for a message: bytes that are not UTF-8 and control characters are escaped, and only the first of many
+/// are shown.
 pub fn shown(bytes: &[u8]) -> String {
     const MOST: usize = 60;
     let mut text = String::new();
@@ -94,7 +95,7 @@ fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn
     Ok(Box::new(input))
 }
 
-/// The first bytes, and all of them again.
+/// Reads the first bytes, and returns a reader that starts with them again.
 fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
     let mut head = Vec::new();
     input.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
@@ -124,7 +125,8 @@ mod encoding {
     }
 }
 
-/// A browser decodes such files itself before it lends them; the tables of all encodings would be a tenth of the page.
+/// Decodes Latin-1 only. A browser decodes other files before it lends them; the tables of all encodings would make up a
+/// tenth of the page.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

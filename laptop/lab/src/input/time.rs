@@ -1,4 +1,4 @@
-//! Columns of times: which they are, and in which unit, by their names and by their values.
+//! Recognises columns of times and their unit, by their names and values.
 
 use super::TableKind;
 use crate::Error;
@@ -72,19 +72,19 @@ impl fmt::Display for TimeUnit {
     }
 }
 
-/// The meaning of a column's name for the times in it.
+/// What a column's name says about the times in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Named {
     /// The times are in this unit.
     In(TimeUnit),
-    /// The values must tell: whole numbers are in this unit, unless they count from 1970.
+    /// The values decide: whole numbers are in this unit, unless they count from 1970.
     Whole(TimeUnit),
     /// The column has times only if it holds dates.
     Dates,
 }
 
-/// The meaning of a time column's name in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas; `None` if it is no
-/// time.
+/// Interprets a column's name as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas; `None` if it does not name
+/// a time.
 pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
@@ -114,7 +114,7 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
-/// The meaning of the name of a column that the user has named as the time.
+/// Interprets the name of a column that the user chose as the time.
 pub(super) fn of_given(name: &str) -> Named {
     match of_name(name) {
         Some(named @ (Named::In(_) | Named::Whole(_))) => named,
@@ -142,7 +142,7 @@ fn is_time(name: &str) -> bool {
     )
 }
 
-/// A name and the word behind it: `time (us)`, `time [us]`, `time_us`, `time us`, `stamp.secs`.
+/// Splits the unit off a name: `time (us)`, `time [us]`, `time_us`, `time us`, `stamp.secs`.
 fn last_word(name: &str) -> Option<(&str, &str)> {
     let bracketed = |open, close| {
         let (base, word) = name.strip_suffix(close)?.rsplit_once(open)?;
@@ -153,7 +153,7 @@ fn last_word(name: &str) -> Option<(&str, &str)> {
         .or_else(|| name.rsplit_once(['_', ' ', '.', '-', ':']))
 }
 
-/// The way in which a column's values are read.
+/// How a column's values are read as times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
     /// Numbers in this unit.
@@ -165,7 +165,7 @@ pub(super) enum Reading {
 }
 
 impl Reading {
-    /// Finds it from the first values, if the name leaves it open. `None` if they are no times at all.
+    /// Decides by the first values what the name leaves open; `None` if they are not times.
     pub(super) fn new(named: Named, first: &[&[u8]], has_commas: bool) -> Option<Self> {
         let numbers: Option<Vec<f64>> =
             first.iter().map(|field| number(field, has_commas)).collect();
@@ -182,7 +182,7 @@ impl Reading {
         }
     }
 
-    /// A value in ps. Numbers may have decimal commas.
+    /// Reads a time in ps; numbers may have decimal commas.
     pub(super) fn read(self, field: &[u8], has_commas: bool) -> Option<i128> {
         let seconds = |whole: i64| i128::from(whole) * TimeUnit::S.picoseconds();
         match self {
@@ -203,16 +203,16 @@ impl Reading {
     }
 }
 
-/// A time in ps in whole µs, as the times of all recordings are; halves are rounded up.
+/// Converts a time from ps to whole µs, the resolution of all recordings; halves are rounded up.
 pub(super) fn microseconds(picoseconds: i128) -> i64 {
     let rounded = picoseconds.saturating_add(MICROSECOND / 2).div_euclid(MICROSECOND);
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// Digits with or without a decimal point, in ps: all digits of a stamp count, of which a float holds but 15. `None` if
-/// there is an exponent or anything else.
+/// Parses digits with or without a decimal point, in ps. All digits of a time stamp count, while a float keeps only 15.
+/// Returns `None` if there is an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
-    /// More do not fit.
+    /// Maximum number of digits that fit.
     const MOST: usize = 24;
     let (is_negative, digits) = match field {
         [b'-', digits @ ..] => (true, digits),
@@ -234,7 +234,7 @@ fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
     Some(if is_negative { -sum } else { sum })
 }
 
-/// A number, perhaps with a decimal comma.
+/// Parses a number, with a decimal comma if `has_commas`.
 pub(super) fn number(field: &[u8], has_commas: bool) -> Option<f64> {
     fast_float2::parse(field).ok().or_else(|| {
         let text = str::from_utf8(field).ok().filter(|_| has_commas)?;
@@ -248,7 +248,7 @@ fn text(field: &[u8]) -> Option<&str> {
     text.contains(':').then_some(text)
 }
 
-/// Times from 1970 on are told by their size, others are in seconds if they have fractions.
+/// Guesses the unit: times since 1970 are recognised by their size; others are in seconds if they have fractions.
 fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     let size = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     match size {
@@ -260,7 +260,7 @@ fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     }
 }
 
-/// A note if the first times, in ps, have steps that no recording of a flight has.
+/// Returns a note if the first times, in ps, have steps that no recording of a flight has.
 pub(super) fn implausible(times: &[i128]) -> Option<String> {
     const SHORTEST: f64 = 1e-3;
     const LONGEST: f64 = 60e6;
@@ -282,7 +282,7 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// Those of the usual exports are read in the program's tests.
+    /// The names in the usual exports are tested with the program.
     #[test]
     fn names_that_are_no_times() {
         let is = |unit| Some(Named::In(unit));
@@ -329,7 +329,7 @@ mod tests {
         assert_eq!(microseconds(duration), 86_400_005_000);
     }
 
-    /// A float has the first of these 48 ns later, across the half of a µs.
+    /// As floats, the first of these would be 48 ns later, on the other side of half a µs.
     #[test]
     fn all_digits_of_a_stamp_count() {
         for (text, unit, commas, time) in [

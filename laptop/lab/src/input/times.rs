@@ -1,18 +1,18 @@
-//! Times as they come one by one: the clock that they show, and where it ran over.
+//! Summarises times that come one by one: the clock, and how often it wrapped around.
 
 use super::{CHUNK, Clock, Rollover};
 
-/// The times of a recording that is passed over.
+/// Times of a recording that is read once, without storing it.
 pub(super) struct Times {
     gap: f64,
-    /// The first times, which tell what is usual.
+    /// The first times, from which the usual step is taken.
     first: Vec<i64>,
     clock: Option<Clock>,
     rollover: Rollover,
 }
 
 impl Times {
-    /// No times yet; steps above this many usual ones are gaps.
+    /// Starts without times; steps above `gap` usual ones count as gaps.
     pub(super) fn new(gap: f64) -> Self {
         Self { gap, first: Vec::new(), clock: None, rollover: Rollover::default() }
     }
@@ -37,7 +37,7 @@ impl Times {
         clock
     }
 
-    /// Length, rate and gaps, and how often the clock ran over.
+    /// Returns the clock with length, rate and gaps, and how often it wrapped around.
     pub(super) fn finish(mut self) -> (Clock, Rollover) {
         let clock = self.clock.take().unwrap_or_else(|| self.started());
         (clock, self.rollover)

@@ -1,11 +1,11 @@
-//! A trained network onto a chip: what is asked for, and what came of it.
+//! Brings a trained network onto a chip, and compares it there with the original.
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The steps over which outputs are counted.
+/// Number of steps over which outputs are counted.
 pub const WINDOW: usize = 20;
 
 /// A network, and the recording with which it is brought onto the chip.
@@ -16,26 +16,27 @@ pub struct Request<'a> {
     pub trained: &'a Trained,
     /// The spikes on which the chip's numbers are tuned, by step.
     pub tuned: &'a Trains,
-    /// Spikes which only show what the numbers are worth.
+    /// Spikes on which the result is only tested.
     pub held_out: Option<HeldOut<'a>>,
-    /// The outputs that fired where the network was trained: on the recording, and on what is held out.
+    /// Spikes of the outputs in the training framework: on the recording, and on the one held out.
     pub own: Option<(&'a Trains, &'a Trains)>,
-    /// When neurons compare with their thresholds; what holds better unless given.
+    /// When neurons compare with their thresholds; `None` chooses the way that agrees better with the original.
     pub compare: Option<Compare>,
-    /// Called with the parts of the search that are done and those in all.
+    /// Called with the number of parts of the search that are done, and the number in all.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
 /// A recording on which nothing is tuned.
 #[derive(Clone, Copy)]
 pub struct HeldOut<'a> {
-    /// All of its steps, which are run.
+    /// The spikes of all its steps.
     pub steps: &'a Trains,
-    /// The first step that counts: those before it, on which the network was tuned, only lead to its state.
+    /// First step that counts. The steps before it were tuned on, and are only run to reach the state that follows
+    /// them.
     pub from: usize,
 }
 
-/// A network for the chip, and what quantising costs.
+/// A network on a chip, and the accuracy lost by quantising.
 pub struct Brought {
     /// The network.
     pub network: Box<dyn OnChip>,
@@ -43,73 +44,74 @@ pub struct Brought {
     pub tuned: Figures,
     /// The figures on the recording that was held out.
     pub held_out: Option<Figures>,
-    /// The share of the steps with an output that is left if only this part of the chip's arithmetic is the chip's, on the
-    /// recording that was held out, or else on that of the tuning.
+    /// For each part of the chip's arithmetic, the agreement that is left if the network uses that part alone, and
+    /// double precision otherwise: the share of active steps with the same outputs. Measured on the recording held out,
+    /// or else on the one tuned on.
     pub costs: Vec<(Cost, f64)>,
-    /// The share of the steps with an output in which double precision fires as the network did where it was trained.
+    /// Share of active steps in which double precision fires as the training framework did.
     pub reading: Option<f64>,
 }
 
-/// The network in double precision beside the chip's model.
+/// Comparison of the network in double precision with the chip's model.
 pub struct Figures {
     /// The figures of each layer.
     pub layers: Vec<LayerFigures>,
-    /// Steps.
+    /// Number of steps.
     pub steps: usize,
-    /// Steps in which the outputs that fire are the same.
+    /// Number of steps in which the same outputs fire.
     pub agreeing: usize,
-    /// Steps in which an output fires, in double precision or on the chip.
+    /// Number of active steps: those in which an output fires, in double precision or on the chip.
     pub active: usize,
-    /// Active steps in which the same outputs fire as in double precision.
+    /// Number of active steps in which the same outputs fire in both.
     pub active_agreeing: usize,
-    /// Windows of [`WINDOW`] steps in which an output fires.
+    /// Number of windows of [`WINDOW`] steps in which an output fires.
     pub windows: usize,
-    /// Windows in which the same outputs fire most.
+    /// Number of windows in which the same outputs fire most often.
     pub windows_agreeing: usize,
-    /// The chip's clocks for a step: the mean.
+    /// Mean number of the chip's clocks in a step.
     pub mean_clocks: f64,
-    /// The chip's clocks for the longest step.
+    /// Number of the chip's clocks in the longest step.
     pub most_clocks: u64,
-    /// Spikes lost on their way into the chip.
+    /// Number of spikes lost on their way into the chip.
     pub lost: u32,
-    /// Outputs that never fire.
+    /// Comparison of the outputs that never fire.
     pub potentials: Option<PotentialFigures>,
 }
 
-/// Potentials of outputs in double precision beside the chip's model.
+/// Comparison of the outputs' potentials in double precision with the chip's model.
 pub struct PotentialFigures {
-    /// The name in its file.
+    /// Name in the file.
     pub name: String,
-    /// Outputs.
+    /// Number of outputs.
     pub outputs: usize,
-    /// Weights that were larger than the chip's.
+    /// Number of weights that exceeded the chip's range.
     pub clipped: usize,
-    /// The root mean square of the potentials in double precision.
+    /// Root mean square of the potentials in double precision.
     pub size: f64,
-    /// The root mean square of their difference on the chip.
+    /// Root mean square of the chip's deviation from them.
     pub error: f64,
 }
 
-/// A layer in double precision beside the chip's model.
+/// Comparison of a layer in double precision with the chip's model.
 pub struct LayerFigures {
-    /// The name in its file.
+    /// Name in the file.
     pub name: String,
-    /// Neurons.
+    /// Number of neurons.
     pub neurons: usize,
-    /// Weights that were larger than the chip's.
+    /// Number of weights that exceeded the chip's range.
     pub clipped: usize,
-    /// Spikes in double precision.
+    /// Number of spikes in double precision.
     pub spikes: usize,
-    /// Spikes on the chip.
+    /// Number of spikes on the chip.
     pub on_chip: usize,
-    /// The distance of van Rossum, squared, over all neurons.
+    /// Squared distance of van Rossum, summed over all neurons.
     pub distance: f64,
 }
 
 /// Quantises the network, and runs it on the chip's model.
 ///
 /// # Errors
-/// Returns an error if the network does not fit, or the chip's model refuses something.
+/// Returns an error if the network does not fit, or if the chip's model refuses a call.
 pub fn bring(request: &Request) -> Result<Brought> {
     let Request { chip, trained, tuned, held_out, own, compare, progress } = *request;
     let mut original = Original::of(trained, tuned);
@@ -140,7 +142,7 @@ pub fn bring(request: &Request) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs, reading })
 }
 
-/// The share of the steps in which either has a spike in which both have the same.
+/// Returns the share of steps with the same spikes in both trains, of the steps in which either has a spike.
 fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     let active = one.iter().zip(other).filter(|(one, other)| !one.is_empty() || !other.is_empty());
     let (active, same) = active.fold((0, 0), |(active, same), (one, other)| {
@@ -150,19 +152,19 @@ fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     (active > 0).then(|| f64::from(same as u32) / f64::from(active))
 }
 
-/// A network in double precision: its layers, and what it did.
+/// A network in double precision: its layers, and the spikes and potentials of a run.
 pub(super) struct Original {
-    /// The name and number of the neurons of each layer that fires.
+    /// Name and number of neurons of each layer that fires.
     pub layers: Vec<(String, usize)>,
-    /// The same of outputs that never fire.
+    /// Name and number of the outputs that never fire.
     pub readout: Option<(String, usize)>,
     pub fired: Vec<Trains>,
-    /// The outputs' potentials, by step.
+    /// The outputs' potentials, for each step.
     pub potentials: Vec<Vec<f64>>,
 }
 
 impl Original {
-    /// What it did from a step on.
+    /// Returns the run without the steps before `from`.
     fn behind(&self, from: usize) -> Self {
         Self {
             layers: self.layers.clone(),
@@ -172,7 +174,7 @@ impl Original {
         }
     }
 
-    /// Takes what the outputs did where the network was trained.
+    /// Replaces the outputs' spikes by those in the training framework.
     fn fire(&mut self, own: &Trains) -> Result<()> {
         if let (None, Some(last)) = (&self.readout, self.fired.last_mut()) {
             let (steps, given) = (last.len(), own.len());
@@ -206,7 +208,7 @@ impl Original {
     }
 }
 
-/// Runs the quantised network beside the original, and compares them from a step on.
+/// Runs the quantised network, and compares it with the original from step `from` on.
 pub(super) fn figures(
     original: &Original,
     network: &dyn OnChip,
@@ -272,7 +274,7 @@ fn root_mean_square(numbers: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(count.max(1))).sqrt()
 }
 
-/// The output whose potential is the highest, by step; none before any has one.
+/// Returns for each step the output with the highest potential; none until an output has one.
 fn highest(potentials: &[Vec<f64>]) -> Trains {
     let of_step = |step: &Vec<f64>| {
         if step.iter().all(|potential| *potential == 0.0) {
@@ -327,19 +329,19 @@ impl Figures {
         }
     }
 
-    /// How well the network holds, by steps and by windows: 0 to 1.
+    /// Returns how well the network agrees, averaged over steps and windows: 0 to 1.
     pub(super) fn holds(&self) -> f64 {
         let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
         f64::midpoint(self.agreement().unwrap_or(0.0), windows)
     }
 
-    /// The share of the steps with an output in which the outputs are the same; `None` if none ever fires.
+    /// Returns the share of active steps in which the same outputs fire; `None` if none ever fires.
     pub fn agreement(&self) -> Option<f64> {
         (self.active > 0).then(|| self.active_agreeing as f64 / self.active as f64)
     }
 }
 
-/// The outputs that fire most.
+/// Returns the outputs that fire most often.
 fn most(steps: &[Vec<u16>]) -> Vec<u16> {
     let mut counts = BTreeMap::new();
     for output in steps.iter().flatten() {

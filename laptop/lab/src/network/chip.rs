@@ -1,4 +1,4 @@
-//! The trait of a chip onto which a network can be brought.
+//! The interface of a chip onto which a network can be brought.
 
 use super::costs::Cost;
 use super::{ReckOn, TinyOdin, Trained, Trains};
@@ -8,14 +8,14 @@ use std::fmt::{Debug, Display};
 
 /// A chip that a trained network can be brought onto.
 pub trait Chip: Sync {
-    /// The name by which the chip is asked for.
+    /// Returns the name by which users choose the chip.
     fn name(&self) -> &'static str;
 
-    /// Finds what the chip should hold so that it does what the network does. `fired` is who fires in training, by layer
-    /// and step. Calls `progress` with the parts of the search that are done and those in all.
+    /// Finds the numbers with which the chip follows the network best. `fired` is the spikes in double precision, by
+    /// layer and step. Calls `progress` with the number of parts of the search that are done, and the number in all.
     ///
     /// # Errors
-    /// The network does not fit the chip.
+    /// Returns an error if the network does not fit the chip.
     fn quantise(
         &self,
         trained: &Trained,
@@ -26,31 +26,31 @@ pub trait Chip: Sync {
     ) -> Result<Box<dyn OnChip>>;
 }
 
-/// When neurons of a chip compare with their thresholds, of chips that leave the choice.
+/// When a chip's neurons compare with their thresholds, for chips that leave the choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// After each spike, as the chip has it.
+    /// After each spike, as the chip does by itself.
     Spike,
-    /// Once a step, as in training: other events see to it.
+    /// Once a step, as in training; additional events make the chip do so.
     Step,
 }
 
-/// Every chip that networks can be brought onto.
+/// All chips onto which networks can be brought.
 pub static CHIPS: [&dyn Chip; 2] = [&TinyOdin, &ReckOn];
 
 /// A network as a chip holds it.
 pub trait OnChip {
-    /// Loads the network into the chip's model with the crate's driver, and runs it.
+    /// Loads the network into the chip's model with the driver of `spikewire-chips`, and runs it.
     ///
     /// # Errors
-    /// The chip refuses something.
+    /// Returns an error if the chip refuses a call.
     fn run(&self, inputs: &Trains) -> Result<Ran>;
 
-    /// Loads the network into the chip's model, and runs it on steps as they come: `see` is told what came of each before
-    /// the next is taken, so that what drives the network may depend on what it does. Returns the number of spikes lost.
+    /// Loads the network into the chip's model, and runs it on steps as they arrive. Each result is passed to `see`
+    /// before the next step is read, so that later inputs may depend on it. Returns the number of spikes lost.
     ///
     /// # Errors
-    /// The chip or `see` refuses something, or the chip's outputs come steps later.
+    /// Returns an error if the chip or `see` refuses a step, or if the chip's outputs come steps later.
     fn follow(
         &self,
         _steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
@@ -59,29 +59,29 @@ pub trait OnChip {
         bail!("this chip's outputs come steps later: only tinyODIN answers step by step here")
     }
 
-    /// For each layer, the number of weights that were larger than the chip's; then that of the outputs, if they have
-    /// potentials.
+    /// Returns for each layer the number of weights that exceeded the chip's range; then, if outputs have potentials,
+    /// their number.
     fn clipped(&self) -> Vec<usize>;
 
-    /// Writes a file of Rust, which compiles without `std` beside the crate's feature `embedded-hal`.
+    /// Writes Rust source, which compiles without `std` if `spikewire-chips` has its feature `embedded-hal`.
     fn emit(&self, told: &Told) -> String;
 
-    /// The network as bytes, which the crate's driver loads at run time.
+    /// Returns the network as bytes, which the driver loads at run time.
     ///
     /// # Errors
-    /// Returns an error if the chip does not take the network.
+    /// Returns an error if the chip does not accept the network.
     fn bytes(&self) -> Result<Vec<u8>>;
 
-    /// Notes on the network's size on the chip, and on what had to change: a line each.
+    /// Returns notes on the network's size on the chip, and on what had to be changed, a line each.
     fn notes(&self) -> Vec<String>;
 
-    /// The parts of the chip's arithmetic that change a network, of which each can be measured alone.
+    /// Returns the parts of the chip's arithmetic that change the network, and whose effect can be measured one by one.
     fn costs(&self) -> Vec<Cost>;
 
-    /// The reason that spikes get lost on their way into the chip.
+    /// Returns the reason that spikes get lost on their way into the chip.
     fn loss(&self) -> &'static str;
 
-    /// What a step takes, of the figures' clocks.
+    /// Describes the duration of a step, given its mean and largest number of clocks.
     fn effort(&self, mean: f64, most: u64) -> String {
         format!("a step takes the chip {mean:.0} clocks, {most} at most")
     }
@@ -91,11 +91,11 @@ pub trait OnChip {
 pub struct Ran {
     /// The neurons that fired, by layer and step.
     pub fired: Vec<Trains>,
-    /// The outputs' potentials by step, in the units of the training; empty if the last layer's spikes are the outputs.
+    /// The outputs' potentials by step, in the units of the training; empty if the outputs are the last layer's spikes.
     pub potentials: Vec<Vec<f64>>,
-    /// The chip's clocks, by step.
+    /// Number of the chip's clocks, for each step.
     pub clocks: Vec<u64>,
-    /// How many spikes got lost on their way into the chip.
+    /// Number of spikes lost on their way into the chip.
     pub lost: u32,
 }
 
@@ -103,22 +103,22 @@ pub struct Ran {
 pub struct Stepped {
     /// The neurons that fired, by layer.
     pub fired: Vec<Vec<u16>>,
-    /// The chip's clocks.
+    /// Number of the chip's clocks.
     pub clocks: u64,
 }
 
-/// Remarks for a reader of the file.
+/// Remarks for the readers of the generated file.
 pub struct Told {
-    /// The network's source.
+    /// Where the network comes from.
     pub source: String,
-    /// The meaning of its inputs.
+    /// What its inputs mean.
     pub inputs: String,
-    /// How long a step is in µs, if that is known.
+    /// Length of a step in µs, if it is known.
     pub step_us: Option<f64>,
 }
 
 impl Told {
-    /// How long so many steps are in the recording, if that is known, behind a comma.
+    /// Returns a comma and the duration of `steps` steps in the recording, if it is known.
     pub(super) fn micros(&self, steps: usize) -> String {
         self.step_us.map_or(String::new(), |step| {
             format!(", {:.0} µs in the recording", step * steps as f64)
@@ -126,14 +126,14 @@ impl Told {
     }
 }
 
-/// The items of an array, a line each.
+/// Formats the items of an array, a line each.
 pub(super) fn lines(items: impl Iterator<Item = String>) -> String {
     items.fold(String::new(), |all, item| all + "        " + &item + ",\n")
 }
 
-/// The bytes that `write` puts in front of room for the largest network.
+/// Returns the bytes that `write` puts into a buffer with room for the largest network.
 pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> Result<Vec<u8>, E> {
-    /// More bytes than any network takes on any chip.
+    /// More bytes than any network needs on any chip.
     const LARGEST: usize = 256 * 1024;
     let mut bytes = vec![0; LARGEST];
     let length = write(&mut bytes)?;
@@ -141,12 +141,12 @@ pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> R
     Ok(bytes)
 }
 
-/// Numbers with commas between.
+/// Formats numbers, separated by commas.
 pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// The error of a driver on the model.
+/// Converts the error of a driver that runs on the model.
 pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> crate::Error {
     fault(format!("the chip's model: {error}"))
 }

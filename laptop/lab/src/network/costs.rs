@@ -1,4 +1,5 @@
-//! The cost of each part of a chip's arithmetic alone: what is left of a network in double precision with it.
+//! Measures what each part of a chip's arithmetic costs by itself: the network runs in double precision except for that
+//! part.
 
 use super::controller::Fires;
 use super::trained::{Layer, Neuron};
@@ -8,13 +9,13 @@ use std::fmt::{self, Display};
 /// A part of a chip's arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
-    /// Neurons compare with their thresholds after each spike.
+    /// Neurons compare with their thresholds after each spike, rather than once a step.
     Order,
-    /// A leak takes a fixed amount, not a share.
+    /// A leak subtracts a fixed amount, rather than a share of the potential.
     Leak,
-    /// A neuron's weights are whole numbers, of which this is the largest.
+    /// A neuron's weights are whole numbers.
     Weights {
-        /// The largest.
+        /// The largest weight.
         largest: f64,
     },
 }
@@ -29,11 +30,12 @@ impl Display for Cost {
     }
 }
 
-/// Amounts of a leak that are tried, as parts of the share at half the threshold.
+/// Leaks that are tried, as multiples of what the original loses in a step at half the threshold.
 const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
 
 impl Cost {
-    /// The outputs that fire with this part alone, fitted to a recording and what fires there.
+    /// Runs the network with this part of the chip's arithmetic alone, fitted to the spikes of a recording; returns the
+    /// outputs' spikes.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -74,7 +76,7 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
     layer
 }
 
-/// The amount with which a neuron's spikes are nearest to what they should be.
+/// Returns the leak with which a neuron's spikes are nearest to the original's.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
     let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {
@@ -110,7 +112,7 @@ fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) ->
     inputs.iter().map(of_step).collect()
 }
 
-/// Takes a step of a neuron, whose reset comes at once, and tells if it fires.
+/// Runs a step of a neuron whose reset comes at once; returns whether it fires.
 fn step(
     layer: &Layer,
     at: usize,

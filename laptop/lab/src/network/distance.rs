@@ -1,11 +1,11 @@
-//! How far two spike trains are from each other.
+//! The distance between two spike trains.
 
-/// The part of an exponential of 5 steps that is left after a step: e to the -1/5.
+/// Factor by which an exponential with a time constant of 5 steps decays in a step: e to the power of -1/5.
 const KEPT: f64 = 0.818_730_753_077_981_8;
 
-/// The distance of van Rossum (2001), squared, with an exponential of 5 steps.
+/// The squared distance of van Rossum (2001), with an exponential of 5 steps.
 ///
-/// A spike too many or too few counts 1, one that comes `k` steps late `2 (1 - exp(-k / 5))`, so up to 2.
+/// A spike too many or too few counts 1; one that is `k` steps late counts `2 (1 - exp(-k / 5))`, at most 2.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Distance {
     difference: f64,
@@ -13,18 +13,18 @@ pub struct Distance {
 }
 
 impl Distance {
-    /// Adds a step with `one` spikes in the one train and `other` in the other.
+    /// Adds a step with `one` spikes in the first train and `other` in the second.
     pub fn step(&mut self, one: usize, other: usize) {
         self.difference = self.difference * KEPT + (one as f64 - other as f64);
         self.sum += self.difference * self.difference;
     }
 
-    /// The distance so far, which later steps can only raise.
+    /// Returns the distance so far; later steps can only increase it.
     pub fn so_far(self) -> f64 {
         (1.0 - KEPT * KEPT) * self.sum
     }
 
-    /// The distance, including the time after the last step.
+    /// Returns the distance, including the time after the last step.
     pub fn value(self) -> f64 {
         let after = self.difference * self.difference * KEPT * KEPT / (1.0 - KEPT * KEPT);
         (1.0 - KEPT * KEPT) * (self.sum + after)

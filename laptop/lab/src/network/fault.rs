@@ -33,12 +33,12 @@ kinds! {
 }
 room!(NetworkKind, Network);
 
-/// The error that something does not fit, in words that nobody acts on.
+/// Makes the error that something does not fit; its text is for people, not for programs.
 pub(super) fn fault(what: impl Into<String>) -> Error {
     NetworkKind::Fault { what: what.into() }.into()
 }
 
-/// Returns the error that something does not fit.
+/// Returns from the function with the error that something does not fit.
 macro_rules! bail {
     ($($words:tt)+) => {
         return Err($crate::network::fault::fault(format!($($words)+)))
@@ -46,7 +46,7 @@ macro_rules! bail {
 }
 pub(super) use bail;
 
-/// Returns the error that something does not fit, unless a condition holds.
+/// Returns from the function with the error that something does not fit, unless a condition holds.
 macro_rules! ensure {
     ($condition:expr, $($words:tt)+) => {
         let holds: bool = $condition;
@@ -57,7 +57,7 @@ macro_rules! ensure {
 }
 pub(super) use ensure;
 
-/// Adds the part of the network where something does not fit, such as a layer.
+/// Adds to an error the part of the network that it concerns, such as a layer.
 pub(super) trait Context<T> {
     fn context(self, part: impl Into<String>) -> Result<T>;
 

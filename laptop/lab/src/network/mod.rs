@@ -1,4 +1,4 @@
-//! Trained networks: read, run in double precision, brought onto a chip and run there.
+//! Reads trained networks, runs them in double precision, and brings them onto chips or the controller.
 
 mod bring;
 mod chip;
@@ -32,19 +32,19 @@ use crate::{Error, Result};
 use std::fs;
 use std::path::Path;
 
-/// The first bytes of HDF5 files.
+/// First bytes of HDF5 files.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// A network as its file says it, whose time constants may be in seconds.
+/// A network as its file contains it.
 pub enum File {
-    /// With its numbers by step already.
+    /// A network in JSON, whose numbers are for a step.
     Plain(Trained),
-    /// With time constants in seconds.
+    /// A NIR graph, whose time constants are in seconds.
     Nir(Box<nir::Chain>),
 }
 
 impl File {
-    /// Reads a NIR graph or the plain form.
+    /// Reads a NIR graph, or a network in JSON.
     ///
     /// # Errors
     /// Returns an error if the file cannot be read, or is neither.
@@ -60,10 +60,10 @@ impl File {
         Err(NetworkKind::NoNetwork.at(path))
     }
 
-    /// The network in the form of `spikewire-network`, by the rule that is asked for.
+    /// Converts the network for `spikewire-network`, by the rule asked for.
     ///
     /// # Errors
-    /// The file and what is asked do not say the rule, or do not go together.
+    /// Returns an error if file and `asked` leave the rule incomplete, or contradict each other.
     pub fn on_controller(self, asked: &Asked) -> Result<Model> {
         match self {
             Self::Plain(trained) => Model::of_plain(trained, asked),
@@ -71,11 +71,11 @@ impl File {
         }
     }
 
-    /// The network as the chips take it, by the rule that is asked for, in steps of a recording's `seconds` unless another
-    /// time is.
+    /// Converts the network for the chips, by the rule asked for; a step lasts `seconds` of the recording unless
+    /// `asked` says otherwise.
     ///
     /// # Errors
-    /// The file and what is asked do not say the rule, or the chips have no such neurons.
+    /// Returns an error if file and `asked` leave the rule incomplete, or if the chips have no such neurons.
     pub fn on_chip(self, asked: &Asked, seconds: Option<f64>) -> Result<Trained> {
         match self {
             Self::Plain(trained) => trained.reset_by(asked),

@@ -1,4 +1,5 @@
-//! NIR, the Neuromorphic Intermediate Representation: a graph in an HDF5 file, as the Python package `nir` writes it.
+//! Reads NIR, the Neuromorphic Intermediate Representation: a graph in an HDF5 file, as the Python package `nir` writes
+//! it.
 //!
 //! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
 
@@ -8,43 +9,44 @@ use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
 use std::collections::BTreeMap;
 
-/// More than 256 neurons and rows can need, in a file that says it holds more.
+/// Maximum size of an array in bytes: more than 256 neurons and rows can need. It guards against files that claim to
+/// hold more.
 const MOST_BYTES: usize = 1 << 26;
 
-/// The layers from input to output, with time in seconds.
+/// The layers of a graph from input to output; times are in seconds.
 pub struct Chain {
     pub(super) stages: Vec<Stage>,
-    /// The last, if it never fires.
+    /// The last layer, if it never fires.
     pub(super) readout: Option<Stage>,
-    /// Weights behind the last neurons.
+    /// Weights after the last neurons.
     pub(super) sum: Option<Weights>,
-    /// What is odd about the file, and taken all the same.
+    /// Notes on peculiarities of the file that are accepted.
     pub(super) notes: Vec<String>,
 }
 
 pub(super) struct Stage {
     pub(super) weights: Weights,
-    /// The weights from the neurons to themselves.
+    /// Recurrent weights, from the neurons to themselves.
     pub(super) recurrent: Option<Weights>,
     pub(super) neurons: Neurons,
 }
 
 pub(super) struct Weights {
-    /// By neuron, then input.
+    /// The weights, by neuron, then by input.
     pub(super) rows: Vec<Vec<f64>>,
     pub(super) bias: Option<Vec<f64>>,
 }
 
 pub(super) struct Neurons {
-    /// The node's.
+    /// Name of the node.
     name: String,
-    /// Perfect integrators have none.
+    /// The leak; `None` for perfect integrators.
     pub(super) leak: Option<Leak>,
     pub(super) resistance: Array,
     /// Thresholds; `None` if the neurons never fire.
     pub(super) threshold: Option<Array>,
     pub(super) reset: Option<Array>,
-    /// How long a spike's current lasts, and the weight before it, if it is no step's.
+    /// Time constant of the current that a spike adds, and its weight; `None` if a spike acts for one step only.
     pub(super) synapse: Option<Synapse>,
 }
 
@@ -58,7 +60,7 @@ pub(super) struct Leak {
     pub(super) rest: Array,
 }
 
-/// Numbers, one for each neuron or one for all.
+/// One number for each neuron, or one for all.
 pub(super) struct Array(pub(super) Vec<f64>);
 
 impl Array {
@@ -67,32 +69,32 @@ impl Array {
     }
 }
 
-/// The nodes of a graph and of those in it, by their path.
+/// The nodes of a graph and of the graphs nested in it, by path.
 #[derive(Default)]
 struct Graph {
     nodes: BTreeMap<String, Group>,
     edges: Vec<(String, String)>,
-    /// The first and last node of each inner graph, by its path.
+    /// First and last node of each nested graph, by path.
     inner: BTreeMap<String, (String, String)>,
 }
 
-/// The way in which a layer leads back to itself.
+/// How a layer leads back to itself.
 struct Loops<'a> {
-    /// Whether there is an edge without weights.
+    /// Whether an edge without weights leads back.
     is_direct: bool,
     weights: Vec<&'a str>,
 }
 
-/// Neurons that fire, of which each layer may lead back to itself.
+/// Types of neurons that fire; any layer of them may be recurrent.
 const FIRING: [&str; 3] = ["LIF", "IF", "CubaLIF"];
-/// Neurons that never fire, which may be the last.
+/// Types of neurons that never fire; they may form the last layer.
 const SILENT: [&str; 3] = ["LI", "I", "CubaLI"];
 
-/// Reads the graph, which must be a chain of Linear or Affine and neurons that fire, each of which may lead back to
-/// itself; the last neurons may be ones that never fire. Graphs in it are taken as their nodes.
+/// Reads the graph. It must be a chain of Linear or Affine and neurons that fire, each of which may be recurrent; the
+/// last neurons may be of a type that never fires. Nested graphs are replaced by their nodes.
 ///
 /// # Errors
-/// The file is damaged, or the graph is another.
+/// Returns an error if the file is damaged, or if the graph has another structure.
 pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
     let options = OpenOptions::default().with_max_read_bytes(MOST_BYTES);
     let file = Hdf5File::from_vec_with_options(bytes, options).context("damaged")?;
@@ -144,11 +146,11 @@ fn kind(node: &Group, name: &str) -> Result<String> {
     kind.with_context(|| format!("node `{name}`: no type"))
 }
 
-/// Graphs within graphs that are taken.
+/// How deep graphs may be nested.
 const DEEPEST: usize = 8;
 
 impl Graph {
-    /// Adds the nodes and edges of a group, with `path` before their names. Returns its input and output.
+    /// Adds the nodes and edges of a group, with `path` in front of their names; returns its input and output.
     fn take(&mut self, group: &Group, path: &str, depth: usize) -> Result<(String, String)> {
         let of = || if path.is_empty() { String::new() } else { format!("node `{path}`: ") };
         ensure!(depth < DEEPEST, "{}graphs in graphs, {DEEPEST} deep", of());
@@ -187,7 +189,7 @@ impl Graph {
         Ok((one("Input", inputs)?, one("Output", outputs)?))
     }
 
-    /// A note if the input keeps a batch dimension, as Norse leaves it; `nir` refuses such files.
+    /// Returns a note if the input keeps a batch dimension, as Norse writes it; `nir` refuses such files.
     fn batch(&self, input: &str) -> Result<Vec<String>> {
         let node = &self.nodes[input];
         let is_told = node.datasets()?.iter().any(|dataset| dataset.name() == "shape");
@@ -201,7 +203,7 @@ impl Graph {
         })
     }
 
-    /// Leads the edges of the graphs in it to their inputs and from their outputs.
+    /// Connects edges that lead to nested graphs with the inputs and outputs of those.
     fn join(&mut self) {
         for (from, to) in &mut self.edges {
             if let Some((_, output)) = self.inner.get(from) {
@@ -223,7 +225,7 @@ impl Graph {
         after
     }
 
-    /// The nodes' names from the input to the output, and how each leads back to itself.
+    /// Returns the names of the nodes from the input to the output, and how each leads back to itself.
     fn chain(&self, first: &str, last: &str) -> Result<Vec<(&str, Loops<'_>)>> {
         let node = |name: &str| self.nodes.get_key_value(name);
         let (mut at, _) = node(first).context("no input")?;
@@ -266,7 +268,7 @@ impl Graph {
         Ok(path)
     }
 
-    /// The weights from so many neurons to themselves, in all.
+    /// Combines the weights by which `count` neurons lead back to themselves.
     fn recurrent(&self, loops: &Loops, count: usize) -> Result<Option<Weights>> {
         if !loops.is_direct && loops.weights.is_empty() {
             return Ok(None);
@@ -342,7 +344,7 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
     })
 }
 
-/// An array's shape and numbers, whatever their type.
+/// Reads an array's shape and numbers, of any numeric type.
 fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
     let dataset = node.dataset(name).map_err(|_| fault(format!("no `{name}`")))?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();

@@ -1,4 +1,4 @@
-//! The plain form of a network, in JSON.
+//! Reads networks in JSON.
 
 use super::Trained;
 use super::controller::{Fires, Reset};
@@ -17,9 +17,9 @@ struct Network {
 #[serde(deny_unknown_fields)]
 struct WrittenReadout {
     name: Option<String>,
-    /// The weights by output, then by neuron of the last layer.
+    /// The weights, by output, then by neuron of the last layer.
     weights: Vec<Vec<f64>>,
-    /// Unless given, outputs do not leak.
+    /// Factor by which a step multiplies the potential; 1 if not given.
     keep: Option<Numbers>,
 }
 
@@ -27,21 +27,21 @@ struct WrittenReadout {
 #[serde(deny_unknown_fields)]
 struct Written {
     name: Option<String>,
-    /// The weights by neuron, then by input.
+    /// The weights, by neuron, then by input.
     weights: Vec<Vec<f64>>,
-    /// The weights by neuron, then by the neuron of the same layer that fired a step before.
+    /// The recurrent weights, by neuron, then by the neuron of the same layer that fired a step before.
     #[serde(default)]
     recurrent: Vec<Vec<f64>>,
     #[serde(default)]
     bias: Vec<f64>,
-    /// Unless given, neurons do not leak.
+    /// Factor by which a step multiplies the potential; 1 if not given.
     keep: Option<Numbers>,
-    /// The amount by which a step moves the potential towards 0, of networks trained as tinyODIN leaks.
+    /// Amount by which a step moves the potential towards 0, for networks trained with tinyODIN's leak.
     leak: Option<Numbers>,
     threshold: Numbers,
 }
 
-/// A number for all neurons, or one for each.
+/// One number for all neurons, or one for each.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Numbers {
@@ -61,10 +61,10 @@ impl Numbers {
     }
 }
 
-/// Reads it.
+/// Reads a network.
 ///
 /// # Errors
-/// Returns an error if the JSON has another form, or a number makes no sense.
+/// Returns an error if the JSON has another structure, or if a number is invalid.
 pub(crate) fn read(bytes: &[u8]) -> Result<Trained> {
     let network: Network = serde_json::from_slice(bytes)?;
     let layers = network.layers.into_iter().enumerate().map(|(at, written)| {

@@ -1,31 +1,31 @@
-//! A trained network, and what it does in double precision.
+//! A trained network, and its simulation in double precision.
 
 use super::controller::{Asked, Fires, Reset};
 use crate::network::fault::{Result, bail, ensure};
 
-/// Layers that a network may have.
+/// Maximum number of layers in a network.
 const LAYERS: usize = 3;
 
-/// The neurons that fire, by step; a step may name one several times.
+/// The neurons that fire, for each step; a neuron may occur several times.
 pub type Trains = Vec<Vec<u16>>;
 
-/// Layers of integrate-and-fire neurons, each fully connected to the one before.
+/// Layers of integrate-and-fire neurons, each fully connected to the layer before it.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// The layers, from the input on.
+    /// The layers, in order from the input.
     pub layers: Vec<Layer>,
-    /// Neurons that never fire, behind the last layer.
+    /// Neurons that never fire, after the last layer.
     pub readout: Option<Readout>,
 }
 
 /// Leaky neurons that never fire: their potentials are the network's outputs.
 #[derive(Clone, Debug)]
 pub struct Readout {
-    /// The name in its file.
+    /// Name in the file.
     pub name: String,
-    /// For each output, what a spike of each neuron of the last layer adds to the potential.
+    /// For each output, the weights by neuron of the last layer.
     pub weights: Vec<Vec<f64>>,
-    /// For each output, the share of the potential that is left after a step, 0 to 1.
+    /// For each output, the factor by which a step multiplies the potential, 0 to 1.
     pub keep: Vec<f64>,
 }
 
@@ -51,7 +51,7 @@ impl Readout {
         Ok(())
     }
 
-    /// The potentials, by step and output.
+    /// Returns the potentials, for each step and output.
     fn run(&self, fired: &Trains) -> Vec<Vec<f64>> {
         let mut potentials = vec![0.0; self.weights.len()];
         let step = |fired: &Vec<u16>| {
@@ -66,27 +66,27 @@ impl Readout {
     }
 }
 
-/// Neurons, and what leads to them.
+/// A layer: its neurons, and the weights that lead to them.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// The name in its file.
+    /// Name in the file.
     pub name: String,
-    /// For each neuron, what a spike of each input adds to the potential.
+    /// For each neuron, the weights by input.
     pub weights: Vec<Vec<f64>>,
-    /// For each neuron, what a spike of each neuron of this layer adds to the potential in the next step; empty unless
-    /// the layer is recurrent.
+    /// For each neuron, the weights by neuron of this layer, which act in the next step; empty unless the layer is
+    /// recurrent.
     pub recurrent: Vec<Vec<f64>>,
-    /// For each neuron, what every step adds.
+    /// For each neuron, the amount that every step adds.
     pub bias: Vec<f64>,
     /// The other parameters of each neuron.
     pub neurons: Vec<Neuron>,
-    /// What a spike does to its neuron.
+    /// What a spike does to its neuron's potential.
     pub reset: Reset,
-    /// When a neuron fires.
+    /// How potentials are compared with thresholds.
     pub fires: Fires,
 }
 
-/// Where the chip's neuron fires, whole numbers of which the original's threshold is `threshold`.
+/// Converts a threshold to the whole number at or above which the chip's neuron fires.
 pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
     match fires {
         // But for what rounding adds.
@@ -95,19 +95,19 @@ pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
     }
 }
 
-/// A leaky integrate-and-fire neuron, at rest at 0.
+/// A leaky integrate-and-fire neuron that rests at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neuron {
-    /// The share of the potential that is left after a step, 0 to 1; 1 for a perfect integrator.
+    /// Factor by which a step multiplies the potential, 0 to 1; 1 for a perfect integrator.
     pub keep: f64,
-    /// The amount by which a step then moves the potential towards 0, as tinyODIN does, of networks trained so.
+    /// Amount by which a step then moves the potential towards 0, for networks trained with tinyODIN's leak.
     pub leak: f64,
-    /// The potential above which it fires, or at which.
+    /// Threshold of the potential.
     pub threshold: f64,
 }
 
 impl Neuron {
-    /// What a step leaves of a potential.
+    /// Returns what a step leaves of a potential.
     pub(super) fn left(self, potential: f64) -> f64 {
         let kept = potential * self.keep;
         if self.leak == 0.0 { kept } else { kept.signum() * (kept.abs() - self.leak).max(0.0) }
@@ -115,7 +115,7 @@ impl Neuron {
 }
 
 impl Layer {
-    /// How many spikes it takes.
+    /// Returns the number of inputs.
     pub fn inputs(&self) -> usize {
         self.weights.first().map_or(0, Vec::len)
     }
@@ -161,7 +161,7 @@ impl Layer {
         Ok(())
     }
 
-    /// The neurons that fire, by step. Calls `see` with each neuron and its potential, before it fires.
+    /// Returns the neurons that fire, for each step. Calls `see` with each neuron and its potential, before it fires.
     pub(super) fn follow(&self, inputs: &Trains, mut see: impl FnMut(usize, f64)) -> Trains {
         let mut potentials = vec![0.0; self.neurons.len()];
         let mut before: Vec<u16> = Vec::new();
@@ -185,7 +185,7 @@ impl Layer {
         inputs.iter().map(step).collect()
     }
 
-    /// Takes a step of a neuron, and tells if it fires.
+    /// Runs a step of a neuron; returns whether it fires.
     fn step(&self, at: usize, driven: f64, potential: &mut f64, see: impl FnOnce(f64)) -> bool {
         let Neuron { threshold, .. } = self.neurons[at];
         let fires = |potential| match self.fires {
@@ -225,10 +225,10 @@ impl Layer {
 }
 
 impl Trained {
-    /// A network of these layers.
+    /// Makes a network of these layers.
     ///
     /// # Errors
-    /// Returns an error if there are no layers or too many, they do not fit each other, or a number makes no sense.
+    /// Returns an error if there are no layers or too many, if they do not fit each other, or if a number is invalid.
     pub fn new(layers: Vec<Layer>) -> Result<Self> {
         ensure!(!layers.is_empty(), "the network has no layer of LIF or IF neurons");
         ensure!(
@@ -253,7 +253,7 @@ impl Trained {
         Ok(Self { layers, readout: None })
     }
 
-    /// A network of these layers, and behind the last one neurons that never fire.
+    /// Makes a network of these layers, followed by neurons that never fire.
     ///
     /// # Errors
     /// See [`new`](Self::new).
@@ -265,10 +265,10 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
-    /// The same network with the resets that are asked for, of all layers or of each.
+    /// Replaces the resets by those asked for: one for all layers, or one for each.
     ///
     /// # Errors
-    /// There are more resets than layers, or fewer.
+    /// Returns an error if the number of resets is neither one nor that of the layers.
     pub(super) fn reset_by(mut self, asked: &Asked) -> Result<Self> {
         let (rule, resets, layers) = (asked.or_plain(), &asked.resets, self.layers.len());
         ensure!(
@@ -283,8 +283,8 @@ impl Trained {
         Ok(self)
     }
 
-    /// The same network with subtraction a step late in the place of subtraction at once, by weights that lead a neuron
-    /// back to itself: they give back what is subtracted behind the leak, and not before it.
+    /// Replaces subtraction at once by subtraction a step late. The late one comes after the step's leak, which would
+    /// have reduced it; weights from each neuron to itself give back the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {
@@ -305,12 +305,12 @@ impl Trained {
         self
     }
 
-    /// How many inputs it has.
+    /// Returns the number of inputs.
     pub fn inputs(&self) -> usize {
         self.layers.first().map_or(0, Layer::inputs)
     }
 
-    /// The neurons that fire, by layer and step. A step passes through all layers.
+    /// Returns the neurons that fire, by layer and step. A spike passes through all layers within its step.
     pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
         let mut all: Vec<Trains> = Vec::new();
         for layer in &self.layers {
@@ -320,7 +320,7 @@ impl Trained {
         all
     }
 
-    /// The outputs' potentials by step, for these spikes; empty if the last layer's spikes are the outputs.
+    /// Returns the outputs' potentials for these spikes, by step; empty if the outputs are the last layer's spikes.
     pub fn potentials(&self, fired: &[Trains]) -> Vec<Vec<f64>> {
         let (Some(readout), Some(fired)) = (&self.readout, fired.last()) else { return vec![] };
         readout.run(fired)
@@ -343,7 +343,8 @@ mod tests {
         }
     }
 
-    /// As the table of `spikewire-network` has them, for a keep of 1/2 and a threshold of 4: all numbers are exact.
+    /// The expected spikes are those of the table in `spikewire-network`, for a factor of 1/2 and a threshold of 4; all
+    /// numbers are exact.
     #[test]
     fn each_reset_has_its_spikes() {
         let drive = [3, 3, 0, 4, 1, 5, 2, 0, 0, 6, 6, -4, 2, 7, 1, 8];

@@ -1,4 +1,4 @@
-//! Files that are written beside their place and then moved there.
+//! Writes files beside their place, and moves them there once they are complete.
 
 use same_file::Handle;
 use std::fs;
@@ -7,15 +7,15 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::NamedTempFile;
 
-/// The files in the making, which a program that is ended must not leave behind.
+/// Paths of unfinished files, which a program that is ended must delete.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Deletes all files that are being written. The program must end at once: no file can be started or finished any more,
-/// so that none appears after this.
+/// Deletes all unfinished files. The program must end at once: from now on no file can be started or finished, so that
+/// none appears after this.
 pub fn abandon() {
     let files = unfinished();
     for file in files.iter() {
@@ -25,17 +25,17 @@ pub fn abandon() {
     std::mem::forget(files);
 }
 
-/// A file in the making.
+/// An unfinished file.
 pub(super) struct Beside {
     file: Option<BufWriter<NamedTempFile>>,
     path: PathBuf,
 }
 
 impl Beside {
-    /// Starts a file; a link is followed.
+    /// Starts a file that will replace `path`; if that is a link, its target.
     ///
     /// # Errors
-    /// Nothing can be written there.
+    /// Returns an error if nothing can be written there.
     pub(super) fn new(path: &Path) -> io::Result<Self> {
         let path = target(path.to_owned())?;
         let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
@@ -50,7 +50,7 @@ impl Beside {
         self.file.as_mut().ok_or_else(|| io::Error::other("it is finished"))
     }
 
-    /// Overwrites bytes at a place of the file.
+    /// Overwrites bytes at an offset of the file.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -62,7 +62,7 @@ impl Beside {
         Ok(())
     }
 
-    /// Writes what is left and puts the file in its place.
+    /// Writes buffered bytes, and moves the file to its place.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -78,7 +78,7 @@ impl Beside {
 }
 
 impl Drop for Beside {
-    /// Deletes what was not finished.
+    /// Deletes the file unless it was finished.
     fn drop(&mut self) {
         let Some(file) = self.file.take() else { return };
         let path = file.get_ref().path().to_owned();
@@ -100,7 +100,7 @@ impl Write for Beside {
     }
 }
 
-/// Whether both are one file, also by links and as standard input.
+/// Returns whether both are the same file, also through links or as standard input.
 pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
         return false;
@@ -109,9 +109,9 @@ pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     matches!((Handle::from_path(output), input), (Ok(output), Ok(input)) if output == input)
 }
 
-/// Follows symbolic links, even if the last leads to no file yet.
+/// Follows symbolic links, even if the last leads to a file that does not exist yet.
 fn target(mut path: PathBuf) -> io::Result<PathBuf> {
-    /// More are a circle.
+    /// Maximum number of links; more of them are taken to be a circle.
     const MOST: usize = 40;
     for _ in 0..MOST {
         if !fs::symlink_metadata(&path).is_ok_and(|data| data.is_symlink()) {
@@ -123,7 +123,7 @@ fn target(mut path: PathBuf) -> io::Result<PathBuf> {
     Err(io::Error::other("links that lead in a circle"))
 }
 
-/// A file with the permissions that a new file has, not those of a secret.
+/// Creates a file with the permissions of an ordinary new file, rather than those of a temporary one.
 fn named(directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".spikewire-");

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all, standard output, and memory.
+//! Writes files that appear complete or not at all; also standard output, and memory.
 
 #[cfg(not(target_family = "wasm"))]
 mod beside;
@@ -16,7 +16,7 @@ use std::path::Path;
 
 /// Standard output, a file that is written beside its place and then moved there, or memory.
 pub struct Output {
-    /// The name in errors.
+    /// Name in errors.
     name: String,
     place: Place,
     bytes: u64,
@@ -26,18 +26,18 @@ enum Place {
     /// Standard output, or a device.
     #[cfg(not(target_family = "wasm"))]
     Direct(BufWriter<Box<dyn Write>>),
-    /// A file in the making.
+    /// An unfinished file.
     #[cfg(not(target_family = "wasm"))]
     Beside(beside::Beside),
-    /// For [`into_bytes`](Output::into_bytes).
+    /// Memory, returned by [`into_bytes`](Output::into_bytes).
     Memory(Vec<u8>),
 }
 
-/// Refuses to write a table into a file whose name ends as that of another kind, whose programs could not read it. The
-/// endings of `others` are named beside those of tables. A device has any name.
+/// Checks that a path's ending is one of a table, so that programs which go by the ending can read it. The error lists
+/// the endings of tables, and those in `others`. A device may have any name.
 ///
 /// # Errors
-/// The name does not end as that of a table.
+/// Returns an error if the path ends otherwise.
 pub fn is_table(path: &Path, others: &str) -> Result<()> {
     let Some(ending) = path.extension() else { return Ok(()) };
     let is_device = path.metadata().is_ok_and(|data| !data.is_file());
@@ -52,15 +52,15 @@ pub fn is_table(path: &Path, others: &str) -> Result<()> {
 const BUFFER: usize = 1 << 18;
 
 impl Output {
-    /// Writes into memory.
+    /// Opens an output in memory.
     pub fn memory() -> Self {
         Self { name: "memory".to_owned(), place: Place::Memory(Vec::new()), bytes: 0 }
     }
 
-    /// Opens the output; without a path it is standard output. A link is followed.
+    /// Opens the output at `path`, or standard output if there is none. Links are followed.
     ///
     /// # Errors
-    /// Nothing can be written there, or it is the input.
+    /// Returns an error if nothing can be written there, or if it is the same file as `input`.
     #[cfg(not(target_family = "wasm"))]
     pub fn open(path: Option<&Path>, input: &Path) -> Result<Self> {
         if let Some(path) = path.filter(|path| beside::is_same(path, input)) {
@@ -69,10 +69,10 @@ impl Output {
         Self::to(path)
     }
 
-    /// Opens the output where there is no input.
+    /// Opens the output at `path`, or standard output if there is none, for a command without an input file.
     ///
     /// # Errors
-    /// Nothing can be written there.
+    /// Returns an error if nothing can be written there.
     #[cfg(not(target_family = "wasm"))]
     pub fn to(path: Option<&Path>) -> Result<Self> {
         use std::fs::{File, metadata};
@@ -92,30 +92,30 @@ impl Output {
         Ok(Self { place: place.map_err(|error| unwritten(&name, &error))?, name, bytes: 0 })
     }
 
-    /// Refuses: a browser has no files to write.
+    /// Always fails: a browser has no files to write.
     ///
     /// # Errors
-    /// Always.
+    /// Always returns an error.
     #[cfg(target_family = "wasm")]
     pub fn open(path: Option<&Path>, _: &Path) -> Result<Self> {
         Self::to(path)
     }
 
-    /// Refuses: a browser has no files to write.
+    /// Always fails: a browser has no files to write.
     ///
     /// # Errors
-    /// Always.
+    /// Always returns an error.
     #[cfg(target_family = "wasm")]
     pub fn to(path: Option<&Path>) -> Result<Self> {
         Err(OutputKind::NoFiles.at(path.unwrap_or(Path::new("-"))))
     }
 
-    /// How many bytes were written.
+    /// Returns the number of bytes written.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Returns what was written into memory; empty if it went elsewhere.
+    /// Returns the bytes written to memory; empty for other outputs.
     pub fn into_bytes(self) -> Vec<u8> {
         match self.place {
             Place::Memory(bytes) => bytes,
@@ -124,10 +124,10 @@ impl Output {
         }
     }
 
-    /// Writes again what stands at a place of the file.
+    /// Overwrites bytes at an offset of the file.
     ///
     /// # Errors
-    /// Returns an error if the output cannot be written, or went to standard output or a device.
+    /// Returns an error if the output cannot be written, or if it is standard output or a device.
     pub fn overwrite(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
         match &mut self.place {
             #[cfg(not(target_family = "wasm"))]
@@ -147,7 +147,7 @@ impl Output {
         Ok(())
     }
 
-    /// Writes what is left and puts the file in its place.
+    /// Writes buffered bytes, and moves the file to its place.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.
@@ -163,7 +163,7 @@ impl Output {
     }
 }
 
-/// The error of a file that cannot be written, of the same kind, with its name.
+/// Adds a file's name to the error of writing it, and keeps the error's kind.
 fn unwritten(name: &str, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{name}: cannot be written: {error}"))
 }

@@ -1,4 +1,4 @@
-//! PNG pictures: the strokes of the SVG, drawn by tiny-skia.
+//! Draws PNG pictures with tiny-skia, with the same strokes as the SVG.
 
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, DrawingBackend, DrawingErrorKind,
@@ -48,7 +48,7 @@ impl DrawingBackend for Bitmap<'_> {
         Ok(())
     }
 
-    /// Glyphs come pixel by pixel, each with its part of the colour.
+    /// Draws a pixel of a glyph, which covers only a part of it.
     fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Drawn {
         let (width, height) = self.get_size();
         let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return Ok(()) };
@@ -120,7 +120,7 @@ impl DrawingBackend for Bitmap<'_> {
     }
 }
 
-/// Lines run through the middle of pixels.
+/// Moves lines to the middle of pixels.
 fn centred() -> Transform {
     Transform::from_translate(0.5, 0.5)
 }

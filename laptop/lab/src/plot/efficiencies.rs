@@ -1,4 +1,4 @@
-//! The panel of the efficiencies: a bar for each trial.
+//! Draws the panel of efficiencies, with a bar for each trial.
 
 use super::FONT;
 use super::palette::{self, GRID, INK};

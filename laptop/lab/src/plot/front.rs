@@ -1,5 +1,5 @@
-//! Spikes against error: the settings that no other one beats. The few schemes that make the front of all have a colour and
-//! a name at their line, the others are grey.
+//! Draws fronts of spikes against error, that is the settings that no other beats in both. Schemes that form the common
+//! front have a colour and a name at their line; the others are grey.
 
 use super::FONT;
 use super::palette::{GRID, INK, OTHERS, TOLD_APART};
@@ -11,7 +11,7 @@ use plotters::prelude::*;
 
 /// The fronts of one channel.
 pub struct Panel {
-    /// Its name.
+    /// Name of the channel.
     pub title: String,
     /// The signal's unit, if it is known.
     pub unit: Option<String>,
@@ -19,29 +19,30 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// Fonts that can be read where the picture is as narrow as a phone.
+/// Font sizes that are legible when the picture is as narrow as a phone.
 const TITLE: i32 = 22;
 const TEXT: i32 = 19;
 const HEAD: i32 = 34;
 const LABELS: u32 = 84;
-/// The height of the legend, in lines.
+/// Height of a line of the legend, in pixels.
 const LINE: i32 = 28;
-/// A population with several spikes a sample goes below; the axis ends where most codes do.
+/// Lower end of the efficiency axis, in percent. Population codes with several spikes a sample lie below it.
 const LOWEST: f64 = -100.0;
-/// The places along the efficiency at which schemes are compared.
+/// Number of places along the efficiency axis at which schemes are compared.
 const PLACES: usize = 400;
 
-/// A scheme that makes part of the front, and its colour.
+/// A scheme that forms a part of the common front, and its colour.
 pub(super) type Named = (Scheme, RGBColor);
 
-/// The efficiency of a place.
+/// Returns the efficiency of a place.
 fn place(number: usize) -> f64 {
     let part = number as f64 / PLACES as f64;
     LOWEST + part * (100.0 - LOWEST)
 }
 
 impl Panel {
-    /// At each place, the scheme of the least error among the settings of that efficiency or more, and that error.
+    /// Returns for each place the scheme with the least error at that efficiency or a higher one, with its efficiency
+    /// and error.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |number| {
             let at = place(number);
@@ -55,9 +56,9 @@ impl Panel {
     }
 }
 
-/// The schemes that make most of the fronts, at most as many as there are colours, those first that make most.
+/// Returns the schemes that form most of the fronts, the largest part first, at most one for each colour.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// The part of all fronts that a scheme with a name makes.
+    /// Smallest part of all fronts for which a scheme gets a name.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {
@@ -72,16 +73,16 @@ pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
     large.map(|(scheme, _)| scheme).zip(TOLD_APART).collect()
 }
 
-/// The height that the legend of so many schemes takes.
+/// Returns the height of the legend of these schemes, in pixels.
 pub(super) fn legend_height(named: &[Named], width: u32) -> u32 {
     let columns = (width as i32 / ENTRY).max(1);
     (((named.len() as i32 + 2 + columns - 1) / columns) * LINE + 12) as u32
 }
 
-/// The width of a legend's entry.
+/// Width of an entry of the legend, in pixels.
 const ENTRY: i32 = 260;
 
-/// The legend, once for all panels.
+/// Draws the legend that all panels share.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, named: &[Named]) -> Drawn<B> {
     let columns = (area.dim_in_pixel().0 as i32 / ENTRY).max(1);
     let text = (FONT, TEXT).into_font().color(&INK);
@@ -99,7 +100,7 @@ pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, named: &[N
     Ok(())
 }
 
-/// Draws one channel.
+/// Draws the front of one channel.
 pub(super) fn draw<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     panel: &Panel,
@@ -178,7 +179,7 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// The middle of the places at which a scheme makes the front of a panel, on its own curve.
+/// Returns the middle of the places at which a scheme forms the front of a panel, on the scheme's own curve.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

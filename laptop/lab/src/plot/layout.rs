@@ -1,4 +1,4 @@
-//! The places of the panels.
+//! Places the panels of a picture.
 
 use super::title::Drawn;
 use super::{Picture, efficiencies, front, panel};
@@ -9,7 +9,7 @@ const SINGLE: (u32, u32) = (960, 480);
 const PANEL: (u32, u32) = (480, 310);
 const COLUMNS: usize = 2;
 
-/// The picture's width and height.
+/// Returns the width and height of a picture, in pixels.
 pub(super) fn size(picture: &Picture) -> (u32, u32) {
     if picture.trials.len() == 1 {
         return SINGLE;
@@ -18,7 +18,7 @@ pub(super) fn size(picture: &Picture) -> (u32, u32) {
     (PANEL.0 * COLUMNS as u32, PANEL.1 * rows)
 }
 
-/// Places one trial alone, or all in a grid with the efficiencies last.
+/// Draws one trial alone, or all in a grid with the efficiencies last.
 pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Picture) -> Drawn<B> {
     area.fill(&WHITE)?;
     if let [trial] = picture.trials {
@@ -40,20 +40,20 @@ pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Pi
 
 const FRONT: (u32, u32) = (400, 340);
 
-/// The columns and rows of so many fronts.
+/// Returns the columns and rows of a grid for this number of panels.
 fn fronts_grid(panels: usize) -> (usize, usize) {
     let columns = panels.clamp(1, COLUMNS);
     (columns, panels.div_ceil(columns))
 }
 
-/// The size of fronts below their legend.
+/// Returns the width and height of fronts with their legend, in pixels.
 pub(super) fn fronts_size(panels: &[front::Panel]) -> (u32, u32) {
     let (_, rows) = fronts_grid(panels.len());
     let width = FRONT.0 * COLUMNS as u32;
     (width, front::legend_height(&front::named(panels), width) + FRONT.1 * rows as u32)
 }
 
-/// Places one front alone, or all in a grid, below one legend.
+/// Draws one front alone, or all in a grid, below one legend.
 pub(super) fn fill_fronts<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     panels: &[front::Panel],

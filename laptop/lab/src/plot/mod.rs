@@ -1,4 +1,4 @@
-//! Pictures of trials, as SVG or PNG.
+//! Draws trials, as SVG or PNG.
 
 mod bitmap;
 mod efficiencies;
@@ -27,26 +27,26 @@ use crate::output::Output;
 pub struct Picture<'a> {
     /// The signal.
     pub recording: &'a Recording,
-    /// The trials, a panel each.
+    /// The trials, one for each panel.
     pub trials: &'a [Trial],
     /// The unit of the signal, if it is known.
     pub unit: Option<&'a str>,
-    /// The samples to show.
+    /// Range of the samples to show.
     pub shown: Range<usize>,
 }
 
-/// The name that the embedded font goes by. In an SVG the viewer takes its own of that kind.
+/// Name of the embedded font. A viewer of an SVG replaces it by its own sans-serif.
 const FONT: &str = "sans-serif";
 
-/// Draws trials into a file, by its ending.
+/// Draws trials to a file, in the format of its ending.
 ///
 /// # Errors
-/// The ending is neither `.svg` nor `.png`, or the file cannot be written or is the input.
+/// Returns an error if the ending is neither `.svg` nor `.png`, if the file cannot be written, or if it is the input.
 pub fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
     write(path, input, layout::size(picture), Drawing::Trials(picture))
 }
 
-/// Draws fronts into a file, by its ending.
+/// Draws fronts to a file, in the format of its ending.
 ///
 /// # Errors
 /// See [`draw`].
@@ -54,7 +54,7 @@ pub fn draw_fronts(path: &Path, input: &Path, panels: &[front::Panel]) -> Result
     write(path, input, layout::fronts_size(panels), Drawing::Fronts(panels))
 }
 
-/// Whatever is drawn.
+/// The content of a drawing.
 #[derive(Clone, Copy)]
 enum Drawing<'a> {
     Trials(&'a Picture<'a>),
@@ -69,10 +69,10 @@ fn write(path: &Path, input: &Path, size: (u32, u32), drawing: Drawing) -> Resul
     output.finish()
 }
 
-/// A picture as the bytes of a file with this ending.
+/// Returns a picture as the bytes of a file with this ending.
 ///
 /// # Errors
-/// The ending is neither `svg` nor `png`.
+/// Returns an error if the ending is neither `svg` nor `png`.
 pub fn bytes(ending: &str, picture: &Picture) -> Result<Vec<u8>> {
     drawn(ending, layout::size(picture), Drawing::Trials(picture))
 }

@@ -11,9 +11,9 @@ pub(super) const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xea);
 pub(super) const UP: RGBColor = RGBColor(0x2b, 0x2f, 0x36);
 pub(super) const DOWN: RGBColor = RGBColor(0xc2, 0x3b, 0x4e);
 
-/// Lines that do not decide.
+/// Colour of lines that form no part of the common front.
 pub(super) const OTHERS: RGBColor = RGBColor(0xb8, 0xbd, 0xc5);
-/// Colours that the colour-blind tell apart, after Okabe and Ito.
+/// Colours that remain distinct to the colour-blind, after Okabe and Ito.
 pub(super) const TOLD_APART: [RGBColor; 5] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
@@ -22,7 +22,7 @@ pub(super) const TOLD_APART: [RGBColor; 5] = [
     RGBColor(0x00, 0x00, 0x00),
 ];
 
-/// The colour of a scheme in the panel of efficiencies.
+/// Returns the colour of a scheme in the panel of efficiencies.
 pub(super) fn of(scheme: Scheme) -> RGBColor {
     let [red, green, blue] = scheme.info().colour;
     RGBColor(red, green, blue)

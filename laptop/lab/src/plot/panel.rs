@@ -1,4 +1,4 @@
-//! One trial's panel: signal and reconstruction over spikes.
+//! Draws the panel of one trial: signal and reconstruction over spikes.
 
 use super::palette::{DECODED, DOWN, GRID, INK, QUIET, SIGNAL, UP};
 use super::thin::{column, thin};
@@ -15,7 +15,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 const LABELS: u32 = 64;
-/// The part of a panel that the spikes take.
+/// Share of a panel's height that the spikes take.
 const SPIKES: f64 = 0.28;
 
 pub(super) fn draw<B: DrawingBackend>(
@@ -155,13 +155,13 @@ fn spikes<'a, B: DrawingBackend>(
     Ok(())
 }
 
-/// The signal's name and unit.
+/// Returns the label of the y axis: the signal's name and unit.
 fn y_label(picture: &Picture) -> String {
     let name = &picture.recording.name;
     picture.unit.map_or(name.clone(), |unit| format!("{name}, {unit}"))
 }
 
-/// The time of a sample, in seconds from the start, or else its number.
+/// Returns a function from a sample to its time in seconds from the start, or to its number if there are no times.
 fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     let recording = picture.recording;
     move |sample| match (recording.times.get(sample), recording.times.first(), recording.rate) {
@@ -171,14 +171,14 @@ fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     }
 }
 
-/// The span from the earliest to the latest time.
+/// Returns the range from the earliest to the latest time.
 fn span(times: impl Iterator<Item = f64>) -> Range<f64> {
     let (min, max) =
         times.fold((f64::MAX, f64::MIN), |(min, max), time| (min.min(time), max.max(time)));
     min..max
 }
 
-/// The range of the values, with some air.
+/// Returns the range of the values, with some margin.
 fn bounds<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     let (min, max) =
         values.fold((f64::MAX, f64::MIN), |(min, max), &value| (min.min(value), max.max(value)));

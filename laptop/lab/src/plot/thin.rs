@@ -1,10 +1,10 @@
-//! Decimates a long recording to what a picture can show.
+//! Decimates a long recording to the resolution of a picture.
 
 use std::ops::Range;
 
-/// The first, lowest, highest and last point of each column of pixels, in the order of the points.
+/// Returns the first, lowest, highest and last point of each column of pixels, in the order of the points.
 ///
-/// A line through them covers the pixels that a line through all points covers.
+/// A line through these points covers the same pixels as a line through all points.
 pub(super) fn thin(
     points: impl IntoIterator<Item = (f64, f64)>,
     range: &Range<f64>,
@@ -30,7 +30,7 @@ pub(super) fn thin(
     kept
 }
 
-/// The column of pixels that a place on the x axis falls into.
+/// Returns the column of pixels for a place on the x axis.
 pub(super) fn column(x: f64, range: &Range<f64>, columns: u32) -> i64 {
     let width = range.end - range.start;
     if width > 0.0 { ((x - range.start) / width * f64::from(columns)) as i64 } else { 0 }

@@ -1,4 +1,4 @@
-//! The title of a panel.
+//! Draws the title of a panel.
 
 use super::FONT;
 use super::palette::{DECODED, INK, QUIET, SIGNAL};
@@ -7,10 +7,10 @@ use plotters::prelude::*;
 
 pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-/// Its height.
+/// Height of the title, in pixels.
 pub(super) const TITLE: u32 = 52;
 
-/// The title of a panel, behind its letter, and below it in small letters what it was made with.
+/// Draws the title of a panel after its letter, and below it, in small print, the parameters.
 pub(super) fn title<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     letter: Option<char>,
@@ -32,7 +32,7 @@ pub(super) fn title<B: DrawingBackend>(
     Ok(())
 }
 
-/// The legend, beside the title, where no curve is.
+/// Draws the legend beside the title, where there are no curves.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>) -> Drawn<B> {
     let width = area.dim_in_pixel().0 as i32;
     let small = (FONT, 13).into_font().color(&INK);

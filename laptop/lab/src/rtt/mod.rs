@@ -1,4 +1,4 @@
-//! Real-Time Transfer: a board's ring buffer, read while it runs.
+//! Reads a board's ring buffer while the board runs, by Real-Time Transfer (RTT).
 
 #[cfg(feature = "capture")]
 mod probe;
@@ -31,12 +31,12 @@ kinds! {
 }
 room!(CaptureKind, Capture);
 
-/// A board's buffer, which is read by polling.
+/// A board's ring buffer, which is read by polling.
 pub trait Channel {
-    /// Takes what there is, up to the buffer's length; 0 if there is nothing.
+    /// Reads the bytes that are available, up to the buffer's length; returns 0 if there are none.
     ///
     /// # Errors
-    /// The board or the probe is gone.
+    /// Returns an error if the board or the probe was disconnected.
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize>;
 }
 
@@ -45,11 +45,11 @@ pub trait Channel {
 pub struct Captured {
     /// The number of bytes written.
     pub bytes: u64,
-    /// `Ok` if the capture was asked to end, else the reason that it ended.
+    /// `Ok` if the capture ended on request, or else the reason that it ended.
     pub end: Result<()>,
 }
 
-/// Writes what a channel brings until it is time to stop, and then what is left in it.
+/// Copies a channel's bytes until `is_due` says to stop, and then those that are still in it.
 pub fn capture(
     channel: &mut dyn Channel,
     output: &mut dyn Write,
@@ -66,9 +66,9 @@ fn copy(
     is_due: &mut dyn FnMut() -> bool,
     bytes: &mut u64,
 ) -> Result<()> {
-    /// A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
+    /// Time between polls of an empty buffer. A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
     const PAUSE: Duration = Duration::from_millis(1);
-    /// The most bytes read after it is time to stop: a board that never rests must not go on for ever.
+    /// Maximum number of bytes that are read after the request to stop, in case the board never pauses.
     const REST: u64 = 1 << 20;
     let mut buffer = vec![0; 1 << 14];
     let mut last = None;
@@ -98,7 +98,7 @@ mod tests {
     use crate::{ErrorKind, Result};
     use std::collections::VecDeque;
 
-    /// The bytes of each read; after the last, the board is gone.
+    /// A channel with the bytes of each read; after the last, the board is disconnected.
     struct Fake(VecDeque<&'static [u8]>);
 
     impl Channel for Fake {
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Captures, with a stop after so many reads.
+    /// Captures with a request to stop after `stop` reads.
     fn run(reads: &[&'static [u8]], stop: usize) -> (Vec<u8>, Captured) {
         let (mut output, mut asked) = (Vec::new(), 0);
         let captured = capture(&mut Fake(reads.iter().copied().collect()), &mut output, || {

@@ -1,4 +1,4 @@
-//! A board's channel through probe-rs.
+//! Reads a board's channel through probe-rs.
 
 use super::{CaptureKind, Channel};
 use crate::{Error, Result};
@@ -9,28 +9,28 @@ use probe_rs::rtt::{Rtt, ScanRegion, try_attach_to_rtt};
 use probe_rs::{Core, Permissions};
 use std::time::Duration;
 
-/// A board, and the channel to read.
+/// A board, and the number of the channel to read.
 #[derive(Clone, Debug)]
 pub struct Board {
-    /// The chip, as probe-rs calls it: `STM32F405RG`, `RP2040`.
+    /// Name of the chip in probe-rs: `STM32F405RG`, `RP2040`.
     pub chip: String,
-    /// The debug probe, where there are several: `VENDOR:PRODUCT[:SERIAL]`.
+    /// The debug probe, `VENDOR:PRODUCT[:SERIAL]`, if several are connected.
     pub probe: Option<String>,
-    /// Number of the board's channel, from 0.
+    /// Number of the channel on the board, from 0.
     pub channel: usize,
-    /// Address of the control block; all RAM is searched unless given.
+    /// Address of RTT's control block; all RAM is searched if `None`.
     pub address: Option<u64>,
 }
 
-/// Finds chip, probe and channel, and hands the channel over.
+/// Finds chip, probe and channel, and passes the channel to `then`.
 ///
 /// # Errors
-/// Returns an error if the probe, the board or the channel is missing, or an access to it fails.
+/// Returns an error if the probe, the board or the channel is missing, or if an access fails.
 pub fn with_channel(
     board: &Board,
     use_it: impl FnOnce(&mut dyn Channel) -> Result<()>,
 ) -> Result<()> {
-    /// A board that has just started sets up its channels first.
+    /// Time for which the control block is searched: a board that has just started must set it up first.
     const PATIENCE: Duration = Duration::from_secs(2);
     let Board { chip, probe, channel: number, address } = board;
     let target = Registry::from_builtin_families()
@@ -68,13 +68,13 @@ pub fn with_channel(
     use_it(&mut Probed { core, rtt, number: *number })
 }
 
-/// An error with all that caused it, in the words of probe-rs.
+/// Formats an error and its causes, in the words of probe-rs.
 fn chain(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
-/// A hint on what may keep a probe from being found.
+/// Returns a hint on why a probe may not be found.
 fn hint() -> &'static str {
     if cfg!(target_os = "linux") {
         "; is it plugged in, and may this user open it (udev rules of probe-rs)? CMSIS-DAP version 1 is not supported"
@@ -83,7 +83,7 @@ fn hint() -> &'static str {
     }
 }
 
-/// A channel of a board that runs on.
+/// A channel of a board that keeps running.
 struct Probed<'a> {
     core: Core<'a>,
     rtt: Rtt,

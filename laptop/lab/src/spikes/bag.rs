@@ -5,29 +5,29 @@ use crate::Result;
 use crate::output::Output;
 use std::io::Write;
 
-/// A bag in the making.
+/// An unfinished bag.
 pub(super) struct Bag {
     output: Output,
     topics: Vec<Topic>,
     chunk: Vec<u8>,
-    /// The messages in the chunk: their topic, time and place.
+    /// The messages in the current chunk: their topic, time and offset.
     index: Vec<(usize, u64, u32)>,
     chunks: Vec<Chunk>,
 }
 
-/// The entry of a chunk at the end of the bag.
+/// A chunk's entry in the index at the end of the bag.
 struct Chunk {
     place: u64,
     first: u64,
     last: u64,
-    /// Messages by topic.
+    /// Number of messages on each topic.
     counts: Vec<u32>,
 }
 
-/// The size of a chunk, that of `rosbag`.
+/// Size of a chunk in bytes, as in `rosbag`.
 const CHUNK: usize = 768 * 1024;
 const VERSION: &[u8] = b"#ROSBAG V2.0\n";
-/// The first record is padded to this, so that it can be written again at the end.
+/// Size in bytes to which the first record is padded, so that it can be overwritten at the end.
 const FIRST: usize = 4096;
 
 impl Bag {
@@ -144,7 +144,7 @@ impl Container for Bag {
     }
 }
 
-/// The record that the bag starts with.
+/// Returns the first record of the bag.
 fn first(index: u64, connections: u32, chunks: u32) -> Vec<u8> {
     let header = [
         field("op", &[3]),
@@ -170,7 +170,7 @@ fn record(bytes: &mut Vec<u8>, header: &[u8], data: &[u8]) {
     }
 }
 
-/// Seconds and nanoseconds.
+/// Encodes a time as seconds and nanoseconds.
 fn stamp(nanoseconds: u64) -> [u8; 8] {
     let seconds = (nanoseconds / 1_000_000_000) as u32;
     let rest = (nanoseconds % 1_000_000_000) as u32;

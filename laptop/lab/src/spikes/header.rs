@@ -1,4 +1,4 @@
-//! The head of a file of spikes.
+//! The header of a file of spikes.
 
 use super::SpikesKind;
 use crate::Result;
@@ -14,15 +14,16 @@ pub struct Header {
     pub scheme: Scheme,
     /// The sample type.
     pub sample: SampleType,
-    /// All parameters that decoding needs, for each channel.
+    /// All parameters that decoding needs, one set for each channel.
     pub channels: Vec<Settings>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
-    /// The signal's origin, and what was calibrated; decoding needs none of it.
+    /// The signal's origin, and the values that were calibrated; not needed for decoding.
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// The parameters from which others are made, which decoding needs.
+/// Lists the parameters that a file of spikes does not contain, as decoding needs only others that were derived from
+/// them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =
@@ -30,17 +31,17 @@ pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     parameters.filter(is_note).map(|parameter| parameter.name).collect()
 }
 
-/// The version of the format.
+/// Version of the file format.
 const VERSION: &str = "1";
 
-/// The number of addresses.
+/// Maximum number of channels: that of addresses.
 const MOST_CHANNELS: usize = 1 << 16;
 
-/// Keys that decoding does not need, besides parameters that others were made from.
+/// Keys that decoding does not need, besides parameters from which others were derived.
 const NOTES: [&str; 4] = ["column", "topic", "field", "latency"];
 
 impl Header {
-    /// The keys and values before the parameters.
+    /// Returns the keys and values before the parameters.
     fn common(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![
             ("spikewire", VERSION.to_owned()),
@@ -53,7 +54,8 @@ impl Header {
         lines
     }
 
-    /// The keys and values, in order. A value that channels do not share has its channel behind an `@`: `start@1`.
+    /// Returns the keys and values, in order. A value that differs between channels has its channel after an `@`:
+    /// `start@1`.
     pub fn lines(&self) -> Vec<(String, String)> {
         let texts = |own: &Settings| -> Vec<(&'static str, String)> {
             own.entries().iter().map(|(name, value)| (*name, value.to_string())).collect()
@@ -76,7 +78,7 @@ impl Header {
         lines
     }
 
-    /// Reads the keys and values again.
+    /// Parses the keys and values.
     ///
     /// # Errors
     /// Returns an error if a parameter is missing, occurs twice, is not a number or does not belong to the scheme.
@@ -141,7 +143,7 @@ fn parse<T: FromStr>(key: &str, value: &str) -> Result<T> {
     Ok(value.trim().parse().map_err(wrong)?)
 }
 
-/// Keys that are taken one after the other, so that what is left has no meaning.
+/// Keys that are taken out one by one, so that those left over are known to be unused.
 struct Keys {
     left: Vec<(String, String)>,
 }

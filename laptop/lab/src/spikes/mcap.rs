@@ -5,22 +5,22 @@ use crate::Result;
 use crate::output::Output;
 use std::io::Write;
 
-/// A file in the making.
+/// An unfinished file.
 pub(super) struct Mcap {
     output: Output,
     topics: Vec<Topic>,
     chunk: Vec<u8>,
-    /// The messages in the chunk: their topic, time and place.
+    /// The messages in the current chunk: their topic, time and offset.
     index: Vec<(usize, u64, u64)>,
-    /// The entry of each chunk at the end of the file.
+    /// Each chunk's entry in the index at the end of the file.
     chunks: Vec<Vec<u8>>,
-    /// How many messages each topic has.
+    /// Number of messages on each topic.
     counts: Vec<u32>,
-    /// The first and the last time.
+    /// The first and the last time in the file.
     span: Option<(u64, u64)>,
 }
 
-/// The size of a chunk, that of `rosbag`.
+/// Size of a chunk in bytes, as in `rosbag`.
 const CHUNK: usize = 768 * 1024;
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
@@ -151,7 +151,7 @@ impl Container for Mcap {
     }
 }
 
-/// The definition of each topic and the topic itself. Definitions count from 1 on.
+/// Returns the records that define each topic and its type; types are numbered from 1.
 fn channels(topics: &[Topic]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for (topic, place) in topics.iter().zip(0_u16..) {
@@ -176,7 +176,7 @@ fn text(text: &str) -> Vec<u8> {
     long(text.as_bytes())
 }
 
-/// Bytes behind their length.
+/// Returns the bytes with their length in front.
 fn long(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat()
 }

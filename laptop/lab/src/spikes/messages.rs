@@ -1,4 +1,4 @@
-//! Reads spikes out of logs: ours, and those that the paper's toolbox wrote.
+//! Reads spikes from logs, written here or by the paper's toolbox.
 
 use super::recorder::{EVENT, HEADER};
 use super::{Header, Item, Spikes, SpikesKind};
@@ -15,22 +15,22 @@ use std::path::Path;
 /// A log of spikes that is read from its start to its end.
 pub struct Messages {
     log: Reading,
-    /// The topic of each channel, and the number of its samples so far.
+    /// Topic of each channel, and number of its samples so far.
     channels: Vec<(String, u64)>,
-    /// The numbers of a channel's neurons and, in `slots`, of a sample's sub-timesteps.
+    /// Number of a channel's neurons; `slots` is the number of a sample's sub-timesteps.
     neurons: usize,
     slots: usize,
     is_signed: bool,
-    /// Samples without spikes whose input is missing were not encoded.
+    /// Whether the log has a header. In such logs, a sample without spikes and with a missing input was not encoded.
     has_header: bool,
     items: VecDeque<Item>,
 }
 
 impl Messages {
-    /// Reads what decoding needs: the header where there is one, or else what all messages say together.
+    /// Opens a log, and collects what decoding needs: from the header, or else from all messages together.
     ///
     /// # Errors
-    /// Returns an error if the log has no spikes, or does not say enough of their scheme.
+    /// Returns an error if the log has no spikes, or if it does not say enough about their scheme.
     pub fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<(Self, Header)> {
         let file = path.display().to_string();
         let found = Found::read(Reading::open(path, kind, damage(accept_cut))?)?;
@@ -54,7 +54,7 @@ impl Messages {
         Ok((messages, header))
     }
 
-    /// Takes a message of a channel.
+    /// Reads a message of a channel.
     fn take(&mut self, channel: usize) -> Result<()> {
         let (neurons, slots) = (self.neurons, self.slots);
         let sample = self.channels[channel].1;
@@ -119,7 +119,7 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike: that of the field `spike`, or of its place in the array of that name.
+/// Reads a neuron's spike, from the field `spike`, or from the neuron's place in the array of that name.
 ///
 /// # Errors
 /// Returns an error if there is no such field.
@@ -132,19 +132,19 @@ fn spike(log: &Reading, place: usize, of: usize) -> Result<Option<i8>> {
     Ok(number.map(|number| number as i8))
 }
 
-/// The findings of a pass over a log.
+/// What was found in a pass over a log.
 #[derive(Default)]
 struct Found {
     topic: String,
-    /// The header, in our logs.
+    /// The header, in logs written here.
     header: Option<String>,
     scheme: String,
-    /// The start value of the first message.
+    /// Start value in the first message.
     start: f64,
     range: (f64, f64),
     neurons: usize,
     first: i64,
-    /// The sum of the thresholds of all messages; the toolbox takes their mean.
+    /// Sum of the thresholds in all messages; the toolbox uses their mean.
     thresholds: f64,
     samples: u64,
     last: i64,
@@ -186,7 +186,7 @@ impl Found {
         Ok(found)
     }
 
-    /// The keys and values of a file of spikes.
+    /// Returns the keys and values for the header of a file of spikes.
     fn lines(&self) -> Result<Vec<(String, String)>> {
         if let Some(header) = &self.header {
             let pairs = header.lines().filter_map(|line| line.split_once('='));
@@ -242,24 +242,24 @@ impl Found {
     }
 }
 
-/// A field of text.
+/// Reads a field of text.
 fn text(log: &Reading, name: &'static str) -> Result<String> {
     log.text(name).ok_or_else(|| lacks(log, name))
 }
 
-/// The error of a message without a field.
+/// Makes the error of a message that lacks a field.
 fn lacks(log: &Reading, name: &'static str) -> Error {
     SpikesKind::NoField { name }.at(log.place())
 }
 
-/// The number of neurons that addresses can tell apart.
+/// Maximum number of neurons: that of addresses.
 const MOST: usize = 1 << 16;
 
 #[cfg(test)]
 mod tests {
     use super::Found;
 
-    /// Neuron 7 of the toolbox has the centre of our neuron 6, whose range begins a field lower.
+    /// Neuron 7 of the toolbox has the centre of our neuron 6; our range begins one neuron lower.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

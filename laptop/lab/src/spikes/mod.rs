@@ -1,9 +1,9 @@
-//! Files of spikes: `index,address,polarity` below `# key=value` lines with all that decoding needs.
+//! Files of spikes: `index,address,polarity`, below lines `# key=value` with everything that decoding needs.
 //!
-//! With sub-timesteps, `index` counts those: sample times slots, plus the slot. The last lines say how
-//! many samples and events there were, so that a file that is cut short is noticed. Values that were
-//! not finite and gaps in time are told where they occur, and so are the times there, at the first and at
-//! the last sample. The neurons of a second channel are numbered on from those of the first.
+//! With sub-timesteps, `index` counts those: sample times slots, plus the slot. The last lines give the numbers of
+//! samples and events, so that a truncated file is noticed. Comments report values that were not finite and gaps in
+//! time where they occur, with the times there, at the first and at the last sample. The neurons of a second channel
+//! are numbered on from those of the first.
 
 mod bag;
 mod header;
@@ -27,21 +27,21 @@ use crate::output::Output;
 use crate::{Place, Result};
 use catalogue::run::Event;
 
-/// A file of one kind or another that takes spikes and samples.
+/// A file in any format to which spikes are recorded.
 pub trait Record {
-    /// Takes note of the next samples and keeps the rows that are finite, for the encoder.
+    /// Notes the next samples, and removes the rows that are not finite, which the encoder must not see.
     ///
     /// # Errors
-    /// The file cannot hold them.
+    /// Returns an error if the file cannot hold the samples.
     fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
 
-    /// Writes events. The encoder's next ones are of the finite sample `decided` or later.
+    /// Writes events. The encoder's later events must belong to the finite sample `decided` or to a later one.
     ///
     /// # Errors
     /// Returns an error if the spikes cannot be written.
     fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()>;
 
-    /// Writes the end and gives back the output.
+    /// Writes the end, and returns the output.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -50,19 +50,19 @@ pub trait Record {
 
 /// A source of spikes, in the order of samples.
 pub trait Spikes {
-    /// Whether its events have times.
+    /// Returns whether the events have times.
     fn is_timed(&self) -> bool;
 
-    /// The next item; the last is [`Item::End`].
+    /// Returns the next item; the last is [`Item::End`].
     ///
     /// # Errors
-    /// Returns an error if an item makes no sense, or the end is missing.
+    /// Returns an error if an item is invalid, or if the end is missing.
     fn next(&mut self) -> Result<Item>;
 
-    /// The place of the last item, for an error.
+    /// Returns the place of the last item, for an error.
     fn place(&self) -> Place;
 
-    /// Notes for the user on the file, complete after the last item.
+    /// Returns notes for the user on the file; they are complete after the last item.
     fn notes(&mut self) -> Vec<String> {
         Vec::new()
     }

@@ -11,35 +11,35 @@ use std::io::{BufRead, Read};
 /// One item after the header.
 #[derive(Debug, PartialEq)]
 pub enum Item {
-    /// A spike; samples are counted as the file does.
+    /// A spike; its sample is counted as in the file.
     Event {
         /// The event.
         event: Event,
         /// The time of its sample in µs.
         time: Option<i64>,
     },
-    /// The time at which a sample was taken.
+    /// The time of a sample.
     Time {
         /// The sample.
         sample: u64,
         /// The time, in µs.
         time: i64,
     },
-    /// Values that were not finite.
+    /// A run of values that were not finite.
     Rejected {
-        /// The first of them.
+        /// First sample of the run.
         first: u64,
         /// The number of samples.
         count: u64,
     },
-    /// The end, after this many samples.
+    /// The end of the file.
     End {
         /// Number of samples.
         samples: u64,
     },
 }
 
-/// A file of spikes behind its header.
+/// Reads the part of a file of spikes that follows the header.
 pub struct Reader<R> {
     input: R,
     file: String,
@@ -49,9 +49,9 @@ pub struct Reader<R> {
     neurons: u64,
     is_signed: bool,
     columns: usize,
-    /// The usual step from sample to sample, in µs.
+    /// Usual time between samples, in µs.
     period: u64,
-    /// The last `# time=`.
+    /// The last `# time=`: a sample and its time.
     noted: Option<(u64, i64)>,
     previous: u64,
     events: u64,
@@ -118,7 +118,7 @@ impl<R: BufRead> Reader<R> {
         Ok((reader, header))
     }
 
-    /// A sample and a number.
+    /// Parses a sample and a number.
     fn pair(&self, value: &str) -> Result<(u64, i64)> {
         let (sample, number) = value.split_once(',').unwrap_or((value, ""));
         let number = number.parse();
@@ -199,7 +199,7 @@ impl<R: BufRead> Reader<R> {
         Ok(is_some)
     }
 
-    /// The error of the line in hand.
+    /// Makes an error at the current line.
     fn refused(&self, kind: SpikesKind) -> Error {
         kind.at(Place::line(&self.file, self.number))
     }
@@ -269,7 +269,7 @@ impl<R: BufRead> Spikes for Reader<R> {
     }
 }
 
-/// A whole number that fits, without sign.
+/// Parses a whole number without sign; `None` if it does not fit.
 fn digits(text: &[u8]) -> Option<u64> {
     if text.is_empty() || text.len() > 18 {
         return None;

@@ -1,7 +1,7 @@
-//! Spikes as messages on a topic `event`, one a sample, as the paper's toolbox has them.
+//! Records spikes as messages on a topic `event`, one for each sample, as the paper's toolbox does.
 //!
-//! A topic `event_header` says once, as text, what a file of spikes says in its header, so that every scheme decodes.
-//! Of several channels the second is on `event_1`, and so on.
+//! A topic `event_header` holds once, as text, what the header of a file of spikes says, so that every scheme can be
+//! decoded. Further channels are on `event_1`, `event_2` and so on.
 
 use super::bag::Bag;
 use super::mcap::Mcap;
@@ -17,28 +17,28 @@ use std::collections::VecDeque;
 use std::path::Path;
 use std::time::Duration;
 
-/// A topic of a log in the making.
+/// A topic of a log that is being written.
 pub(super) struct Topic {
     pub name: String,
     pub kind: Kind,
 }
 
-/// A log in the making.
+/// A log that is being written.
 pub(super) trait Container {
-    /// Adds a message of a topic.
+    /// Appends a message on a topic.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
     fn add(&mut self, topic: usize, nanoseconds: u64, message: &[u8]) -> Result<()>;
 
-    /// Writes the end and gives back the output.
+    /// Writes the end, and returns the output.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
     fn finish(self: Box<Self>) -> Result<Output>;
 }
 
-/// The format of recorded messages.
+/// The container of recorded messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A ROS 1 bag.
@@ -48,10 +48,10 @@ pub enum Format {
 }
 
 impl Format {
-    /// The container of a file of this name; `None` if it is a table.
+    /// Returns the container for a file of this name; `None` if the file is a table.
     ///
     /// # Errors
-    /// The name ends as that of another kind of file.
+    /// Returns an error if the name has the ending of another kind of file.
     pub fn of(path: &Path) -> Result<Option<Self>> {
         match path.extension().and_then(|own| own.to_str()) {
             Some("bag") => Ok(Some(Self::Bag)),
@@ -61,23 +61,23 @@ impl Format {
     }
 }
 
-/// A log of spikes in the making.
+/// Records a log of spikes.
 pub struct Recorder {
     container: Box<dyn Container>,
     format: Format,
     kind: Kind,
-    /// The part that all messages of a channel share.
+    /// The content that all messages of a channel share.
     empty: Vec<Spyke>,
-    /// The lines of the header, until they are written.
+    /// The header's lines, until they are written.
     header: Option<String>,
     neurons: usize,
-    /// The step from sample to sample, in µs, if no times are recorded.
+    /// Time between samples in µs, if no times are recorded.
     period: Option<f64>,
-    /// Samples that are not written yet, and how many were.
+    /// Samples that are not written yet.
     pending: VecDeque<Pending>,
-    /// The finite samples that were written, as the encoder counts.
+    /// Number of finite samples that were written, which is how the encoder counts.
     finite: u64,
-    /// Events of samples that are not decided yet.
+    /// Events of samples that may still get more events.
     events: VecDeque<Event>,
     summary: Summary,
 }
@@ -88,18 +88,18 @@ struct Pending {
     is_finite: bool,
 }
 
-/// The end of seconds of 32 bits, in µs.
+/// Time in µs at which 32-bit seconds end.
 const LATEST: u64 = (1 << 32) * 1_000_000;
-/// The topic of the spikes, as in the toolbox.
+/// Topic of the spikes, as in the toolbox.
 pub(super) const EVENT: &str = "event";
-/// The topic of the header.
+/// Topic of the header.
 pub(super) const HEADER: &str = "event_header";
 
 impl Recorder {
-    /// Starts a log. The ranges are those of the channels.
+    /// Starts a log; `ranges` are the smallest and largest sample of each channel.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be written, or samples have no times.
+    /// Returns an error if the file cannot be written, or if samples have no times.
     pub fn new(
         output: Output,
         format: Format,
@@ -146,7 +146,7 @@ impl Recorder {
         })
     }
 
-    /// Writes the messages of a sample.
+    /// Writes the messages of a sample, one for each channel.
     fn sample(&mut self, pending: &Pending) -> Result<()> {
         let nanoseconds = pending.time.as_nanos() as u64;
         if let Some(header) = self.header.take() {

@@ -1,4 +1,4 @@
-//! The messages of the paper's toolbox: what the neurons did for one sample, with what decoding needs.
+//! The message types of the paper's toolbox: the spikes of one sample, with what decoding needs.
 
 use super::recorder::Format;
 use std::time::Duration;
@@ -6,23 +6,24 @@ use std::time::Duration;
 /// The message of one sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
-    /// The spikes of each neuron, sub-timestep after sub-timestep: 1, 0 or -1, or how many of one direction.
+    /// The spikes of each neuron, one sub-timestep after the other: 1, 0 or -1, or the number of spikes in one
+    /// direction.
     pub spikes: Vec<i8>,
-    /// The value that decoding starts from.
+    /// Value from which decoding starts.
     pub start: f32,
     /// The smallest and the largest sample.
     pub range: (f32, f32),
     /// The threshold; 0 if the scheme has none.
     pub threshold: f32,
-    /// The sample.
+    /// The sample itself.
     pub input: f32,
-    /// The scheme's name.
+    /// Name of the scheme.
     pub scheme: &'static str,
-    /// The time at which the sample was taken.
+    /// Time of the sample.
     pub time: Duration,
 }
 
-/// A kind of message.
+/// A type of message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// A message of one neuron.
@@ -33,7 +34,7 @@ pub(crate) enum Kind {
     String,
 }
 
-/// The fields behind the spikes.
+/// The fields after the spikes.
 const FIELDS: &str = "float32 start
 float32 min_input
 float32 max_input
@@ -43,7 +44,7 @@ string scheme
 ";
 
 impl Kind {
-    /// Its name in ROS 1.
+    /// Returns the type's name in ROS 1.
     pub(crate) fn ros1(self) -> &'static str {
         match self {
             Self::Spyke => "spyke_msgs/spyke",
@@ -52,7 +53,7 @@ impl Kind {
         }
     }
 
-    /// Its name in ROS 2.
+    /// Returns the type's name in ROS 2.
     pub(crate) fn ros2(self) -> &'static str {
         match self {
             Self::Spyke => "spyke_msgs/msg/Spyke",
@@ -61,7 +62,7 @@ impl Kind {
         }
     }
 
-    /// The definition for ROS 1.
+    /// Returns the definition for ROS 1.
     pub(crate) fn definition_ros1(self) -> String {
         match self {
             Self::Spyke => format!("int8 spike\n{FIELDS}time timestamp\n"),
@@ -70,7 +71,7 @@ impl Kind {
         }
     }
 
-    /// The definition for ROS 2, with those of the messages within.
+    /// Returns the definition for ROS 2, with those of the nested types.
     pub(crate) fn definition_ros2(self) -> String {
         let time = "builtin_interfaces/Time timestamp";
         let line = "=".repeat(80);
@@ -82,7 +83,7 @@ impl Kind {
         }
     }
 
-    /// The MD5 of the definition without comments, by which ROS 1 tells definitions apart.
+    /// Returns the MD5 of the definition without comments, by which ROS 1 identifies a type.
     pub(crate) fn md5(self) -> &'static str {
         match self {
             Self::Spyke => "3fe7d788a9984f98947655b57e7a8ced",
@@ -93,8 +94,8 @@ impl Kind {
 }
 
 impl Spyke {
-    /// Encodes the message as ROS 1 sends it, or as CDR, the wire format of ROS 2: behind four bytes of its own, numbers
-    /// at multiples of four bytes, NUL-terminated strings.
+    /// Encodes the message for ROS 1, or for ROS 2 as CDR: after a prefix of four bytes, numbers are aligned to four
+    /// bytes and strings end with NUL.
     pub(crate) fn bytes(&self, kind: Kind, format: Format) -> Vec<u8> {
         let mut bytes = start(format);
         if kind == Kind::SpykeArray {
@@ -117,14 +118,14 @@ impl Spyke {
     }
 }
 
-/// The message of a text.
+/// Encodes a message of text.
 pub(crate) fn text(text: &str, format: Format) -> Vec<u8> {
     let mut bytes = start(format);
     add_text(&mut bytes, text, format);
     bytes
 }
 
-/// The first bytes of a message: none in ROS 1; in ROS 2 those of plain CDR, little-endian.
+/// Returns the prefix of a message: empty in ROS 1; in ROS 2 that of plain CDR, little-endian.
 fn start(format: Format) -> Vec<u8> {
     match format {
         Format::Bag => Vec::new(),

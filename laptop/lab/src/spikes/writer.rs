@@ -1,4 +1,4 @@
-//! Writes a file of spikes while the samples come in.
+//! Writes a file of spikes while the samples arrive.
 
 use super::{Header, Record};
 use crate::Result;
@@ -9,25 +9,25 @@ use spikewire::Polarity;
 use std::collections::VecDeque;
 use std::io::Write;
 
-/// A file of spikes in the making.
+/// A file of spikes that is being written.
 ///
-/// Encoders see finite samples only and count those; the file counts all. Where an encoder looks ahead
-/// its events come late, and what there is to note of later samples waits for them.
+/// Encoders see and count finite samples only, while the file counts all. If an encoder looks ahead its events come
+/// late, and notes on later samples wait for them.
 pub struct Writer {
     output: Output,
     slots: u64,
-    /// The usual step from sample to sample, in µs, as far as it is known.
+    /// Usual time between samples in µs, as far as it is known.
     period: u64,
     is_timed: bool,
-    /// Finite samples whose events may still come: their index and time.
+    /// Finite samples that may still get events: their index and time.
     pending: VecDeque<(u64, i64)>,
-    /// The finite sample that `pending` starts with, counted as the encoder does.
+    /// Number of the first sample in `pending`, counted by finite samples.
     first_pending: u64,
-    /// Lines to come before the events of later samples than this.
+    /// Lines that wait; each must come before the events of samples later than its number.
     notes: VecDeque<(u64, String)>,
-    /// A run of values that were not finite, which may go on: its first index and length.
+    /// A run of values that were not finite, which may continue: its first index and its length.
     rejected_run: Option<(u64, u64)>,
-    /// The time of the last sample.
+    /// Time of the last sample.
     last_time: i64,
     summary: Summary,
     line: Vec<u8>,
@@ -40,7 +40,7 @@ pub struct Summary {
     pub samples: u64,
     /// Number of samples that were not finite.
     pub rejected: u64,
-    /// Spikes.
+    /// Number of spikes.
     pub events: u64,
 }
 
@@ -91,7 +91,7 @@ impl Writer {
         }
     }
 
-    /// Adds the notes that belong before this sample.
+    /// Writes the notes that come before this sample.
     fn write_notes(&mut self, sample: u64) {
         while self.notes.front().is_some_and(|&(at, _)| at < sample) {
             if let Some((_, note)) = self.notes.pop_front() {

@@ -1,4 +1,4 @@
-//! Chance from a seed, the same on every machine.
+//! Random numbers from a seed, the same on every machine.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -8,12 +8,12 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct Chance(ChaCha8Rng);
 
 impl Chance {
-    /// A generator that gives the same numbers for the same seed on every machine.
+    /// Seeds a generator.
     pub(super) fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    /// Draws evenly from 0 to below 1.
+    /// Draws evenly from 0 up to, but not including, 1.
     pub(super) fn part(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }

@@ -1,4 +1,4 @@
-//! The cost of settings on a flight controller, from the measured counts.
+//! Costs of settings on a flight controller, from measured counts.
 
 use super::RequestKind;
 use crate::Result;
@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The counts that `cargo bench-target --baseline` writes and `cargo verify` holds the crate to; a link, so that source
-/// packages have them.
+/// The counts that `cargo bench-target --baseline` writes and `cargo verify` checks; the file is a symbolic link, so
+/// that source packages contain it.
 const COUNTS: &str = include_str!("baseline.json");
 
 #[derive(Deserialize)]
@@ -26,18 +26,18 @@ static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
 /// The cost of one channel.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Costs {
-    /// How many samples after its own the code of a sample comes out.
+    /// How many samples after a sample its code comes out.
     pub latency: usize,
-    /// The bytes of the encoder's state, where they are known.
+    /// Size of the encoder's state in bytes, if known.
     pub ram: Option<usize>,
-    /// Instructions a sample to encode, in the mean, where they were measured.
+    /// Mean number of instructions to encode a sample, if measured.
     pub instructions: Option<f64>,
     /// Whether `instructions` is an upper bound, scaled from a shorter filter that was measured.
     pub is_bound: bool,
 }
 
 impl Costs {
-    /// The cost of these settings on a core of the measured table.
+    /// Looks up the costs of settings on a core of the measured table.
     pub fn new(scheme: Scheme, settings: &Settings, latency: usize, core: &str) -> Self {
         let counted = scheme.counted(settings).ok();
         let measured = counted.and_then(|counted| {
@@ -53,7 +53,7 @@ impl Costs {
         }
     }
 
-    /// Instructions a sample, in words.
+    /// Describes the number of instructions for a sample.
     pub fn instructions(&self) -> String {
         match self.instructions {
             Some(count) if self.is_bound => format!("at most {count:.0}"),
@@ -63,7 +63,7 @@ impl Costs {
     }
 }
 
-/// The measured sample type of the same width.
+/// Returns the measured sample type that has the same width.
 fn measured_as(sample: SampleType) -> &'static str {
     match sample {
         SampleType::F32 => "f32",
@@ -72,17 +72,17 @@ fn measured_as(sample: SampleType) -> &'static str {
     }
 }
 
-/// The cores of the table.
+/// Returns the names of the cores in the table.
 fn cores() -> Vec<&'static str> {
     let mut cores: Vec<&str> = MEASURED.keys().filter_map(|key| key.split(' ').next()).collect();
     cores.dedup();
     cores
 }
 
-/// Finds the core of this name, in capitals or not.
+/// Finds a core by its name, in upper or lower case.
 ///
 /// # Errors
-/// Returns an error if no instructions were counted on such a core.
+/// Returns an error if no instructions were measured on such a core.
 pub fn core(name: &str) -> Result<String> {
     let known = cores();
     let Some(core) = known.iter().find(|core| core.eq_ignore_ascii_case(name)) else {

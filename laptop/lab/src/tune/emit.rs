@@ -1,14 +1,14 @@
-//! Settings to paste into firmware, and to give to other commands.
+//! Writes settings for firmware, and as files for other commands.
 
 use crate::Result;
 use crate::coding::Coding;
 use crate::scheme::Scheme;
 use catalogue::run::{Constant, Settings};
 
-/// A constant in Rust, below these comments, that compiles where the crate is a dependency.
+/// Writes a Rust constant, with these comments before it, that compiles where the crate is a dependency.
 ///
 /// # Errors
-/// The scheme has no constant.
+/// Returns an error if the scheme cannot be written as a constant.
 pub fn rust(
     comments: &[String],
     channel: &str,
@@ -22,12 +22,12 @@ pub fn rust(
     Ok(format!("{}pub static {name}: {kind} = {value};\n", comments.concat()))
 }
 
-/// A file of parameters.
+/// Writes a file of parameters, with these comments at its start.
 pub fn toml(comments: &[String], scheme: Scheme, settings: &Settings) -> String {
     Coding::of_settings(scheme, settings).to_toml(comments)
 }
 
-/// The name of a constant: `gyro_rad[0]` gives `GYRO_RAD_0`.
+/// Returns the name of a constant: `gyro_rad[0]` gives `GYRO_RAD_0`.
 fn constant_name(channel: &str) -> String {
     let words = channel.split(|letter: char| !letter.is_ascii_alphanumeric());
     let words: Vec<String> =

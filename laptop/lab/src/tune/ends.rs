@@ -1,23 +1,23 @@
-//! Ends of a search that the best settings lie at, where the scheme itself would go on.
+//! Reports when the best settings lie at an end of the search, if the scheme itself allows more.
 
 use super::Problem;
 use super::space::{Axis, Role, Space};
 use crate::brief::short;
 use catalogue::run::Asked;
 
-/// The end of a parameter's search.
+/// An end of a parameter's search at which the best settings lie.
 #[derive(Clone, Debug)]
 pub struct End {
-    /// The parameter.
+    /// Name of the parameter.
     pub parameter: &'static str,
-    /// The searched value that the best settings have, in words.
+    /// Value of the parameter in the best settings, in words.
     pub value: String,
-    /// The values between which it was searched, in words.
+    /// The lowest and highest value that were searched, in words.
     pub searched: [String; 2],
 }
 
 impl End {
-    /// A sentence for the user.
+    /// Describes the end in a sentence for the user.
     pub fn words(&self) -> String {
         let Self { parameter, value, searched: [low, high] } = self;
         format!(
@@ -26,10 +26,10 @@ impl End {
     }
 }
 
-/// The ends of the search at which these settings lie. An end beyond which nothing can be built is not one of them: it
-/// bounds the scheme, not the search.
+/// Returns the ends of the search at which these settings lie. If nothing beyond an end can be built, the end is the
+/// scheme's and not the search's, and is left out.
 pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
-    /// The part of an axis that counts as its end.
+    /// Share of an axis that counts as its end.
     const NEAR: f64 = 0.02;
     let point = space.point(best);
     let Some(first) = problem.train.first() else { return Vec::new() };
@@ -57,7 +57,7 @@ pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
     found
 }
 
-/// The value of the options on an axis, as a user gives it; `None` where an end means nothing.
+/// Returns the value of the options on an axis, as a user gives it; `None` if an end has no meaning there.
 fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     match axis.role {
         Role::Log(_) | Role::Around(..) | Role::Whole | Role::Most => options.number(axis.name),
@@ -65,7 +65,7 @@ fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     }
 }
 
-/// A number of the axis as a user gives it.
+/// Converts a number on the axis to the value that a user gives.
 fn meaning(axis: &Axis, number: f64) -> f64 {
     match axis.role {
         Role::Log(unit) => number.exp() * unit,
@@ -74,7 +74,7 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
     }
 }
 
-/// A number a little beyond an end: the next whole one, or one a fiftieth of the axis away.
+/// Returns a number just beyond an end: the next whole one, or one that is a fiftieth of the axis away.
 fn further(axis: &Axis, is_high: bool) -> f64 {
     let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
     match axis.role {

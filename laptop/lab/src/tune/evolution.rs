@@ -1,34 +1,34 @@
-//! Differential evolution that adapts itself and has ever fewer parents: L-SHADE, after Tanabe and Fukunaga (2014).
+//! Adaptive differential evolution with a shrinking number of parents: L-SHADE, after Tanabe and Fukunaga (2014).
 //!
-//! It is told how much of its budget is spent, so that a small budget ends as settled as a large one. Points are in the
-//! unit cube.
+//! The caller says how much of its budget is spent, so that a small budget converges as far as it can. Points lie in
+//! the unit cube.
 
 use super::chance::Chance;
 
-/// Successful factors and rates that are remembered.
+/// Number of successful factors and rates that are remembered.
 const MEMORY: usize = 6;
-/// Parents at the end.
+/// Number of parents at the end.
 const FEWEST: usize = 4;
-/// The best part of the parents, to which the others are drawn.
+/// Share of the parents that count as the best, towards which the others move.
 const BEST: f64 = 0.15;
 
-/// Asks for points, and is told their values.
+/// An optimiser that asks for the values of points.
 pub(super) struct Evolution {
     chance: Chance,
-    /// Points with their values, the best first when asked.
+    /// Points with their values; sorted, the best first, whenever points are asked for.
     parents: Vec<(Vec<f64>, f64)>,
-    /// Points that better ones have replaced.
+    /// Points that were replaced by better ones.
     replaced: Vec<Vec<f64>>,
     first_count: usize,
     factors: [f64; MEMORY],
     rates: [f64; MEMORY],
     remembered: usize,
-    /// The factor and the rate of each point that was asked for.
+    /// Factor and rate of each point that was asked for.
     asked: Vec<(f64, f64)>,
 }
 
 impl Evolution {
-    /// Starts from points whose values are known.
+    /// Starts with points whose values are known.
     pub(super) fn new(seed: u64, parents: Vec<(Vec<f64>, f64)>) -> Self {
         Self {
             chance: Chance::new(seed),
@@ -42,7 +42,7 @@ impl Evolution {
         }
     }
 
-    /// Asks for the values of a generation of points, after so great a part of the budget.
+    /// Returns a generation of points whose values are wanted; `spent` is the share of the budget that is used.
     pub(super) fn ask(&mut self, spent: f64) -> Vec<Vec<f64>> {
         self.parents.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let (first, fewest) = (self.first_count as f64, FEWEST as f64);
@@ -90,10 +90,10 @@ impl Evolution {
         point
     }
 
-    /// Takes the points asked for, in their order and perhaps moved, with their values; the last may be missing.
+    /// Takes the values of the points asked for, in their order. Points may have been moved, and the last ones may be
+    /// missing.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// The most that a value counts: settings that are not allowed have values far apart, which must not outweigh
-        /// all else.
+        /// Bound of a value: settings that are not allowed have values far apart, which must not outweigh all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);
@@ -127,7 +127,7 @@ impl Evolution {
 mod tests {
     use super::{Chance, Evolution};
 
-    /// A bowl in five dimensions: 400 points come nearer to its middle than chance would in a billion.
+    /// A bowl in five dimensions: 400 points come nearer to its minimum than random ones would in a billion.
     #[test]
     fn a_bowl_is_descended() {
         let value = |point: &[f64]| point.iter().map(|own| (own - 0.3).powi(2)).sum::<f64>();

@@ -1,4 +1,4 @@
-//! The figures of settings: all that a report says of how good they are.
+//! The figures by which settings are judged in a report.
 
 use super::{Problem, Stretch};
 use crate::Result;
@@ -7,38 +7,38 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Figures over what is scored of stretches, each of which was coded in one piece.
+/// Figures over the scored parts of stretches, each of which is coded in one piece.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Figures {
     /// Number of samples.
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percent of samples without a spike, where each has one at most.
+    /// Percentage of samples without a spike, for a code that has at most one each.
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
-    /// Variance of the signal to mean square of the error, in dB.
+    /// Signal-to-noise ratio in dB: the signal's variance over the mean square of the error.
     pub snr: f64,
     /// The largest error.
     pub worst: f64,
-    /// Number of samples by which the decoded values come late, besides the latency: where they correlate best.
+    /// Delay of the decoded values in samples, besides the latency: the lag with the highest correlation.
     pub lag: i64,
-    /// The RMSE of what is below the band limit, if there is one.
+    /// RMSE below the band limit, if there is one.
     pub below: Option<f64>,
     /// Events a second, if a rate is known.
     pub events_per_second: Option<f64>,
-    /// The entropy of the spikes: of a sample's code, a second.
+    /// Entropy of the spikes in bits a second: of the code of a sample, times the rate.
     pub bits_per_second: Option<f64>,
-    /// The bits that samples rounded to as large an error would need, a second.
+    /// Bits a second that samples rounded to the same error would need.
     pub raw_bits_per_second: Option<f64>,
 }
 
 impl Figures {
-    /// The figures of settings on stretches, of which there is one at least.
+    /// Computes the figures of settings on stretches, of which there must be at least one.
     ///
     /// # Errors
-    /// The options make no sense.
+    /// Returns an error if the options are invalid.
     pub fn new(
         problem: &Problem,
         options: &Asked,
@@ -100,7 +100,7 @@ impl Figures {
     }
 }
 
-/// The longest lag that is looked for, in samples.
+/// Longest lag that is tried, in samples.
 const FARTHEST: usize = 100;
 
 #[derive(Default)]
@@ -134,12 +134,12 @@ impl Sums {
     }
 }
 
-/// `-p log2 p`.
+/// Returns `-p log2 p`.
 fn bits(part: f64) -> f64 {
     if part > 0.0 { -part * part.log2() } else { 0.0 }
 }
 
-/// Counts which code each sample has.
+/// Counts how often each code of a sample occurs.
 fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>, usize>) {
     let groups = events.chunk_by(|a, b| a.sample == b.sample);
     let mut silent = samples;
@@ -151,7 +151,7 @@ fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>,
     *codes.entry(Vec::new()).or_default() += silent;
 }
 
-/// Adds how a stretch and what was decoded go together, by the lag of what was decoded.
+/// Adds the correlation of a stretch with its decoded values, for each lag of the latter.
 fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let (center, middle) = (mean(values), mean(decoded));
@@ -164,7 +164,7 @@ fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     }
 }
 
-/// The sum of the squares after an ideal low pass at `limit`, a part of the rate.
+/// Returns the sum of squares after an ideal low pass at `limit`, a share of the sample rate.
 pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     let power = power(values);
     let count = values.len();
@@ -172,7 +172,7 @@ pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     kept.map(|(_, power)| power).sum()
 }
 
-/// The part of each frequency in the sum of the squares, from 0 to half the rate.
+/// Returns each frequency's part of the sum of squares, from 0 to half the sample rate.
 pub fn power(values: &[f64]) -> Vec<f64> {
     let count = values.len();
     if count < 2 {
@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Waves of 5 and 40 cycles in 1000 samples; the limit lets one pass.
+    /// The signal has waves of 5 and 40 cycles in 1000 samples; the limit passes only the slower.
     #[test]
     fn a_limit_keeps_what_is_below() {
         let wave = |cycles: f64| move |i: i32| (TAU * cycles * f64::from(i) / 1000.0).sin();

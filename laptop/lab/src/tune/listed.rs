@@ -1,4 +1,4 @@
-//! Step codes: the outcomes of their threshold, compared in exact arithmetic.
+//! Tunes step codes: lists the outcomes of all thresholds, and compares them in exact arithmetic.
 
 use super::Scored;
 use super::problem::{Goal, most_spikes};
@@ -7,25 +7,26 @@ use super::space::Space;
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
-/// The smallest threshold that is looked at in exact arithmetic, in parts of the range.
+/// Smallest threshold that is listed, as a share of the signal's range.
 const SMALLEST: f64 = 1e-3;
-/// Samples passed over for a list of outcomes at most: seconds.
+/// Maximum number of samples that are processed for a list of outcomes; it bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Samples passed over for each setting of the budget at most, so that a small budget is a short search.
+/// Maximum number of samples that are processed for each setting of the budget, so that a small budget is a short
+/// search.
 const PASSES_A_SETTING: usize = 200_000;
-/// Neighbourhoods of good thresholds in which the outcomes are listed again, one by one.
+/// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
 const NEIGHBOURHOODS: usize = 24;
-/// Combinations of what is whole that are listed before anybody is asked whether to go on.
+/// Number of combinations of integer parameters that are listed between two checks whether to stop.
 const COMBINATIONS: usize = 8;
-/// The most of the listed outcomes that the codec scores.
+/// Maximum number of listed outcomes that the codec scores.
 const MOST_SCORED: usize = 1000;
 
-/// The combinations of what is whole, and the outcomes of each that matter, with its place among them.
+/// The combinations of integer parameters, and the outcomes worth scoring, each with the index of its combination.
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
-    /// Compares the outcomes of the scheme's threshold, for every combination of what is whole, and scores the best.
-    /// False if the scheme has no such list, or the user has decided on a part of it.
+    /// Lists the outcomes of the threshold for every combination of integer parameters, and scores the best of them.
+    /// Returns false if the scheme has no such list, or if the user fixed a parameter that the list would choose.
     pub(super) fn exactly(&mut self, space: &Space) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];
@@ -61,7 +62,7 @@ impl Run<'_> {
         true
     }
 
-    /// Lists the outcomes that matter; nothing if the scheme has no such list, or somebody ended it.
+    /// Lists the outcomes worth scoring; `None` if the scheme has no such list.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
         let rounded = self.rounded;
@@ -117,7 +118,7 @@ impl Run<'_> {
         Some((combinations, all))
     }
 
-    /// A number for outcomes on so many samples that is the smaller, the better.
+    /// Returns a function that ranks outcomes on this number of samples; smaller is better.
     fn in_order(&self, samples: usize) -> impl Fn(&Outcome) -> f64 + use<> {
         const NOT_ALLOWED: f64 = 1e100;
         let (goal, count) = (self.problem.goal, samples as f64);
@@ -137,7 +138,7 @@ impl Run<'_> {
     }
 }
 
-/// An outcome as options, beside those of its combination.
+/// Converts an outcome to options, which include those of its combination.
 fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     let mut options = combination.clone();
     options.set("threshold", outcome.threshold);
@@ -147,7 +148,7 @@ fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     options
 }
 
-/// Keeps the outcomes that no other one beats in both spikes and error, by their spikes.
+/// Keeps the outcomes that no other beats in both spikes and error, sorted by spikes.
 fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     all.sort_by(|(a, _), (b, _)| a.spikes.cmp(&b.spikes).then(a.squares.total_cmp(&b.squares)));
     let mut least = f64::INFINITY;
@@ -158,7 +159,7 @@ fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     });
 }
 
-/// The ranges of thresholds between the neighbours of the best outcomes.
+/// Returns the ranges of thresholds around the best outcomes, up to their neighbours.
 fn neighbourhoods(list: &[Outcome], in_order: &impl Fn(&Outcome) -> f64) -> Vec<(f64, f64)> {
     let mut thresholds: Vec<f64> = list.iter().map(|own| own.threshold).collect();
     thresholds.sort_by(f64::total_cmp);

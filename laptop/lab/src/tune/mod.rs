@@ -1,4 +1,4 @@
-//! Parameters for a goal: what is scored, where they are looked for, and how.
+//! Finds parameters for a goal. Its modules define the score of settings, the space in which they lie, and the search.
 
 mod chance;
 pub mod costs;

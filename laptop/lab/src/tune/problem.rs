@@ -1,4 +1,4 @@
-//! The problem to solve: a goal, limits, and the score of settings by the codec that flies.
+//! Defines what a search optimises: a goal, limits, and the score of settings by the codec that flies.
 
 use super::RequestKind;
 use super::{Costs, Extent, Stretch};
@@ -9,28 +9,28 @@ use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
 /// The goal of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The least RMSE at a spiking efficiency of at least so many percent.
+    /// The least RMSE, with at least this percentage of samples without a spike.
     LeastError(f64),
-    /// The greatest spiking efficiency at an RMSE of at most this.
+    /// The greatest spiking efficiency, with at most this RMSE.
     MostEfficient(f64),
-    /// All settings that no other one beats in both spikes and error.
+    /// All settings that no other beats in both spikes and error.
     Front,
 }
 
-/// The most that settings may cost.
+/// Upper limits on what settings may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
-    /// Bytes of a channel's encoder.
+    /// Size of a channel's encoder, in bytes.
     pub ram: Option<f64>,
-    /// Instructions a sample to encode, in the mean.
+    /// Mean number of instructions to encode a sample.
     pub instructions: Option<f64>,
-    /// Samples until a code comes out.
+    /// Delay of the code, in samples.
     pub latency: Option<f64>,
-    /// Events a second.
+    /// Number of events a second.
     pub rate: Option<f64>,
 }
 
-/// Counts over stretches.
+/// Counts over several stretches.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     /// Number of samples.
@@ -44,41 +44,41 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Percent of samples without a spike.
+    /// Returns the percentage of samples without a spike.
     pub fn efficiency(&self) -> f64 {
         (1.0 - self.spikes as f64 / self.samples as f64) * 100.0
     }
 
-    /// Root mean square error.
+    /// Returns the root mean square error.
     pub fn rmse(&self) -> f64 {
         (self.squares / self.samples as f64).sqrt()
     }
 
-    /// Events a second.
+    /// Returns the number of events a second.
     pub fn rate(&self) -> Option<f64> {
         self.seconds.map(|seconds| self.spikes as f64 / seconds)
     }
 }
 
-/// A quantity that settings are held to.
+/// A quantity that is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// Bytes of a channel's encoder.
+    /// Size of a channel's encoder, in bytes; from above.
     Ram,
-    /// Instructions a sample.
+    /// Instructions for a sample; from above.
     Instructions,
-    /// Samples until a code comes out.
+    /// Delay of the code, in samples; from above.
     Latency,
-    /// Events a second.
+    /// Events a second; from above.
     Rate,
-    /// Percent of samples without a spike, from below.
+    /// Percentage of samples without a spike; from below.
     Efficiency,
-    /// The error.
+    /// Root mean square error; from above.
     Rmse,
 }
 
 impl Limit {
-    /// The setting of a request that limits it.
+    /// Returns the name of the request's setting that limits it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ram => "max_ram",
@@ -91,62 +91,62 @@ impl Limit {
     }
 }
 
-/// A limit, what settings come to, and what they may.
+/// A limit that settings exceed.
 #[derive(Clone, Debug)]
 pub struct Excess {
-    /// The limit.
+    /// The limited quantity.
     pub limit: Limit,
-    /// The figure of the settings.
+    /// Value of the settings.
     pub is: f64,
-    /// The limit.
+    /// Value that is allowed.
     pub may_be: f64,
-    /// The excess, as a part of the limit.
+    /// Excess, as a share of the limit.
     pub part: f64,
 }
 
-/// Settings with their score on the stretches to tune on.
+/// Settings, and their score on the stretches to tune on.
 #[derive(Clone, Debug)]
 pub struct Scored {
     /// The settings.
     pub options: Asked,
-    /// Samples, spikes and errors.
+    /// Counts of samples, spikes and errors.
     pub tally: Tally,
-    /// The cost on a microcontroller.
+    /// Cost on a microcontroller.
     pub costs: Costs,
     /// The limits and goals that the settings exceed.
     pub excess: Vec<Excess>,
 }
 
 impl Scored {
-    /// Whether they keep to all limits, and reach what the goal asks for.
+    /// Returns whether the settings keep to all limits, including that of the goal.
     pub fn is_allowed(&self) -> bool {
         self.excess.is_empty()
     }
 }
 
-/// A scheme, a recording, a goal and limits.
+/// The problem that a search solves: a scheme, a recording, a goal and limits.
 pub struct Problem<'a> {
     /// The scheme.
     pub scheme: Scheme,
     /// The sample type of the codec that is scored.
     pub sample: SampleType,
-    /// The parameters that the user has given.
+    /// Parameters that the user gave.
     pub fixed: Asked,
     /// The stretches to tune on.
     pub train: &'a [Stretch],
     /// The goal.
     pub goal: Goal,
-    /// The most that settings may cost.
+    /// Upper limits on what settings may cost.
     pub limits: &'a Limits,
     /// The core whose measured instructions count.
     pub core: &'a str,
-    /// The range of the stretches to tune on.
+    /// Range and mean of the stretches to tune on.
     pub extent: Extent,
     calibrated: Calibrated,
 }
 
 impl<'a> Problem<'a> {
-    /// A problem on these stretches, of which there is one at least.
+    /// Makes a problem of these stretches, of which there must be at least one.
     pub fn new(
         scheme: Scheme,
         sample: SampleType,
@@ -165,10 +165,10 @@ impl<'a> Problem<'a> {
         Self { scheme, sample, fixed: fixed.clone(), train, goal, limits, core, extent, calibrated }
     }
 
-    /// Complete settings on a stretch, as they run.
+    /// Completes the options to settings for a stretch.
     ///
     /// # Errors
-    /// The options make no sense.
+    /// Returns an error if the options are invalid.
     pub fn settings(
         &self,
         options: &Asked,
@@ -183,10 +183,10 @@ impl<'a> Problem<'a> {
         Ok(self.scheme.resolve(sample, options, &known)?)
     }
 
-    /// Encodes and decodes a stretch, and hands on its events, decoded values and latency.
+    /// Encodes and decodes a stretch; returns its events, decoded values and latency.
     ///
     /// # Errors
-    /// The options make no sense.
+    /// Returns an error if the options are invalid.
     pub fn run(
         &self,
         options: &Asked,
@@ -212,10 +212,10 @@ impl<'a> Problem<'a> {
         Ok((events, decoded, codec.latency()))
     }
 
-    /// The score of settings on what is scored of stretches, and the latency.
+    /// Scores settings on stretches; also returns the latency.
     ///
     /// # Errors
-    /// Returns an error if the settings make no sense.
+    /// Returns an error if the settings are invalid.
     pub fn tally(
         &self,
         options: &Asked,
@@ -226,7 +226,7 @@ impl<'a> Problem<'a> {
         Ok((tally, latency))
     }
 
-    /// [`tally`](Self::tally), with the settings of the last stretch.
+    /// Scores settings as [`tally`](Self::tally) does; also returns those completed for the last stretch.
     fn tallied(
         &self,
         options: &Asked,
@@ -256,10 +256,10 @@ impl<'a> Problem<'a> {
         Ok((tally, latency, settings))
     }
 
-    /// The score of options on the stretches to tune on.
+    /// Scores options on the stretches to tune on.
     ///
     /// # Errors
-    /// Returns an error if the settings make no sense.
+    /// Returns an error if the options are invalid.
     pub fn score(&self, options: &Asked) -> Result<Scored> {
         let (tally, latency, settings) = self.tallied(options, self.sample, self.train)?;
         let costs = Costs::new(self.scheme, &settings, latency, self.core);
@@ -300,7 +300,7 @@ impl<'a> Problem<'a> {
         excess
     }
 
-    /// A number that is the smaller, the better a score is for a goal: any that is allowed is below any that is not.
+    /// Returns the value of a score for a goal; smaller is better, and any allowed score is below any other.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, squares, .. } = scored.tally;
         let limits = scored
@@ -312,7 +312,7 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// The value of a goal for these spikes and errors, without the limits.
+    /// Returns the value of these spikes and errors for a goal, regardless of the limits.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();
@@ -336,11 +336,11 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// The value from which settings are not allowed.
+/// Value from which settings are not allowed.
 const NOT_ALLOWED: f64 = 1e12;
 
-/// The most spikes that have an efficiency of at least so many percent. A percentage that was computed from a count of
-/// spikes allows this very count.
+/// Returns the largest number of spikes at which the efficiency is at least this percentage. If the percentage was
+/// computed from a number of spikes, returns exactly that number.
 pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     let spikes = (100.0 - efficiency) / 100.0 * samples as f64;
     let nearest = spikes.round();
@@ -348,7 +348,7 @@ pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     (if is_count { nearest } else { spikes.floor() }).max(0.0) as usize
 }
 
-/// The trials that no other one beats in both spikes and error, by their spikes.
+/// Returns the settings that no other beats in both spikes and error, sorted by spikes.
 pub fn front(mut all: Vec<Scored>) -> Vec<Scored> {
     let key = |one: &Scored| one.tally.spikes as f64 / one.tally.samples as f64;
     all.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.tally.squares.total_cmp(&b.tally.squares)));

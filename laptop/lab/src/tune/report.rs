@@ -12,19 +12,19 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// The note on settings of a code that drifts.
+/// Note on the settings of a code that drifts.
 pub(crate) const DRIFTS: &str = "drifts: the errors of all its steps add up until a keyframe comes, and each flight's add up \
      otherwise: not to be relied on in another flight";
 
-/// Recordings of one channel, cut.
+/// The recordings of one channel, cut into stretches.
 pub struct Cut {
     /// The channel's name.
     pub name: String,
-    /// The stretches to tune on.
+    /// Stretches to tune on.
     pub train: Vec<Stretch>,
-    /// The stretches held out.
+    /// Stretches that are held out.
     pub held_out: Vec<Stretch>,
-    /// Each recording in one piece.
+    /// Each recording as one stretch.
     pub whole: Vec<Stretch>,
 }
 
@@ -35,27 +35,27 @@ pub struct Row {
     pub scheme: &'static str,
     /// The sample type.
     pub sample: String,
-    /// The parameters, as the file of a figure lists them.
+    /// The parameters, by the names that files and other commands use.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// The figures on the blocks that they were tuned on.
+    /// Figures on the blocks that were tuned on.
     pub tuned_on: Figures,
-    /// The figures on the blocks that were held out.
+    /// Figures on the blocks that were held out.
     pub held_out: Option<Figures>,
     /// The figures on whole recordings, coded in one piece.
     pub whole: Figures,
-    /// The paper's settings on the same blocks.
+    /// Figures of the paper's settings on the same blocks.
     pub paper: Option<Paper>,
-    /// The cost of the settings on a microcontroller.
+    /// Cost on a microcontroller.
     pub costs: Costs,
-    /// The part that the sample type adds to the RMSE of `f32`, in percent.
+    /// How much the sample type adds to the RMSE of `f32`, in percent.
     pub quantisation: Option<f64>,
-    /// Settings that the codec scored.
+    /// Number of settings that the codec scored.
     pub evaluated: usize,
-    /// Outcomes compared in exact arithmetic.
+    /// Number of outcomes that were compared in exact arithmetic.
     pub listed: usize,
     /// Whether all outcomes were compared.
     pub is_complete: bool,
-    /// Whether the search ended before its budget of settings.
+    /// Whether the search stopped before its budget of settings was spent.
     pub is_cut_short: bool,
     /// Notes for the user.
     pub notes: Vec<String>,
@@ -66,7 +66,7 @@ pub struct Row {
     brief: String,
 }
 
-/// The paper's settings.
+/// Figures of the paper's settings.
 #[derive(Debug, Serialize)]
 pub struct Paper {
     /// Figures on the stretches tuned on.
@@ -76,10 +76,10 @@ pub struct Paper {
 }
 
 impl Row {
-    /// The report on the settings that a search has found.
+    /// Reports on settings that a search has found.
     ///
     /// # Errors
-    /// Returns an error if the settings make no sense, which no search gives.
+    /// Returns an error if the settings are invalid, which those of a search never are.
     pub fn new(
         problem: &Problem,
         cut: &Cut,
@@ -129,11 +129,11 @@ impl Row {
         Ok(row)
     }
 
-    /// The reasons not to trust the settings.
+    /// Returns the reasons not to trust the settings.
     fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
-        /// Others may be better on held-out blocks by chance.
+        /// How much better other settings may be on held-out blocks by chance, as a factor of the RMSE.
         const BY_CHANCE: f64 = 1.25;
-        /// Blocks that are harder for any settings do not explain this much.
+        /// How much larger the RMSE may be on held-out blocks, as a factor, until overfitting is reported.
         const FAR: f64 = 1.5;
         let mut flags = Vec::new();
         if found.is_cut_short {
@@ -224,7 +224,7 @@ impl Row {
         flags
     }
 
-    /// The comments on the settings in their file.
+    /// Returns comments on the settings, for their file.
     pub fn comments(&self, channel: &str) -> Vec<String> {
         let Self { scheme, sample, tuned_on, held_out, .. } = self;
         let held_out = held_out.map_or(String::new(), |own| {
@@ -240,7 +240,7 @@ impl Row {
     }
 }
 
-/// The table of all rows, and the lines below it.
+/// Formats the table of all rows, and the lines below it.
 pub fn print(rows: &[&Row], core: &str, below: Option<f64>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -318,7 +318,7 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
     row.notes.iter().try_for_each(|note| writeln!(text, "  {note}"))
 }
 
-/// The reason that the best settings are not allowed, and how near they come.
+/// Returns why the best settings are not allowed, and how near they come.
 pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
     let settings = problem
         .train

@@ -1,4 +1,4 @@
-//! A request for parameters, and what comes of it.
+//! Requests for parameters, and their results.
 
 use super::RequestKind;
 use super::problem::front;
@@ -14,44 +14,44 @@ use crate::watch::{Progress, Watch};
 use catalogue::run::{Asked, Given, SampleType, Words};
 use std::time::{Duration, Instant};
 
-/// Logs, schemes and a goal, for [`tune`].
+/// The logs, schemes and goal of a search, for [`tune`].
 pub struct TuneRequest {
-    /// Logs that are tuned on together, each with recordings of the same channels.
+    /// Logs that are tuned on together; all have recordings of the same channels.
     pub logs: Vec<Vec<Recording>>,
     /// The schemes whose parameters are searched, each by itself.
     pub schemes: Vec<Scheme>,
     /// Sample type of the codec that is scored.
     pub sample: SampleType,
-    /// Parameters that stay as they are given.
+    /// Parameters that keep the given values.
     pub fixed: Asked,
-    /// Whether the single taps of a filter are searched, beyond its shape, length and sum.
+    /// Whether the taps of a filter are searched one by one, rather than by shape, length and sum.
     pub free_taps: bool,
-    /// The goal; the least error at the efficiency of the paper's settings unless given.
+    /// The goal; if `None`, the least error at the efficiency of the paper's settings.
     pub goal: Option<Goal>,
-    /// The most that settings may cost.
+    /// Upper limits on what settings may cost.
     pub limits: Limits,
-    /// Core of the measured table that tells instructions.
+    /// Core whose measured instruction counts apply.
     pub core: String,
-    /// The part of each recording that is held out, to score the settings on.
+    /// The part of each recording that is held out, on which the settings are scored too.
     pub hold_out: HoldOut,
-    /// Frequency in Hz below which the error is told too.
+    /// Frequency in Hz below which the error is also reported.
     pub below: Option<f64>,
-    /// Number of settings of each scheme and channel to score, 1 or more.
+    /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
-    /// Seconds after which the search ends, which makes the result depend on the machine's speed.
+    /// Seconds after which the search stops; the result then depends on the machine's speed.
     pub seconds: Option<f64>,
     /// Seed of the search: the same seed and number of settings give the same result on every machine.
     pub seed: u64,
-    /// Whether recordings are searched that say little: noise, too short, full of holes, clipped.
+    /// Whether to search even if a recording is a bad guide: only noise, too short, full of holes, or clipped.
     pub anyway: bool,
 }
 
 impl TuneRequest {
-    /// Settings of each scheme and channel to score unless said otherwise.
+    /// Default number of settings to score for each scheme and channel.
     pub const EVALUATIONS: usize = 4000;
 
-    /// Asks for the parameters of schemes on logs: in `f32`, for the paper's efficiency, with three tenths of 20 blocks
-    /// held out.
+    /// Requests the parameters of schemes on logs: in `f32`, for the efficiency of the paper's settings, with 30 % of
+    /// 20 blocks held out.
     pub fn new(logs: Vec<Vec<Recording>>, schemes: Vec<Scheme>) -> Self {
         Self {
             logs,
@@ -71,10 +71,10 @@ impl TuneRequest {
         }
     }
 
-    /// Refuses what makes no sense together.
+    /// Checks the request.
     ///
     /// # Errors
-    /// A setting is out of its range, or does not go with the schemes.
+    /// Returns an error if a setting is out of its range, or does not go with the schemes.
     pub fn check(&self) -> Result<()> {
         let HoldOut { blocks, part } = self.hold_out;
         if !(0.0..1.0).contains(&part) {
@@ -120,7 +120,7 @@ impl TuneRequest {
         }
     }
 
-    /// The channels of all logs, cut, and what a user should know of them.
+    /// Cuts the channels of all logs; also returns notes for the user.
     fn channels(&self) -> Result<(Vec<Cut>, Vec<String>)> {
         let (mut cuts, mut notes): (Vec<Cut>, _) = (Vec::new(), Vec::new());
         for log in &self.logs {
@@ -155,32 +155,32 @@ impl TuneRequest {
 
 /// The settings found for one channel.
 pub struct Tuned {
-    /// The channel, with its blocks.
+    /// The channel, cut into stretches.
     pub channel: Cut,
-    /// The schemes that reach the goal, the best first; empty for [`Goal::Front`].
+    /// The schemes that reach the goal, with their settings, the best first; empty for [`Goal::Front`].
     pub rows: Vec<(Scheme, Row)>,
-    /// The fronts, for [`Goal::Front`].
+    /// The front of each scheme, for [`Goal::Front`].
     pub curves: Vec<Curve>,
-    /// The reason that the other schemes do not reach the goal, and how near they come.
+    /// Why each of the other schemes misses the goal, and how near it comes.
     pub missed: Vec<Words>,
-    /// The reasons not to trust the recordings, if they were searched anyway.
+    /// Reasons not to trust the recordings, if they were searched anyway.
     pub notes: Vec<String>,
 }
 
-/// The front of one scheme: the settings that no other ones beat in spikes and error.
+/// The front of one scheme: the settings that no other beats in both spikes and error.
 pub struct Curve {
     /// The scheme.
     pub scheme: Scheme,
     /// Efficiency and RMSE of each setting.
     pub points: Vec<(f64, f64)>,
-    /// The figures of the paper's setting.
+    /// Efficiency and RMSE of the paper's settings.
     pub paper: Option<(f64, f64)>,
 }
 
-/// Searches the parameters of schemes on the channels of logs.
+/// Searches the parameters of schemes on the channels of logs. If no scheme reaches the goal, the result says so.
 ///
 /// # Errors
-/// The request or a recording is not good. If nothing reaches the goal, the result says so.
+/// Returns an error if the request is invalid, or if a recording is unfit for tuning.
 pub fn tune(request: &TuneRequest, watch: &Watch) -> Result<Vec<Tuned>> {
     request.check()?;
     let (channels, notes) = request.channels()?;
@@ -225,7 +225,7 @@ fn so_far(channel: &str, scheme: Scheme, best: &Scored) -> String {
     format!("{channel} {}: {state} {efficiency:.2} %, RMSE {rmse:.4}", scheme.name())
 }
 
-/// The result of a scheme on a channel.
+/// The outcome of one scheme on one channel.
 enum Outcome {
     Row(Box<Row>),
     Curve(Curve),
@@ -261,7 +261,7 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
     Ok(Outcome::Row(Box::new(Row::new(&problem, channel, &found, best, request.below)?)))
 }
 
-/// The curve of a front, by its score on held-out blocks where there are any.
+/// Returns the curve of a front, scored on held-out blocks if there are any.
 fn curve(problem: &Problem, cut: &Cut, found: &Found, paper: Option<&Scored>) -> Curve {
     let stretches = if cut.held_out.is_empty() { &cut.train } else { &cut.held_out };
     let scored = |one: &Scored| {

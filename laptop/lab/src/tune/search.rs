@@ -1,6 +1,6 @@
-//! The search: exact where a scheme lists its outcomes, by evolution elsewhere.
+//! The search: exact if a scheme can list its outcomes, by evolution otherwise.
 //!
-//! How far it goes is a number of settings that the codec scores, so that the result is the same on every machine.
+//! Its length is counted in settings that the codec scores, so that the result is the same on every machine.
 
 use super::End;
 use super::ends::ends;
@@ -12,15 +12,15 @@ use catalogue::run::{Asked, LANES, Value};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
-/// The limits of a search: settings, time, and the user's wish.
+/// When a search stops: after a number of settings, at a time, or on request.
 pub struct Budget<'a> {
-    /// Settings to try at most.
+    /// Maximum number of settings to score.
     pub evaluations: usize,
-    /// The time at which to stop, which makes the result depend on how fast the machine is.
+    /// Time at which to stop; the result then depends on the machine's speed.
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Told how many settings were tried, and the best so far.
+    /// Called with the number of settings scored, and the best so far.
     pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
 }
 
@@ -28,41 +28,41 @@ pub struct Budget<'a> {
 pub struct Found {
     /// The best settings, allowed or not.
     pub best: Option<Scored>,
-    /// Settings within the limits that no other one beats in both spikes and error.
+    /// The settings within the limits that no other beats in both spikes and error.
     pub front: Vec<Scored>,
-    /// The number of settings scored by the codec.
+    /// Number of settings that the codec scored.
     pub evaluated: usize,
-    /// The number of outcomes compared in exact arithmetic, where the scheme lists them.
+    /// Number of outcomes that were compared in exact arithmetic, if the scheme can list them.
     pub listed: usize,
     /// Whether all outcomes were compared.
     pub is_complete: bool,
-    /// Whether the search ended before its budget of settings, by its deadline or by somebody's wish.
+    /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
-    /// The ends of the search at which the best settings lie, though the scheme has values beyond.
+    /// The ends of the search at which the best settings lie, if the scheme allows values beyond.
     pub ends: Vec<End>,
 }
 
-/// The method of a search.
+/// How to search.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    /// Seed of the generator.
+    /// Seed of the random generator.
     pub seed: u64,
-    /// The taps of a filter themselves.
+    /// Whether the taps of a filter are searched one by one.
     pub free_taps: bool,
 }
 
-/// Settings that are tried before anybody is asked whether to go on.
+/// Number of settings that are scored between two checks whether to stop.
 pub(super) const BATCH: usize = 64;
-/// Parents that an evolution starts from, at least and at most.
+/// Smallest and largest number of parents with which an evolution starts.
 const PARENTS: (usize, usize) = (10, 100);
-/// Goals between which a front is spread, in percent of samples without a spike.
+/// Efficiencies at which a front is searched, in percent.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
-/// The least that a most is lowered to.
+/// Smallest value to which [`Run::tighten`] lowers a maximum.
 const ROOM: usize = 16;
-/// The value of what cannot even be built.
+/// Value of settings that cannot be built.
 const NONE: f64 = 1e30;
 
-/// Looks for the best settings.
+/// Searches for the best settings.
 pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     let rounded: Vec<Vec<f64>> =
         problem.train.iter().map(|stretch| stretch.rounded(problem.sample)).collect();
@@ -111,11 +111,11 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     run.found
 }
 
-/// A search under way.
+/// A running search.
 pub(super) struct Run<'a> {
     pub problem: &'a Problem<'a>,
     pub budget: &'a Budget<'a>,
-    /// The stretches to tune on, as the sample type holds them.
+    /// The stretches to tune on, rounded to the sample type.
     pub rounded: &'a [Vec<f64>],
     pub found: Found,
     least: f64,
@@ -132,7 +132,7 @@ impl Run<'_> {
         self.found.is_cut_short
     }
 
-    /// Scores as many of these options as the budget has left.
+    /// Scores these options, as many as the budget has left.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;
@@ -158,7 +158,7 @@ impl Run<'_> {
         scored
     }
 
-    /// Scores points of a space, as far as the budget goes, and gives each its value for a goal.
+    /// Scores points of a space, as many as the budget has left; returns each with its value for a goal.
     fn tried(&mut self, space: &Space, goal: Goal, points: Vec<Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
         let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
         let scored = self.try_all(&options);
@@ -166,7 +166,7 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Evolves settings for a goal, until so many are scored.
+    /// Evolves settings for a goal, until `until` settings are scored.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
         let own = until.saturating_sub(self.found.evaluated);
         let before = self.found.evaluated;
@@ -196,7 +196,8 @@ impl Run<'_> {
         }
     }
 
-    /// Moves each point to the best value of the axis that a pass compares, where the scheme has one.
+    /// Moves each point along one axis to the best of several values, which the scheme compares in a single pass over
+    /// the signal. Leaves the points as they are if the scheme cannot do so.
     fn swept(
         &self,
         space: &Space,
@@ -244,8 +245,8 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a most that the signal does not come near to twice what it comes to, as more may cost time. Not below
-    /// [`ROOM`]: held-out blocks and other recordings may jump where these do not.
+    /// Lowers a maximum that costs time, such as the number of spikes in a sample, to twice what the signal needs. It
+    /// stays at [`ROOM`] or above: held-out blocks and other recordings may jump further.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;
@@ -267,9 +268,9 @@ impl Run<'_> {
         Some(())
     }
 
-    /// An evolution strategy on the taps of the best filter so far, again and again.
+    /// Runs an evolution strategy on the taps of the best filter so far, repeatedly.
     fn free(&mut self, space: &Space, seed: u64) {
-        /// Generations without progress after which it begins anew.
+        /// Number of generations without progress after which the strategy restarts.
         const PATIENCE: usize = 60;
         for round in 0.. {
             let Some(best) = self.found.best.clone() else { return };
@@ -294,7 +295,7 @@ impl Run<'_> {
     }
 }
 
-/// The part of a time that is one scheme's, of so many that are still to come.
+/// Returns the deadline of the next scheme, if `left` schemes share the time until `end`.
 pub fn share(end: Option<Instant>, left: usize) -> Option<Instant> {
     let end = end?;
     // A browser's WebAssembly has no clock to ask, and no deadline either.

@@ -1,18 +1,18 @@
-//! The space of a search: the searched parameters of a scheme as numbers between bounds, and back to options.
+//! The space of a search: maps points of the unit cube to options, and back.
 
 use super::chance::Chance;
 use crate::scheme::Scheme;
 use catalogue::run::{Asked, Value, taps};
 use catalogue::{Found, Parameter, Search, Unit};
 
-/// The figures of the signal on which the bounds depend.
+/// The statistics of the signal on which the bounds depend.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Its smallest sample.
+    /// Smallest sample.
     pub min: f64,
-    /// Its largest sample.
+    /// Largest sample.
     pub max: f64,
-    /// Its mean.
+    /// Mean of the samples.
     pub mean: f64,
 }
 
@@ -22,7 +22,7 @@ impl Extent {
     }
 }
 
-/// An axis of the search: one number of the settings.
+/// An axis of the search: one number of the settings, and its bounds.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub name: &'static str,
@@ -31,36 +31,36 @@ pub(super) struct Axis {
     pub high: f64,
 }
 
-/// The parameter that a number becomes.
+/// How a number on an axis becomes a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
-    /// The logarithm of a number in this unit.
+    /// Logarithm of the parameter, in multiples of this unit.
     Log(f64),
-    /// An offset from a value, in parts of a range.
+    /// Offset from the first value, in multiples of the second.
     Around(f64, f64),
-    /// A part of the filter's sum.
+    /// Share of the filter's sum.
     OfFilter,
-    /// The logarithm of a number of thresholds.
+    /// Logarithm of a factor of the threshold.
     Thresholds,
     Whole,
-    /// A whole number, a most that settings allow.
+    /// Whole number that is a maximum, such as that of spikes in a sample.
     Most,
     Words(&'static [&'static str]),
-    /// The logarithm of a number of taps.
+    /// Logarithm of the number of taps.
     Length,
     Shape,
     Alpha,
-    /// The logarithm of the filter's sum in heights of the mean above the shift: of the samples to a spike at the mean.
-    /// The sum lies between these.
+    /// Logarithm of the filter's sum, in units of the height of the mean above the shift. It is the number of samples
+    /// for each spike when the signal is at its mean. The two values bound the sum itself.
     Sum(f64, f64),
-    /// A tap in this unit.
+    /// Tap, in multiples of this unit.
     Tap(f64),
 }
 
 /// The shapes of a filter; the last one takes an alpha.
 const SHAPES: [&str; 3] = ["triang", "hann", "gauss"];
 
-/// The numbers of a scheme's search.
+/// The axes of a scheme's search.
 #[derive(Clone, Debug)]
 pub(crate) struct Space {
     axes: Vec<Axis>,
@@ -68,17 +68,17 @@ pub(crate) struct Space {
     extent: Extent,
 }
 
-/// The axis whose values one pass over the signal compares.
+/// The axis along which a scheme compares many values in one pass over the signal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inner {
-    /// Its place among the axes.
+    /// Index of the axis.
     pub axis: usize,
-    /// Whether the axis is the filter's sum, which is multiplied, and not the threshold.
+    /// Whether the axis is the filter's sum, so that values are factors of it; otherwise it is the threshold.
     pub is_factor: bool,
 }
 
 impl Space {
-    /// The space of all that these options leave open.
+    /// Makes the space of the parameters that `fixed` leaves open.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {
@@ -91,7 +91,7 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// The taps of a filter themselves, besides what is no filter and no whole number.
+    /// Returns the space in which the filter's axes are replaced by its taps, and integer parameters are fixed.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -112,24 +112,24 @@ impl Space {
         Self { axes, fixed, extent: self.extent }
     }
 
-    /// How many numbers there are.
+    /// Returns the number of axes.
     pub(crate) fn len(&self) -> usize {
         self.axes.len()
     }
 
-    /// The numbers, with the bounds between which each is searched.
+    /// Returns the axes, with the bounds of each.
     pub(super) fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// The number that a place in 0 to 1 means on an axis.
+    /// Returns the number at `place`, 0 to 1, between the bounds of an axis.
     pub(crate) fn number(&self, axis: usize, place: f64) -> f64 {
         let Axis { low, high, .. } = self.axes[axis];
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// The axis whose values a pass compares: the threshold as a part of the filter's sum, or the sum itself where the
-    /// scheme has no threshold.
+    /// Returns the axis along which a scheme can compare many values in one pass: the threshold as a share of the
+    /// filter's sum, or the sum itself if the scheme has no threshold.
     pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
         let has_threshold =
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
@@ -142,9 +142,9 @@ impl Space {
         Some(Inner { axis, is_factor: !has_threshold })
     }
 
-    /// Points to start from, spread over each axis, for codes of which `share` of the samples may spike. Filters start
-    /// where the signal says that good ones are: their sum is what the code reaches if every sample spikes, so that it
-    /// reaches the largest sample, and the mean with as many spikes as may be.
+    /// Returns points to start from, spread over each axis, for a code that may spike at a share `share` of the
+    /// samples. Filters start with a sum at which the code, spiking at every sample, reaches the largest sample, and
+    /// reaches the mean with as many spikes as allowed.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);
@@ -176,7 +176,7 @@ impl Space {
         points
     }
 
-    /// Every combination of the whole numbers and words, as options.
+    /// Returns every combination of the integer and word parameters, as options.
     pub(crate) fn combinations(&self) -> Vec<Asked> {
         let mut all = vec![Asked::default()];
         for axis in
@@ -202,14 +202,14 @@ impl Space {
         all
     }
 
-    /// The options that a point of the unit cube means.
+    /// Converts a point of the unit cube to options.
     pub(crate) fn options(&self, point: &[f64]) -> Asked {
         let numbers: Vec<f64> =
             point.iter().enumerate().map(|(axis, place)| self.number(axis, *place)).collect();
         self.meant(&numbers)
     }
 
-    /// The options that numbers on all axes mean, also beyond the bounds.
+    /// Converts numbers on all axes, which may lie beyond the bounds, to options.
     pub(super) fn meant(&self, numbers: &[f64]) -> Asked {
         let mut options = self.fixed.clone();
         let (mut filter, mut free) = (Shaped::default(), Vec::new());
@@ -253,13 +253,13 @@ impl Space {
         options
     }
 
-    /// How far the signal's mean lies above a shift, or its minimum; at least a little.
+    /// Returns the height of the signal's mean above a shift, or above the minimum; at least a little above 0.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())
     }
 
-    /// The point that means these options, as far as there is one; the middle of an axis otherwise.
+    /// Converts options to a point; a value that has no place on its axis gives the middle.
     pub(crate) fn point(&self, options: &Asked) -> Vec<f64> {
         let number = |name: &str| options.number(name);
         let taps = taps_of(options).unwrap_or_default();
@@ -298,7 +298,7 @@ impl Space {
     }
 }
 
-/// A filter by its shape.
+/// A filter given by its shape.
 #[derive(Default)]
 struct Shaped {
     shape: &'static str,
@@ -318,7 +318,7 @@ impl Shaped {
     }
 }
 
-/// The taps of the filter, by its shape or as a list.
+/// Returns the taps of the filter, given by its shape or as a list.
 fn taps_of(asked: &Asked) -> Option<Vec<f64>> {
     match asked.get("filter")? {
         Value::Word(shape) => taps(shape).ok(),
@@ -359,7 +359,7 @@ mod tests {
     use crate::scheme::Scheme;
     use catalogue::run::Asked;
 
-    /// Every corner and the middle of every scheme's space are options that the scheme takes.
+    /// The scheme accepts the options at every corner of its space, and in the middle.
     #[test]
     fn every_corner_is_understood() {
         for scheme in Scheme::all() {

@@ -1,23 +1,24 @@
-//! An evolution strategy with a step for each axis: separable CMA-ES, after Ros and Hansen (2008), for filters' taps.
+//! An evolution strategy for the taps of a filter, with a step size for each axis: separable CMA-ES, after Ros and
+//! Hansen (2008).
 
 use super::chance::Chance;
 
-/// Points asked for at once.
+/// Number of points in a generation.
 const POINTS: usize = 16;
-/// Points of them that the next ones come from.
+/// Number of points of a generation from which the next is made.
 const PARENTS: usize = POINTS / 2;
 
-/// Asks for points, and is told which are better.
+/// An optimiser that asks for the values of points.
 pub(super) struct Strategy {
     chance: Chance,
     mean: Vec<f64>,
-    /// The length of a step along all axes.
+    /// Step size common to all axes.
     step: f64,
     /// The variance along each axis.
     variances: Vec<f64>,
-    /// The way of the mean, in steps.
+    /// Evolution path of the mean, in steps.
     path: Vec<f64>,
-    /// The way of the mean over more steps, from which the variances are learnt.
+    /// Evolution path over more generations, from which the variances are learnt.
     long_path: Vec<f64>,
     weights: Vec<f64>,
     mass: f64,
@@ -25,7 +26,7 @@ pub(super) struct Strategy {
 }
 
 impl Strategy {
-    /// Starts from a point, with a first step for each axis.
+    /// Starts at a point, with an initial step size for each axis.
     pub(super) fn new(seed: u64, from: Vec<f64>, steps: &[f64]) -> Self {
         let weight = |place: usize| (PARENTS as f64 + 0.5).ln() - (place as f64 + 1.0).ln();
         let sum: f64 = (0..PARENTS).map(weight).sum();
@@ -44,7 +45,7 @@ impl Strategy {
         }
     }
 
-    /// Asks for the values of a generation of points.
+    /// Returns a generation of points whose values are wanted.
     pub(super) fn ask(&mut self) -> Vec<Vec<f64>> {
         let Self { chance, mean, variances, step, .. } = self;
         let mut point = || {

@@ -1,4 +1,4 @@
-//! Stretches of recordings, some to tune on and some held out.
+//! Cuts recordings into stretches to tune on and stretches to hold out.
 
 use super::RequestKind;
 use crate::Result;
@@ -7,19 +7,19 @@ use crate::trial::Recording;
 use catalogue::run::{Given, SampleType};
 use std::ops::Range;
 
-/// Samples in a row, coded in one piece from the first of them on, and the ranges of them that are scored.
+/// Consecutive samples that are coded in one piece, and the ranges of them that are scored.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// The samples that are coded.
     pub values: Vec<f64>,
     /// Samples a second, if known.
     pub rate: Option<f64>,
-    /// The ranges that are scored, in order and apart from each other.
+    /// Ranges of samples that are scored, in order and disjoint.
     pub scored: Vec<Range<usize>>,
 }
 
 impl Stretch {
-    /// All of a recording, a stretch for each segment.
+    /// Makes a stretch of each segment of a recording.
     pub fn whole(recording: &Recording) -> Vec<Self> {
         let stretch = |own: &Range<usize>| {
             let scored = std::iter::once(0..own.len()).collect();
@@ -28,27 +28,27 @@ impl Stretch {
         recording.segments.iter().map(stretch).collect()
     }
 
-    /// Samples of a recording of which these ranges, counted from the first of them, are scored.
+    /// Makes a stretch of the samples in `own`, with scored ranges counted from its first sample.
     fn scored(recording: &Recording, own: &Range<usize>, scored: Vec<Range<usize>>) -> Self {
         Self { values: recording.values[own.clone()].to_vec(), rate: recording.rate, scored }
     }
 
-    /// Number of samples that are scored.
+    /// Returns the number of samples that are scored.
     pub fn samples(&self) -> usize {
         self.scored.iter().map(Range::len).sum()
     }
 
-    /// How long the scored samples last, if the rate is known.
+    /// Returns the duration of the scored samples in seconds, if the rate is known.
     pub fn seconds(&self) -> Option<f64> {
         self.rate.map(|rate| self.samples() as f64 / rate)
     }
 
-    /// Whether a sample is scored.
+    /// Returns whether a sample is scored.
     pub fn is_scored(&self, sample: u64) -> bool {
         self.scored.iter().any(|own| (own.start as u64..own.end as u64).contains(&sample))
     }
 
-    /// The samples as a sample type holds them.
+    /// Returns the samples rounded to a sample type.
     pub fn rounded(&self, sample: SampleType) -> Vec<f64> {
         self.values.iter().map(|value| held(sample, *value)).collect()
     }
@@ -57,26 +57,26 @@ impl Stretch {
 /// How much of a recording is held out.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldOut {
-    /// Number of blocks into which it is cut.
+    /// Number of blocks into which the recording is cut.
     pub blocks: usize,
-    /// The part of the blocks that is held out.
+    /// Share of the blocks that is held out.
     pub part: f64,
 }
 
-/// A block of fewer samples says nothing.
+/// Fewest samples in a block.
 const SHORTEST: usize = 20;
 
-/// The offset with which the blocks held out are evenly spread, and neither the first nor the last.
+/// Offset of the held-out blocks, which are spread evenly, so that neither the first nor the last block is held out.
 const OFFSET: f64 = 0.35;
 
-/// The stretches to tune on, and those held out.
+/// Cuts a recording; returns the stretches to tune on, and those held out.
 ///
-/// Blocks to tune on that are next to each other are one stretch. What is held out is coded as it would fly: each segment in
-/// one piece, through the blocks to tune on as well, of which only the held-out ones are scored. Coded block by block, a code
-/// that drifts would start from the right value in each, and hide how far it goes astray.
+/// Adjacent blocks to tune on form one stretch. Held-out blocks are coded as in flight: each segment is coded in one
+/// piece, including the blocks to tune on, and only the held-out blocks are scored. If each block were coded alone, a
+/// code that drifts would start it from the right value, and its drift would not show.
 ///
 /// # Errors
-/// The blocks are too short, or none is left to tune on.
+/// Returns an error if the blocks are too short, or if none is left to tune on.
 pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Vec<Stretch>)> {
     let HoldOut { blocks, part } = hold_out;
     let samples = recording.values.len();
@@ -127,7 +127,7 @@ mod tests {
     use super::{HoldOut, Stretch, cut};
     use crate::trial::Recording;
 
-    /// 5 blocks, of which the second and the fifth are held out.
+    /// The second and the fifth of 5 blocks are held out.
     #[test]
     fn what_is_held_out_is_coded_with_what_is_before_it() {
         let values: Vec<f64> = (0..200).map(f64::from).collect();

@@ -1,4 +1,4 @@
-//! The counts that were: none may grow by more than a twentieth.
+//! Compares counts with a recorded baseline: none may grow by more than a twentieth.
 
 use super::{figures::Row, measured::Measured};
 use crate::common::paths;
@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
-/// What the baseline has: the usual core and the smallest one.
+/// Cores in the baseline: the usual one and the smallest.
 pub const CORES: [&str; 2] = ["M4F", "M0"];
 
 const ALLOWED: f64 = 1.05;
@@ -39,7 +39,7 @@ pub fn write(measured: &Measured) -> Result<()> {
     Ok(())
 }
 
-/// Prints every difference on a core. Growth fails, unless another compiler may be its cause.
+/// Prints every difference on a core. Fails if a count has grown, unless another compiler may be the cause.
 pub fn compare(core: &str, measured: &Measured) -> Result<()> {
     let file = fs::read_to_string(path())
         .context("no baseline; `cargo bench-target --baseline` writes it")?;
@@ -58,7 +58,7 @@ pub fn compare(core: &str, measured: &Measured) -> Result<()> {
     Ok(())
 }
 
-/// Prints them, and returns how many are too much.
+/// Prints the differences; returns how many are too large.
 fn differences(old: &BTreeMap<String, f64>, new: &BTreeMap<String, f64>) -> usize {
     let mut grown = 0;
     for (key, &old) in old {

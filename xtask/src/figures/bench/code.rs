@@ -1,4 +1,4 @@
-//! How many bytes of code a codec is, from the image's symbols and its listing.
+//! Measures the size of a codec's code, from the image's symbols and its disassembly.
 
 use super::listing;
 use crate::common::shell;
@@ -8,14 +8,14 @@ use std::{
     path::Path,
 };
 
-/// Rust's functions by their address. The runtime's (`memcpy`, floats without a unit) are left out:
-/// a program has them once, whatever codecs it uses.
+/// Rust functions by their address. Those of the runtime (`memcpy`, software floating point) are left out: a program
+/// has them once, whatever codecs it uses.
 pub struct Code(BTreeMap<u32, Function>);
 
 #[derive(Default)]
 struct Function {
     bytes: u32,
-    /// Where it branches to, its own loops among them.
+    /// Addresses to which it branches, including those of its own loops.
     branches: BTreeSet<u32>,
 }
 
@@ -33,11 +33,12 @@ impl Code {
         Ok(Self(functions))
     }
 
-    /// The bytes of the function there, and of those that it calls and that were not inlined.
+    /// Returns the size in bytes of the function at this address, with the functions that it calls and that were not
+    /// inlined.
     ///
-    /// A slice form that falls back on the sample form, for what comes before the first sample and for
-    /// samples that are not finite, is counted with it: it does not work without. Who takes one sample
-    /// at a time links the sample form alone, which is counted for itself.
+    /// If a slice form calls the sample form, for samples before the first one or not finite, that form is included, as
+    /// the slice form does not work without it. Users of single samples link only the sample form, which is measured by
+    /// itself.
     pub fn bytes(&self, address: u32) -> u32 {
         let (mut found, mut waiting) = (BTreeSet::new(), vec![address & !1]);
         let mut bytes = 0;
@@ -53,7 +54,7 @@ impl Code {
     }
 }
 
-/// `08000400 0000003e t _RNv…`: address, size, kind and name.
+/// Parses `08000400 0000003e t _RNv…`: address, size, kind and name.
 fn function(line: &str) -> Option<(u32, Function)> {
     let mut words = line.split(' ');
     let address = u32::from_str_radix(words.next()?, 16).ok()?;
@@ -63,7 +64,7 @@ fn function(line: &str) -> Option<(u32, Function)> {
     counts.then(|| (address, Function { bytes, ..Function::default() }))
 }
 
-/// `rustc version 1.96.0 (…)`, as the compiler wrote it into the image.
+/// Returns `rustc version 1.96.0 (…)`, as the compiler wrote it into the image.
 pub fn compiler(image: &Path) -> Result<String> {
     let mut readelf = shell::command("arm-none-eabi-readelf");
     let comment = shell::output(readelf.args(["-p", ".comment"]).arg(image))?;

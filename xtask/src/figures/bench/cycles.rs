@@ -1,7 +1,8 @@
-//! Cycles of what a board executes, by the technical reference manuals' tables, from memory without wait states.
+//! Counts the cycles of what a board executes, by the tables of the technical reference manuals, for memory without
+//! wait states.
 //!
-//! A Cortex-M0+ and a Cortex-M0 take the numbers of their tables, exactly (ARM DDI 0484C and 0432C, single-cycle
-//! multiplier). A Cortex-M3 and a Cortex-M4F have bounds (ARM DDI 0337I and 0439B, section 3.3): how a load pairs with
+//! Counts for a Cortex-M0+ and a Cortex-M0 are exact (ARM DDI 0484C and 0432C, single-cycle multiplier). Those for a
+//! Cortex-M3 and a Cortex-M4F are bounds (ARM DDI 0337I and 0439B, section 3.3): it is not known how a load pairs with
 //! its neighbours, how much of the pipeline a branch refills, and how long a division takes.
 
 use super::listing::{self, Instruction};
@@ -15,16 +16,16 @@ use std::{
     sync::Mutex,
 };
 
-/// Which manual is followed. Of each pair, the first is the lower bound.
+/// The manual that is followed. Of each pair of counts, the first is the lower bound.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Model {
-    /// A Cortex-M0+ and a Cortex-M0, both exact.
+    /// Cortex-M0+ and Cortex-M0: the pair holds an exact count for each.
     M0,
     M3,
     M4,
 }
 
-/// What an instruction takes, and what more if it branches.
+/// Cycles of an instruction, and the additional ones if it branches.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cycles {
     pub once: [u32; 2],
@@ -44,7 +45,7 @@ const fn if_taken(more: [u32; 2]) -> Cycles {
 }
 
 impl Model {
-    /// That of a board's core, if there is one.
+    /// Returns the model of a board's core, if there is one.
     pub fn of(board: &Board) -> Option<Self> {
         match board.core {
             "M0" => Some(Self::M0),
@@ -54,7 +55,7 @@ impl Model {
         }
     }
 
-    /// What an instruction takes after the one before it in memory; an error if no table has it.
+    /// Returns the cycles of an instruction, given the one before it in memory; an error if it is in no table.
     pub fn cycles(self, before: Option<&Instruction>, one: &Instruction) -> Result<Cycles> {
         let found = match self {
             Self::M0 => small(one),
@@ -73,7 +74,7 @@ impl Model {
     }
 
     fn large(self, before: Option<&Instruction>, one: &Instruction) -> Option<Cycles> {
-        /// Of a pipeline that is refilled.
+        /// Cycles to refill the pipeline.
         const REFILL: [u32; 2] = [1, 3];
         let [least, most] = REFILL;
         if one.is_conditional_branch() {
@@ -118,7 +119,7 @@ impl Model {
         })
     }
 
-    /// The floating-point unit's (ARM DDI 0439B, table 7-1).
+    /// Returns the cycles of a floating-point instruction (ARM DDI 0439B, table 7-1).
     fn float(self, before: Option<&Instruction>, one: &Instruction) -> Option<Cycles> {
         if !one.name.starts_with('v') {
             return None;
@@ -148,7 +149,7 @@ impl Model {
     }
 }
 
-/// A Cortex-M0+, then a Cortex-M0.
+/// Returns the cycles on a Cortex-M0+ and on a Cortex-M0.
 fn small(one: &Instruction) -> Option<Cycles> {
     if one.is_conditional_branch() {
         return Some(if_taken([1, 2]));
@@ -168,7 +169,7 @@ fn small(one: &Instruction) -> Option<Cycles> {
     })
 }
 
-/// One cycle on every core.
+/// Returns whether the instruction takes one cycle on every core.
 fn is_simple(name: &str) -> bool {
     const NAMES: &str = " mov movw movt mvn add addw adc sub subw sbc rsb neg mul and orr orn eor bic cmp cmn tst teq \
         lsl lsr asr ror rrx rev rev16 revsh rbit clz uxtb uxth sxtb sxth uxtab uxtah sxtab sxtah ubfx sbfx bfi bfc \
@@ -177,7 +178,7 @@ fn is_simple(name: &str) -> bool {
     is_in(name) || name.strip_suffix('s').is_some_and(is_in)
 }
 
-/// One on a Cortex-M4, and what a Cortex-M3 has not or has named above.
+/// Returns whether the instruction takes one cycle on a Cortex-M4; a Cortex-M3 has it not, or it was handled before.
 fn is_simple_dsp(name: &str) -> bool {
     let beginnings = [
         "mla", "mls", "smul", "umul", "smla", "umla", "umaal", "smm", "smu", "sml", "qadd", "qsub",
@@ -187,7 +188,7 @@ fn is_simple_dsp(name: &str) -> bool {
     beginnings.iter().any(|beginning| name.starts_with(beginning))
 }
 
-/// The image's instructions, and what each takes.
+/// Returns the image's instructions with their cycles.
 pub fn of_image(model: Model, image: &Path) -> Result<Vec<(Instruction, Cycles)>> {
     let all = listing::of(image)?;
     let mut found = Vec::new();
@@ -199,7 +200,7 @@ pub fn of_image(model: Model, image: &Path) -> Result<Vec<(Instruction, Cycles)>
     Ok(found)
 }
 
-/// The same as the plugin reads it.
+/// Formats the image's instructions with their cycles for the emulator's plugin.
 fn table(model: Model, image: &Path) -> Result<String> {
     let mut text = String::new();
     for (one, Cycles { once: [least, most], taken }) in of_image(model, image)? {
@@ -209,8 +210,8 @@ fn table(model: Model, image: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// Has the emulator add up cycles for the image, where its core has a model. The firmware reads them from a file in the
-/// directory that the emulator is started in.
+/// Makes the emulator count cycles for the image, if there is a model of its core. The firmware reads them from a file
+/// in the directory in which the emulator runs.
 pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
     let Some(model) = Model::of(board) else { return qemu::run_counting(board, image) };
     let place = image.with_extension("cycles");
@@ -225,7 +226,7 @@ pub fn run_counting(board: &Board, image: &Path) -> Result<String> {
     qemu::run_counting_with(board, image, &place, &plugin)
 }
 
-/// Compiles the plugin for the emulator that is there.
+/// Compiles the plugin for the installed emulator.
 fn plugin() -> Result<PathBuf> {
     static ONE: Mutex<()> = Mutex::new(());
     let _one = ONE.lock();
@@ -251,7 +252,7 @@ fn plugin() -> Result<PathBuf> {
 mod tests {
     use super::{listing::instructions, *};
 
-    /// The lines of a listing, and what each takes.
+    /// Returns the cycles of the lines of a disassembly.
     fn costs(model: Model, lines: &[&str]) -> Vec<Cycles> {
         let listing: String = lines
             .iter()
@@ -273,7 +274,7 @@ mod tests {
         [0, 1].map(|at| all.iter().map(|one| one.once[at]).sum())
     }
 
-    /// The examples of ARM DDI 0337I, section 3.3.3, with the least that it says.
+    /// The expected counts are the examples of ARM DDI 0337I, section 3.3.3, with its lower bounds.
     #[test]
     fn loads_pair_as_the_manual_says() {
         let least = |lines: &[&str]| sum(Model::M3, lines)[0];

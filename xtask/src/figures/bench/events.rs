@@ -1,30 +1,29 @@
-//! What an event costs on its way, and six channels in all.
+//! Costs of an event on its way, and of six channels in total.
 
 use super::figures::{self, cycles_max, cycles_mean, mean};
 use crate::programs::boards::Board;
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
-/// What one direction of a link, format or chip costs; instructions are those of an event, or of a
-/// set of samples.
+/// Costs of one direction of a link, format or chip; instructions are those of an event, or of a set of samples.
 #[derive(Serialize)]
 pub struct Event {
     kind: &'static str,
     subject: String,
     direction: String,
-    /// `event`, `sample set` or `pixel`.
+    /// What the costs are counted per: `event`, `sample set` or `pixel`.
     per: String,
-    /// Where one has a part in it.
+    /// Sample type, if one matters.
     sample: Option<String>,
     core: &'static str,
     count: u32,
     pub instructions_mean: f64,
-    /// Of the worst; where many go together, of the worst batch's mean.
+    /// Instructions of the most expensive one; for batches, the mean of the most expensive batch.
     instructions_max: u32,
-    /// The lower and the upper bound, as a codec's.
+    /// Lower and upper bound, as for a codec.
     cycles_mean: Option<[f64; 2]>,
     cycles_max: Option<[u32; 2]>,
-    /// Null where nothing is written.
+    /// Mean number of bytes; null if nothing is written.
     bytes_mean: Option<f64>,
 }
 
@@ -43,10 +42,10 @@ struct Printed {
     bytes: u32,
 }
 
-/// The sample type of each of the tables' cores.
+/// Sample type for each of the tables' cores.
 const SAMPLES: [&str; 2] = ["f32", "q16.16"];
 
-/// Six channels a second, and the core and clock that they are promised for.
+/// Sample rate of the six channels in Hz; the core and clock for which a bound is promised follow.
 const RATE: f64 = 8_000.0;
 pub const PROMISED: (&str, &str) = ("M4F", "f32");
 const CLOCK: f64 = 168e6;
@@ -71,7 +70,7 @@ impl Event {
         })
     }
 
-    /// What tells it from others.
+    /// Returns a key that identifies the event.
     pub fn key(&self) -> String {
         let Self { core, subject, direction, sample, .. } = self;
         let sample = sample.as_ref().map(|sample| format!(" {sample}")).unwrap_or_default();
@@ -83,7 +82,7 @@ impl Event {
     }
 }
 
-/// Every figure.
+/// Formats all figures as text.
 pub fn text(events: &[Event]) -> String {
     let mut text = String::new();
     let mut table = None;
@@ -110,13 +109,13 @@ pub fn text(events: &[Event]) -> String {
     text
 }
 
-/// Those of docs/costs.md.
+/// Formats the tables of docs/costs.md.
 pub fn markdown(events: &[Event]) -> Result<String> {
     let tables = [each_event(events), frames(events), banks(events)?, six_channels(events)?];
     Ok(format!("\n{}\n", tables.join("\n")))
 }
 
-/// A line for each subject, with both directions and both cores.
+/// Formats a line for each subject, with both directions and both cores.
 fn each_event(events: &[Event]) -> String {
     let [first, second] = figures::CORES;
     let mut text = format!(
@@ -147,7 +146,7 @@ fn each_event(events: &[Event]) -> String {
     text
 }
 
-/// The subjects as a reader of the tables knows them.
+/// Names of the subjects in the tables.
 const NAMES: [(&str, &str); 19] = [
     ("queue", "queue: push, pop"),
     ("queue-lock-free", "queue, lock-free: push, pop"),
@@ -170,7 +169,7 @@ const NAMES: [(&str, &str); 19] = [
     ("xylo", "Xylo, counts of 10 ms"),
 ];
 
-/// A pixel of a camera's row, on both cores.
+/// Formats the costs of a pixel in a camera's row, on both cores.
 fn frames(events: &[Event]) -> String {
     let [first, second] = figures::CORES;
     let mut text = format!(
@@ -195,7 +194,7 @@ fn frames(events: &[Event]) -> String {
     text
 }
 
-/// The codes of pixels: the subject, its name, and the bytes that a pixel takes.
+/// The codes of pixels: subject, name, and bytes for each pixel.
 const PIXELS: [(&str, &str, u32); 4] = [
     ("frame-intensity", "`Intensity`, threshold 10", 1),
     ("frame-log-u8", "`LogIntensity<u8>`, 0.2", 1),
@@ -203,7 +202,7 @@ const PIXELS: [(&str, &str, u32); 4] = [
     ("frame-refractory", "`Refractory<Intensity>`, 1 frame", 2),
 ];
 
-/// Six samples into a bank, on both cores.
+/// Formats the costs of six samples into a bank, on both cores.
 fn banks(events: &[Event]) -> Result<String> {
     let mut text = String::from(
         "| the bank alone | SF | cycles | worst | HSA, 15 taps | cycles | worst | T-HSA, 15 taps | cycles | worst |\n\
@@ -221,7 +220,7 @@ fn banks(events: &[Event]) -> Result<String> {
     Ok(text)
 }
 
-/// From six samples to frames, at both rates and on both cores.
+/// Formats the costs from six samples to frames, at both rates and on both cores.
 fn six_channels(events: &[Event]) -> Result<String> {
     let mut text = String::from(
         "| SF, queue and frames | interrupt: bank, queue | cycles | worst | main: frames | cycles | all | cycles | worst 100 ms |\n\
@@ -247,7 +246,7 @@ fn six_channels(events: &[Event]) -> Result<String> {
     Ok(format!("{text}\n{}", in_a_sentence(events)?))
 }
 
-/// What six channels take of the core.
+/// Describes in a sentence how much of the core six channels take.
 pub fn in_a_sentence(events: &[Event]) -> Result<String> {
     let set = set(events)?;
     let cycles = set.cycles_mean.context("no cycles are counted")?;
@@ -263,7 +262,7 @@ pub fn in_a_sentence(events: &[Event]) -> Result<String> {
     ))
 }
 
-/// Of the promised core, from six samples to frames.
+/// Returns the event from six samples to frames on the promised core.
 fn set(events: &[Event]) -> Result<&Event> {
     let (core, sample) = PROMISED;
     find(events, core, "path-8khz", "all", sample)
@@ -284,7 +283,7 @@ fn find<'a>(
     found.with_context(|| format!("no {subject} {direction} in {sample} on {core}"))
 }
 
-/// Fails if six channels at 8 kHz may take more of the core than is promised.
+/// Fails if six channels at 8 kHz may take more of the core than promised.
 pub fn ensure_six_channels_fit(events: &[Event]) -> Result<()> {
     let [_, set] = set(events)?.cycles_mean.context("no cycles are counted")?;
     let most = SHARE * CLOCK / RATE;

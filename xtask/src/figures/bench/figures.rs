@@ -1,11 +1,11 @@
-//! What is counted.
+//! The figures that are counted.
 
 use serde::Serialize;
 
 /// The cores of the tables.
 pub const CORES: [&str; 2] = ["M4F", "M0"];
 
-/// What one form of one direction of a codec costs; instructions are those of a sample.
+/// Costs of one form of one direction of a codec; instructions are those of a sample.
 #[derive(Serialize)]
 pub struct Row {
     pub codec: String,
@@ -16,26 +16,26 @@ pub struct Row {
     pub signal: String,
     pub instructions_mean: f64,
     pub instructions_max: u32,
-    /// The lower and the upper bound, null on cores without a model; a Cortex-M0+'s and a Cortex-M0's, both exact.
+    /// Lower and upper bound; for a Cortex-M0+ and a Cortex-M0 the exact count of each. Null on cores without a model.
     pub cycles_mean: Option<[f64; 2]>,
     pub cycles_max: Option<[u32; 2]>,
-    /// Of the plain transcription; null where there is none.
+    /// Mean of the plain transcription; null if there is none.
     pub plain_mean: Option<f64>,
     pub code_bytes: u32,
     pub state_bytes: u32,
     pub flash_bytes: u32,
-    /// What painting it showed.
+    /// Stack use as seen by painting the stack.
     pub stack_bytes: u32,
-    /// What the code can take at most; null where that is not known.
+    /// Upper bound of the stack use; null if it is not known.
     pub stack_bound_bytes: Option<u32>,
 }
 
-/// To a thousandth, or some would have 16 digits.
+/// Returns the mean, rounded to a thousandth.
 pub fn mean(total: u32, count: u32) -> f64 {
     (f64::from(total) / f64::from(count) * 1000.0).round() / 1000.0
 }
 
-/// None where nobody counted.
+/// Returns the means of both bounds; `None` if cycles were not counted.
 pub fn cycles_mean(total: [u32; 2], count: u32) -> Option<[f64; 2]> {
     (total[1] > 0).then(|| total.map(|total| mean(total, count)))
 }
@@ -44,18 +44,18 @@ pub fn cycles_max(max: [u32; 2]) -> Option<[u32; 2]> {
     (max[1] > 0).then_some(max)
 }
 
-/// Both bounds in a cell, or one figure where they are the same.
+/// Formats both bounds, or one figure if they are equal.
 pub fn between([least, most]: [f64; 2]) -> String {
     let [least, most] = [least, most].map(|bound| format!("{bound:.1}"));
     if least == most { least } else { format!("{least}–{most}") }
 }
 
-/// The same of whole cycles.
+/// Formats both bounds in whole cycles, or one figure if they are equal.
 pub fn between_whole([least, most]: [u32; 2]) -> String {
     if least == most { most.to_string() } else { format!("{least}–{most}") }
 }
 
-/// A cell of cycles, which some cores have none of.
+/// Formats a cell of cycles; a dash if there are none.
 pub fn cell(cycles: Option<[f64; 2]>) -> String {
     cycles.map_or("–".into(), between)
 }

@@ -1,19 +1,19 @@
-//! The disassembler's listing, instruction by instruction.
+//! Parses the output of a disassembler, instruction by instruction.
 
 use crate::common::shell;
 use anyhow::Result;
 use std::path::Path;
 
-/// One line.
+/// One line of the output: an instruction.
 #[derive(Clone, Debug)]
 pub struct Instruction {
     pub address: u32,
-    /// Bytes.
+    /// Size in bytes.
     size: u32,
-    /// Without what follows a dot, and without the condition of a block after `it`.
+    /// Mnemonic without what follows a dot, and without the condition of a block after `it`.
     pub name: String,
     pub operands: String,
-    /// One of a block after `it`.
+    /// Whether it is in a block after `it`.
     pub is_conditional: bool,
 }
 
@@ -21,13 +21,13 @@ const CONDITIONS: [&str; 16] = [
     "eq", "ne", "cs", "hs", "cc", "lo", "mi", "pl", "vs", "vc", "hi", "ls", "ge", "lt", "gt", "le",
 ];
 
-/// The instructions of an image.
+/// Disassembles an image.
 pub fn of(image: &Path) -> Result<Vec<Instruction>> {
     let mut objdump = shell::command("arm-none-eabi-objdump");
     Ok(instructions(&shell::output(objdump.arg("-d").arg(image))?))
 }
 
-/// The instructions of a listing in its order; its data are left out.
+/// Parses the instructions in order; leaves out data.
 pub fn instructions(listing: &str) -> Vec<Instruction> {
     let mut conditional = 0;
     let mut all = Vec::new();
@@ -49,13 +49,13 @@ pub fn instructions(listing: &str) -> Vec<Instruction> {
     all
 }
 
-/// `it`, `itt`, `ite` and so on.
+/// Returns whether this is `it`, `itt`, `ite` or similar.
 fn is_block(name: &str) -> bool {
     name.strip_prefix("it").is_some_and(|rest| rest.chars().all(|at| matches!(at, 't' | 'e')))
 }
 
 impl Instruction {
-    /// ` 8000404:`, a tab, `f7ff fffe`, a tab, `ldr.w`, a tab, `r0, [r1, #4]`.
+    /// Parses ` 8000404:`, a tab, `f7ff fffe`, a tab, `ldr.w`, a tab, `r0, [r1, #4]`.
     fn read(line: &str) -> Option<Self> {
         let (address, rest) = line.trim_start().split_once(":\t")?;
         let (bytes, text) = rest.split_once('\t')?;
@@ -73,7 +73,7 @@ impl Instruction {
         })
     }
 
-    /// What follows it in memory.
+    /// Returns the address after the instruction.
     pub fn next(&self) -> u32 {
         self.address + self.size
     }
@@ -82,14 +82,14 @@ impl Instruction {
         format!("{} {}", self.name, self.operands)
     }
 
-    /// A branch that its own condition decides.
+    /// Returns whether it is a branch with a condition of its own.
     pub fn is_conditional_branch(&self) -> bool {
         let condition = self.name.strip_prefix('b');
         matches!(self.name.as_str(), "cbz" | "cbnz")
             || condition.is_some_and(|condition| CONDITIONS.contains(&condition))
     }
 
-    /// Goes on elsewhere, always or perhaps.
+    /// Returns whether it may branch.
     pub fn is_branch(&self) -> bool {
         let loads = matches!(self.name.as_str(), "pop" | "ldm" | "ldmia" | "ldmdb");
         matches!(self.name.as_str(), "b" | "bl" | "bx" | "blx" | "tbb" | "tbh")
@@ -98,7 +98,7 @@ impl Instruction {
             || !loads && self.operands.starts_with("pc,")
     }
 
-    /// The address at which it goes on, always or perhaps, if it says so itself.
+    /// Returns the address to which it may branch, if the instruction contains it.
     pub fn target(&self) -> Option<u32> {
         let target = match self.name.as_str() {
             "cbz" | "cbnz" => self.operands.split_once(", ")?.1,
@@ -108,7 +108,7 @@ impl Instruction {
         u32::from_str_radix(target.split(' ').next()?, 16).ok()
     }
 
-    /// How many words a list of registers is.
+    /// Returns the number of registers in its list.
     pub fn registers(&self) -> u32 {
         let Some((_, list)) = self.operands.split_once('{') else { return 0 };
         let number = |name: &str| name[1..].parse::<u32>().ok();
@@ -123,18 +123,19 @@ impl Instruction {
         ranges.sum()
     }
 
-    /// Whether LR or PC is in its list of registers.
+    /// Returns whether LR or PC is in its list of registers.
     pub fn has_link(&self) -> bool {
         ["lr}", "pc}"].iter().any(|end| self.operands.ends_with(end))
     }
 
-    /// Whether it writes to the register: to its first operand, as most do, or to its first two.
+    /// Returns whether it writes to the register: most instructions write to their first operand, some to the first
+    /// two.
     fn writes(&self, register: &str) -> bool {
         let many = if self.name.contains("ull") || self.name.contains("lal") { 2 } else { 1 };
         self.operands.split(", ").take(many).any(|operand| operand == register)
     }
 
-    /// The registers within brackets.
+    /// Returns the registers within brackets.
     fn address_registers(&self) -> impl Iterator<Item = &str> {
         let inside = self.operands.split_once('[').map_or("", |(_, rest)| rest);
         let base = match self.name.as_str() {
@@ -155,7 +156,7 @@ impl Instruction {
         self.name.starts_with("str") || self.name.starts_with("stm") || self.name == "vstr"
     }
 
-    /// Makes a register with which the other makes an address, at once.
+    /// Returns whether its result is used by `other` to compute an address, directly after it.
     pub fn is_address_of(&self, other: &Self) -> bool {
         let is_data_processing = !self.name.starts_with("ldr")
             && !self.is_store()
@@ -164,12 +165,12 @@ impl Instruction {
         is_data_processing && other.address_registers().any(|register| self.writes(register))
     }
 
-    /// A load whose neighbour is pipelined with it.
+    /// Returns whether it is a load that may be pipelined with its neighbour.
     pub fn pairs_with(&self, other: &Self) -> bool {
         self.is_single_load() && !other.address_registers().any(|register| self.writes(register))
     }
 
-    /// The unit for floats has a result later.
+    /// Returns whether it is floating-point arithmetic, whose result is available later.
     pub fn is_arithmetic(&self) -> bool {
         const NAMES: [&str; 16] = [
             "vadd", "vsub", "vmul", "vnmul", "vdiv", "vsqrt", "vmla", "vmls", "vnmla", "vnmls",
@@ -178,13 +179,13 @@ impl Instruction {
         NAMES.contains(&self.name.as_str())
     }
 
-    /// Whether the other takes what this one makes.
+    /// Returns whether `other` uses its result.
     pub fn gives(&self, other: &Self) -> bool {
         other.operands.split([',', ' ', '{', '}']).any(|register| self.writes(register))
     }
 }
 
-/// `r4` to `r15` by their other names too.
+/// Parses the name of a register; `r4` to `r15` have other names too.
 fn named(register: &str) -> Option<u32> {
     match register {
         "sl" => Some(10),

@@ -1,4 +1,4 @@
-//! Small loops whose cycles were worked out by hand from the manuals' tables, beside what is counted.
+//! Small loops whose cycles were calculated by hand from the manuals' tables, compared with what is counted.
 
 use super::cycles::{self, Model};
 use crate::programs::{boards::Board, image};
@@ -6,12 +6,12 @@ use anyhow::{Context, Result, ensure};
 
 const PROGRAM: &str = "loops";
 
-/// A piece of `bench-target`'s assembly without its return: instructions; cycles of a Cortex-M0+ and of a Cortex-M0,
-/// and the bounds of a Cortex-M3 and of a Cortex-M4F.
+/// A piece of `bench-target`'s assembly, without its return: its instructions; its cycles on a Cortex-M0+ and on a
+/// Cortex-M0; and bounds for a Cortex-M3 and a Cortex-M4F.
 struct Piece {
     name: &'static str,
     instructions: u32,
-    /// `None` where the core has not got these instructions.
+    /// Cycles; `None` if the core does not have these instructions.
     small: Option<[u32; 2]>,
     large: [u32; 2],
 }
@@ -24,8 +24,8 @@ const fn large(name: &'static str, instructions: u32, large: [u32; 2]) -> Piece 
     Piece { name, instructions, small: None, large }
 }
 
-/// Sums in the order of the source: what is before the loop, what is in it, and its branches, of which the last one is
-/// not taken.
+/// Calculations in the order of the source: before the loop, in the loop, and its branches, of which the last is not
+/// taken.
 const PIECES: [Piece; 10] = [
     piece(
         "count-down",
@@ -66,7 +66,7 @@ const PIECES: [Piece; 10] = [
     large("floats", 6, [6, 1 + 1 + (1 + 1) + (14 + 1) + (14 + 1) + (1 + 1)]),
 ];
 
-/// Fails if a loop takes anything else than was worked out.
+/// Fails if a loop takes other cycles than calculated.
 pub fn verify(board: &Board) -> Result<()> {
     let Some(model) = Model::of(board) else { return Ok(()) };
     let image = image::build_all("bench-target", &[PROGRAM], board)?.join(PROGRAM);

@@ -1,8 +1,8 @@
-//! All that one run has counted.
+//! Everything that one run has counted.
 
 use super::{events::Event, figures::Row};
 
-/// The figures, and the compiler that they are of.
+/// The figures, and the compiler that built the programs.
 #[derive(Default)]
 pub struct Measured {
     pub rows: Vec<Row>,
@@ -11,7 +11,8 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Puts the rows of two programs for one sample type together: by core, sample type and signal, as first seen.
+    /// Sorts the rows of two programs for one sample type together: by core, sample type and signal, in the order in
+    /// which these first occur.
     pub fn group(&mut self) {
         let of = |row: &Row| (row.core, row.sample.clone(), row.signal.clone());
         let mut groups = Vec::new();

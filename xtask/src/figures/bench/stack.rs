@@ -1,8 +1,8 @@
-//! How deep a function's stack can get: what each function of the image takes, along the deepest way of its calls.
+//! Bounds the stack of a function: adds up the frames of the functions in the image along the deepest chain of calls.
 //!
-//! The compiler's own instructions tell both. Every push and every step of the stack pointer in a function is added up,
-//! though some lie on ways that exclude each other; a jump to another function counts as a call. So nothing is left out
-//! but a call through a pointer, of which the crate has one: the waker of the program that waits on a queue.
+//! Both are read from the compiler's instructions. Every push and every decrement of the stack pointer in a function is
+//! added, even if some lie on paths that exclude each other; a jump to another function counts as a call. Only calls
+//! through a pointer are left out, of which the crate has one: the waker of the program that waits on a queue.
 
 use super::listing::{self, Instruction};
 use crate::common::shell;
@@ -13,10 +13,11 @@ use std::{
     path::Path,
 };
 
-/// The linker fills gaps between functions with D4 D4, which reads as a jump this far back, and is never reached.
+/// Distance in bytes of a false jump: the linker fills gaps between functions with D4 D4, which reads as a jump
+/// backwards, and is never reached.
 const FILLING: u32 = 84;
 
-/// All functions of an image by their address.
+/// All functions of an image, by address.
 pub struct Stack {
     functions: BTreeMap<u32, Function>,
     known: RefCell<HashMap<u32, Depth>>,
@@ -29,15 +30,15 @@ struct Function {
     calls: BTreeSet<u32>,
     /// Whether it calls through a pointer.
     is_blind: bool,
-    /// An instruction that takes the stack by what is not known here.
+    /// An instruction that uses the stack in an unknown way, if there is one.
     unknown: Option<String>,
 }
 
-/// How deep a function gets.
+/// Depth of the stack in a function.
 #[derive(Clone, Copy)]
 pub struct Depth {
     pub bytes: u32,
-    /// Whether what a pointer leads to comes on top.
+    /// Whether a call through a pointer may add to it.
     pub is_blind: bool,
 }
 
@@ -71,12 +72,13 @@ impl Stack {
         Ok(Self { functions, known: RefCell::default() })
     }
 
-    /// The deepest that the function there gets, its own frame and the deepest of its callees'.
+    /// Returns the depth of the function at this address: its own frame, and the deepest of those that it calls.
     pub fn depth(&self, address: u32) -> Result<Depth> {
         self.deepest(address & !1, &mut Vec::new())
     }
 
-    /// What lies between the function and who paints the stack, of the closure that calls it and was not inlined.
+    /// Returns the frame of the closure between the function and the code that paints the stack, if the closure was not
+    /// inlined.
     pub fn between(&self, address: u32) -> u32 {
         let address = address & !1;
         let painters =
@@ -86,7 +88,7 @@ impl Stack {
         calling.map(|closure| closure.frame).max().unwrap_or(0)
     }
 
-    /// The deepest of the functions below these paths, with its name.
+    /// Returns the deepest function below these paths, with its name.
     pub fn deepest_of(&self, paths: &[&str]) -> Result<Option<(Depth, &str)>> {
         let within =
             |name: &str| paths.iter().any(|path| name.trim_start_matches('<').starts_with(path));
@@ -124,7 +126,7 @@ impl Stack {
     }
 }
 
-/// `08000400 t name`: functions, by their address without the bit of Thumb.
+/// Parses `08000400 t name`: a function, by its address without the Thumb bit.
 fn symbol(line: &str) -> Option<(u32, Function)> {
     let (address, rest) = line.split_once(' ')?;
     let (kind, name) = rest.split_once(' ')?;
@@ -134,7 +136,7 @@ fn symbol(line: &str) -> Option<(u32, Function)> {
         .then(|| (address, Function { name: name.into(), ..Function::default() }))
 }
 
-/// By how much it takes the stack down, in bytes.
+/// Returns how far an instruction lowers the stack pointer, in bytes.
 fn frame(one: &Instruction) -> Result<u32> {
     let operands = one.operands.as_str();
     let number = |text: &str| -> Result<u32> { Ok(text.trim_end_matches(['!', ']']).parse()?) };

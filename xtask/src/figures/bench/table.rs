@@ -1,4 +1,4 @@
-//! The figures as tables to read.
+//! Formats the figures as tables.
 
 use super::stack::Stack;
 use super::{
@@ -10,13 +10,13 @@ use crate::figures::markdown;
 use crate::programs::{boards::Board, image};
 use anyhow::Result;
 
-/// Where the tables stand: the file, and the comments between which they are.
+/// Place of the tables: the file, and the marker around them.
 const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
 const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
 const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
 const SIX: (&str, &str) = ("README.md", "bench-target six channels");
 
-/// The codecs of the short table, by the types that its rows name.
+/// Codecs of the short table, by the types that its rows name.
 const FEW: [(&str, &str); 5] = [
     ("`StepForward`", "sf"),
     ("`SendOnDelta`", "sod-4"),
@@ -25,7 +25,7 @@ const FEW: [(&str, &str); 5] = [
     ("`WeightedPhase`", "weighted-phase-8"),
 ];
 
-/// What a line of a table tells: one codec, in one sample type, on one core and signal.
+/// The content of a table's line: one codec, in one sample type, on one core and signal.
 struct Line<'a> {
     encode: &'a Row,
     encode_sample: &'a Row,
@@ -33,7 +33,7 @@ struct Line<'a> {
     decode_sample: &'a Row,
 }
 
-/// Each codec's rows as one line, in the order that they were measured in.
+/// Groups each codec's rows to a line, in the order in which they were measured.
 fn lines(rows: &[Row]) -> impl Iterator<Item = Line<'_>> {
     let of = |one: &Row, direction, form| {
         rows.iter().find(|row| {
@@ -55,7 +55,7 @@ fn lines(rows: &[Row]) -> impl Iterator<Item = Line<'_>> {
 }
 
 impl Line<'_> {
-    /// The plain transcription's mean, and how many times this codec's it is.
+    /// Returns the plain transcription's mean, and its ratio to this codec's.
     fn plain(&self) -> (String, String) {
         match self.encode.plain_mean {
             Some(plain) => {
@@ -67,7 +67,7 @@ impl Line<'_> {
     }
 }
 
-/// Every figure. Instructions are those of a sample, memory is in bytes.
+/// Formats all figures as text. Instructions are those of a sample; memory is in bytes.
 pub fn text(rows: &[Row]) -> String {
     let mut text = String::new();
     let mut table = String::new();
@@ -121,13 +121,13 @@ pub fn text(rows: &[Row]) -> String {
     text
 }
 
-/// The tables of the costs' page.
+/// Formats the tables of docs/costs.md.
 pub fn markdown(measured: &Measured) -> Result<String> {
     let tables = tables(measured)?.into_iter().filter(|((page, _), _)| *page == CODECS.0);
     Ok(tables.map(|(_, table)| table).collect())
 }
 
-/// Those of what was measured, each with its place.
+/// Formats the tables of what was measured, each with its place.
 fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str), String)>> {
     let mut tables = vec![(EVENTS, events::markdown(events)?)];
     if !rows.is_empty() {
@@ -138,7 +138,7 @@ fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str),
     Ok(tables)
 }
 
-/// The table of a few codecs with its last two columns anew: the cycles of a sample on the usual core, and the RAM.
+/// Rewrites the last two columns of the table of a few codecs: the cycles of a sample on the usual core, and the RAM.
 fn brief(rows: &[Row], table: &str) -> String {
     let usual = |line: &Line<'_>| {
         (line.encode.core, line.encode.sample.as_str(), line.encode.signal.as_str())
@@ -155,7 +155,7 @@ fn brief(rows: &[Row], table: &str) -> String {
     table.lines().map(|row| anew(row).unwrap_or_else(|| row.to_owned()) + "\n").collect()
 }
 
-/// `f32` where there is a floating-point unit, fixed point where there is none.
+/// Formats the codecs: in `f32` for cores with a floating-point unit, in fixed point for cores without.
 fn codecs(rows: &[Row]) -> String {
     let mut text = String::new();
     for (core, sample) in CORES.into_iter().zip(["f32", "q16.16"]) {
@@ -192,7 +192,7 @@ fn codecs(rows: &[Row]) -> String {
     text + "\n"
 }
 
-/// The rooms of the crate beside the codecs, and what paths they have in an image.
+/// Modules of the crate besides the codecs, with their paths in an image.
 const ROOMS: [(&str, &[&str]); 6] = [
     ("bank and queues", &["spikewire::event::"]),
     ("link", &["spikewire::wire::link::"]),
@@ -202,7 +202,7 @@ const ROOMS: [(&str, &[&str]); 6] = [
     ("cameras", &["spikewire_cameras::frame::"]),
 ];
 
-/// What the stacks of a core are told as: the largest bound of all sample types, and what painting saw of it.
+/// Formats the stacks of a core: the largest bound of all sample types, and the depth seen by painting.
 fn stack(core: &str, measured: &Measured) -> Result<String> {
     let mut codecs: Vec<&str> = Vec::new();
     let rows = || measured.rows.iter().filter(|row| row.core == core);
@@ -248,7 +248,7 @@ fn stack(core: &str, measured: &Measured) -> Result<String> {
     Ok(text + "\n")
 }
 
-/// A function's path without its modules and what it is generic in.
+/// Returns a function's path without modules and generic arguments.
 fn short(path: &str) -> String {
     let (mut depth, mut plain) = (0, String::new());
     for letter in path.trim_start_matches('<').chars() {
@@ -272,12 +272,12 @@ fn stack_marker(core: &str) -> String {
     format!("bench-target stack {core}")
 }
 
-/// Puts the table of a core's stacks into the page of costs.
+/// Writes the table of a core's stacks into docs/costs.md.
 pub fn write_stack(core: &str, measured: &Measured) -> Result<()> {
     markdown::write(CODECS.0, &stack_marker(core), &stack(core, measured)?)
 }
 
-/// The codec as a reader of the tables knows it.
+/// Returns the codec's name in the tables.
 fn name(codec: &str) -> &str {
     match codec {
         "tbr" => "TBR",
@@ -299,7 +299,7 @@ fn name(codec: &str) -> &str {
     }
 }
 
-/// Puts the tables into their files.
+/// Writes the tables into their files.
 pub fn write(measured: &Measured) -> Result<()> {
     tables(measured)?
         .into_iter()

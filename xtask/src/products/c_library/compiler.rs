@@ -10,10 +10,10 @@ use std::{
     process::Command,
 };
 
-/// A warning is an error.
+/// Warnings, all of which are errors.
 const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"];
 
-/// For the host, in one of the languages: the first error of address or of undefined behaviour ends the program.
+/// Compiles for the host, in a language; the program ends at the first error of address or of undefined behaviour.
 pub fn on_host(name: &str, language: &str, archive: &Path, defined: &[&str]) -> Result<PathBuf> {
     let program = work().join(format!("{name}-{}", language.replace("+", "p")));
     let mut gcc = shell::command(if language.starts_with("c++") { "g++" } else { "gcc" });
@@ -26,7 +26,7 @@ pub fn on_host(name: &str, language: &str, archive: &Path, defined: &[&str]) -> 
     Ok(program)
 }
 
-/// For a board, without any library but this one.
+/// Compiles for a board, with no other library than this one.
 pub fn for_board(name: &str, board: &Board, archive: &Path, defined: &[&str]) -> Result<PathBuf> {
     let place = work().join(board.machine);
     fs::create_dir_all(&place)?;
@@ -53,7 +53,7 @@ pub fn for_board(name: &str, board: &Board, archive: &Path, defined: &[&str]) ->
     Ok(program)
 }
 
-/// The test, what it runs on, the header, and the recorded flight.
+/// Adds the test, its support code, the header, and the recorded flight.
 fn sources(gcc: &mut Command, name: &str, board: &str, defined: &[&str]) -> Result<()> {
     let tests = room().join("tests");
     gcc.arg("-I").arg(include()?).arg("-I").arg(&tests).arg("-I").arg(work());
@@ -66,7 +66,8 @@ fn sources(gcc: &mut Command, name: &str, board: &str, defined: &[&str]) -> Resu
     Ok(())
 }
 
-/// The guides, each against declarations of what its firmware has; the firmwares themselves are not here.
+/// Compiles the guides, each with declarations of what its firmware provides; the firmwares themselves are not in this
+/// repository.
 pub fn guides() -> Result<()> {
     for (guide, compiler, standard) in [
         ("crazyflie.c", "arm-none-eabi-gcc", "c11"),
@@ -87,7 +88,8 @@ pub fn guides() -> Result<()> {
     Ok(())
 }
 
-/// Runs the guides in C on the host, in their firmware's place: what they send arrives, and they never wait.
+/// Runs the guides in C on the host with a stand-in for their firmware: what they send must arrive, and they must never
+/// wait.
 pub fn guides_run(archive: &Path) -> Result<()> {
     for guide in ["crazyflie", "betaflight"] {
         let program = work().join(format!("guide-{guide}"));
@@ -105,7 +107,7 @@ pub fn guides_run(archive: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A project of CMake that finds the host's package and uses one codec of it.
+/// Builds a CMake project that finds the host's package and uses one of its codecs.
 pub fn with_cmake(package: &Path) -> Result<()> {
     const MOST: u64 = 100_000;
     let place = work().join("with-cmake");
@@ -133,7 +135,7 @@ target_link_libraries(one PRIVATE spikewire::spikewire)
 target_link_options(one PRIVATE -s)
 ";
 
-/// Puts the recorded flight where the assembler finds it, and where the compiler does the codecs that fly it.
+/// Writes the recorded flight where the assembler finds it, and the codecs that fly it where the compiler finds them.
 pub fn record() -> Result<()> {
     fs::create_dir_all(work())?;
     fs::write(work().join("flown.h"), declared::flown())?;

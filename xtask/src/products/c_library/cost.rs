@@ -1,12 +1,12 @@
-//! What the boundary costs: the calls of C beside those of the crate, in instructions on emulated cores.
+//! Measures the cost of calling from C: instructions on emulated cores, compared with calls from Rust.
 
 use super::{archive, compiler};
 use crate::programs::{boards::Board, image, qemu};
 use anyhow::{Context, Result, bail, ensure};
 use std::collections::BTreeMap;
 
-/// How much more encoding slices may take in C over all codecs, and decoding them, in parts of what it takes in Rust.
-/// Single ones take more, where the crate takes a few instructions a sample.
+/// Largest share by which encoding slices may take more in C than in Rust, over all codecs; also for decoding. Single
+/// codecs may take more, if they take only a few instructions a sample.
 const MOST: f64 = 0.05;
 
 /// The forms, as the programs print them.
@@ -15,7 +15,7 @@ const FORMS: [&str; 4] = ["encode", "encode_slice", "decode", "decode_slice"];
 /// Instructions of each form, by scheme and sample type.
 type Counts = BTreeMap<String, [u32; 4]>;
 
-/// Prints what each form takes in C beside Rust, and fails where encoding a slice takes too much.
+/// Prints what each form takes in C and in Rust; fails if encoding a slice takes too much more.
 pub fn cost() -> Result<()> {
     compiler::record()?;
     compare(Board::with("M4F")?)
@@ -61,7 +61,7 @@ fn more(own: u32, rust: u32) -> f64 {
     f64::from(own) / f64::from(rust) - 1.0
 }
 
-/// `sf f32 encode 1 encode_slice 2 decode 3 decode_slice 4`.
+/// Parses `sf f32 encode 1 encode_slice 2 decode 3 decode_slice 4`.
 fn counts(printed: &str) -> Result<Counts> {
     let mut counts = Counts::new();
     for line in printed.lines() {

@@ -1,13 +1,13 @@
-//! What is written from the catalogue: the library's declarations, and the flight of the tests.
+//! Generates from the catalogue: the library's declarations, and the flight of the tests.
 
 use catalogue::{Argument, Flown, IN_C, InC, Info, Made};
 use std::fmt::Write;
 
-/// The sample types: in Rust, and how names end in C.
+/// The sample types: in Rust, and as endings of names in C.
 const SAMPLES: [(&str, &str); 4] =
     [("f32", "f32"), ("i16", "i16"), ("I8F8", "q8_8"), ("I16F16", "q16_16")];
 
-/// `bindings/c/src/codecs.rs`.
+/// Generates `bindings/c/src/codecs.rs`.
 pub fn codecs() -> String {
     let samples = SAMPLES.map(|(rust, suffix)| format!("{suffix}: {rust}")).join(", ");
     let mut text = format!(
@@ -36,7 +36,7 @@ pub fn codecs() -> String {
     text + "}\n"
 }
 
-/// `flown.h` of the tests: a line for each codec that flies.
+/// Generates `flown.h` of the tests, with a line for each codec that flies.
 pub fn flown() -> String {
     let mut text = String::from("/* The codecs that fly, as the catalogue flies them. */\n");
     // In two halves, for a flash that has no room for more.
@@ -62,19 +62,19 @@ pub fn flown() -> String {
     text
 }
 
-/// Each codec in each of its shapes.
+/// Returns each codec in each of its shapes.
 fn shapes() -> impl Iterator<Item = (&'static Info, &'static InC, &'static [usize])> {
     let codecs = IN_C.iter().flat_map(|(info, codecs)| codecs.iter().map(|codec| (*info, codec)));
     codecs.flat_map(|(info, codec)| codec.shapes.iter().map(move |shape| (info, codec, *shape)))
 }
 
-/// `threshold_hough_15`.
+/// Returns the stem of a codec's names, such as `threshold_hough_15`.
 fn stem(codec: &InC, shape: &[usize]) -> String {
     let shape: String = shape.iter().map(|number| format!("_{number}")).collect();
     format!("{}{shape}", codec.name)
 }
 
-/// With the shape's numbers in their places.
+/// Fills the shape's numbers into a text.
 fn filled(text: &str, shape: &[usize]) -> String {
     let mut text = text.to_owned();
     for (place, number) in shape.iter().enumerate() {
@@ -83,7 +83,7 @@ fn filled(text: &str, shape: &[usize]) -> String {
     text
 }
 
-/// The arguments of an initialisation on the flight, as C writes them.
+/// Writes the arguments of an initialisation for the flight, in C.
 fn arguments(made: &Made, suffix: &str) -> String {
     let argument = |Argument { flown, kind, .. }: &Argument| match flown {
         Flown::Not => "NOT_FLOWN".to_owned(),
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(filled("rate::Slots<S, {0}, {1}>", &[15, 10]), "rate::Slots<S, 15, 10>");
     }
 
-    /// What the recording flies in Rust, C has, but for what draws from a generator.
+    /// C has every codec that flies the recording in Rust, except those that need a random generator.
     #[test]
     fn every_scheme_has_a_codec_unless_it_draws() {
         for (info, codecs) in IN_C {

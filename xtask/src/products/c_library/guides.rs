@@ -1,4 +1,4 @@
-//! `cargo xtask guides`: the guides against the firmwares that they are for, in a checkout of one.
+//! `cargo xtask guides`: builds the guides with the firmwares that they are for, in a checkout of one.
 
 mod px4;
 
@@ -9,7 +9,7 @@ use crate::setup;
 use anyhow::{Context, Result, ensure};
 use std::{fs, path::Path};
 
-/// Builds a guide within a checkout of its firmware, which has its submodules.
+/// Builds a guide within a checkout of its firmware, including submodules.
 pub fn guides(args: &[String]) -> Result<()> {
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
     let (guide, checkout): (fn(&Path) -> Result<()>, _) = match args[..] {
@@ -27,7 +27,7 @@ pub fn guides(args: &[String]) -> Result<()> {
     guide(&checkout)
 }
 
-/// A whole image of the firmware's own build, with the guide as its app.
+/// Builds a complete image with the firmware's own build, with the guide as its app.
 fn crazyflie(checkout: &Path) -> Result<()> {
     setup::packages(
         "what builds a Crazyflie",
@@ -53,7 +53,7 @@ fn crazyflie(checkout: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Fails unless the program has the guide's start and what it calls of the library.
+/// Fails unless the program contains the guide's start and the library functions that it calls.
 fn ensure_linked(nm: &str, program: &Path, start: &str) -> Result<()> {
     let symbols = shell::output(shell::command(nm).arg(program))?;
     for symbol in [start, "sw_step_forward_f32_bank", "sw_writer_next_frame"] {
@@ -77,7 +77,7 @@ OOT_CONFIG := $(PWD)/app-config
 include $(CRAZYFLIE_BASE)/tools/make/oot.mk
 ";
 
-/// The guide with the headers of the firmware's simulation in the loop, which needs no vendor's.
+/// Builds the guide with the headers of the firmware's simulator (SITL), which needs no vendor files.
 fn betaflight(checkout: &Path) -> Result<()> {
     let mut gcc = shell::command("gcc");
     gcc.args(["-std=gnu17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]);

@@ -1,4 +1,4 @@
-//! `cargo xtask c-library` and `cargo verify c`: the library for C, its header, and its tests.
+//! `cargo xtask c-library` and `cargo verify c`: the C library, its header, and its tests.
 
 mod compiler;
 mod cost;
@@ -50,7 +50,7 @@ pub fn library(args: &[String]) -> Result<()> {
     if args.is_empty() { host().map(drop) } else { Ok(()) }
 }
 
-/// Builds the library for the host: for a simulation in the loop, and for tests of units.
+/// Builds the library for the host, for simulation in the loop and for unit tests.
 fn host() -> Result<PathBuf> {
     let mut cargo = shell::cargo("rustc --release --lib --crate-type staticlib");
     shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
@@ -58,8 +58,8 @@ fn host() -> Result<PathBuf> {
     package::package("host", &kept, &["pthread", "dl", "m"])
 }
 
-/// Copies an archive, in which the crate's critical section gets a name of its own: another archive from Rust has one,
-/// too, of another type.
+/// Copies an archive and renames the critical section of its crate, as another Rust archive may contain one of another
+/// type.
 fn apart(built: &Path, name: &str, objcopy: &str) -> Result<PathBuf> {
     let kept = work().join(name).join("libspikewire.a");
     fs::create_dir_all(work().join(name))?;
@@ -76,19 +76,19 @@ fn room() -> PathBuf {
     paths::root().join("bindings/c")
 }
 
-/// Everything that the tests make.
+/// Returns the directory of the tests' output.
 fn work() -> PathBuf {
     paths::target().join("c")
 }
 
-/// Writes all that is made from the catalogue and kept.
+/// Writes all committed files that are generated from the catalogue.
 pub fn write() -> Result<()> {
     put(&room().join("src/codecs.rs"), &declared::codecs())?;
     include()?;
     put(&room().join("src/sizes.rs"), &fs::read_to_string(work().join("sizes.rs"))?)
 }
 
-/// Fails if something that is made from the catalogue is not what the catalogue says now.
+/// Fails if a generated file does not agree with the catalogue.
 fn ensure_written() -> Result<()> {
     let is = |path: &str, text: &str| {
         let kept = fs::read_to_string(room().join(path)).with_context(|| path.to_owned())?;
@@ -100,7 +100,8 @@ fn ensure_written() -> Result<()> {
     is("src/sizes.rs", &fs::read_to_string(work().join("sizes.rs"))?)
 }
 
-/// The directory of the headers, which a program of the library writes from its declarations, once for all that asks.
+/// Returns the directory of the headers, which a program of the library writes from its declarations, once for all
+/// users.
 fn include() -> Result<&'static Path> {
     static WRITTEN: OnceLock<PathBuf> = OnceLock::new();
     if let Some(written) = WRITTEN.get() {
@@ -118,15 +119,15 @@ fn include() -> Result<&'static Path> {
     Ok(WRITTEN.get_or_init(|| into))
 }
 
-/// The library for the host, as the program that writes the headers has it.
+/// Returns the library for the host, as linked by the program that writes the headers.
 fn host_archive() -> Result<PathBuf> {
     let mut cargo = shell::cargo("rustc --lib --crate-type staticlib --features header");
     shell::run(cargo.current_dir(room()).env("CARGO_TARGET_DIR", work()))?;
     apart(&work().join("debug").join(ARCHIVE), "debug-host", "objcopy")
 }
 
-/// The library for the host, each of whose reads and writes the address sanitizer looks at: a flag that only a nightly
-/// compiler takes without being asked to. The sanitizer's own code is that of the C compiler.
+/// Returns the library for the host with the address sanitizer on each of its reads and writes, by a flag that a stable
+/// compiler accepts only when told to. The sanitizer's runtime is that of the C compiler.
 fn watched_archive() -> Result<PathBuf> {
     let host = triple()?;
     let mut cargo = shell::cargo("rustc --lib --crate-type staticlib --target");
@@ -136,7 +137,7 @@ fn watched_archive() -> Result<PathBuf> {
     apart(&work().join(host).join("debug").join(ARCHIVE), "watched-host", "objcopy")
 }
 
-/// The library for a board's core.
+/// Returns the library for a board's core.
 fn archive(board: &Board) -> Result<PathBuf> {
     let build = "rustc --release --lib --crate-type staticlib";
     let mut cargo = toolchain::cargo_for(board.target, build)?;
@@ -147,7 +148,7 @@ fn archive(board: &Board) -> Result<PathBuf> {
     apart(&built, board.cpu, "arm-none-eabi-objcopy")
 }
 
-/// Writes a file if it says something else.
+/// Writes a file if its content differs.
 fn put(path: &Path, text: &str) -> Result<()> {
     if fs::read_to_string(path).is_ok_and(|own| own == text) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What a build system takes: archive, header, CMake package and pkg-config file.
+//! Packages the library for build systems: archive, header, CMake package and pkg-config file.
 
 use super::{include, put, work};
 use crate::common::{paths, shell};
@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Puts it all below `target/c-library/<name>`; programs need these libraries besides.
+/// Writes the package below `target/c-library/<name>`; programs must also link the libraries in `needs`.
 pub fn package(name: &str, archive: &Path, needs: &[&str]) -> Result<PathBuf> {
     let place = paths::target().join("c-library").join(name);
     let cmake = place.join("lib/cmake/spikewire");

@@ -1,4 +1,4 @@
-//! The table of sizes in the library's README: what the header says, and what each codec adds to a program.
+//! Measures the table of sizes in the library's README: the header's constants, and what each codec adds to a program.
 
 use super::{archive, compiler, declared, include};
 use crate::common::shell;
@@ -10,12 +10,12 @@ use std::{fmt::Write, fs};
 const PAGE: &str = "bindings/c/README.md";
 const MARKER: &str = "sizes";
 
-/// Puts the table into the page.
+/// Writes the table into the README.
 pub fn write() -> Result<()> {
     markdown::write(PAGE, MARKER, &format!("\n{}\n", table()?))
 }
 
-/// A row for each codec in `f32`, with its `int16_t` beside it.
+/// Formats a row for each codec in `f32`, with its `int16_t` variant beside it.
 fn table() -> Result<String> {
     let board = Board::with("M4F")?;
     let archive = archive(board)?;
@@ -64,7 +64,7 @@ fn table() -> Result<String> {
     Ok(table)
 }
 
-/// What a size's macro says.
+/// Returns the value of a size's macro.
 fn size(header: &str, name: &str) -> Result<usize> {
     let start = format!("#define SW_{}_SIZE ", name.to_uppercase());
     let line = header.lines().find_map(|line| line.strip_prefix(&start));

@@ -1,4 +1,4 @@
-//! The library's tests: C programs on the host and on emulated boards, against what the crate does there.
+//! The C library's tests: programs in C on the host and on emulated boards, compared with the crate.
 
 use super::{archive, compiler, ensure_written, host_archive, watched_archive};
 use crate::common::shell;
@@ -10,7 +10,8 @@ use std::process::Command;
 /// The sample types of `flight.c`.
 pub const SAMPLES: [&str; 4] = ["FLY_f32", "FLY_i16", "FLY_q8_8", "FLY_q16_16"];
 
-/// What is written is what the catalogue says; the host under sanitizers, and one core, do what the crate does.
+/// Checks that generated files agree with the catalogue, and that C on the host under sanitizers, and on one core,
+/// equals the crate.
 pub fn verify() -> Result<()> {
     let archive = host_archive()?;
     ensure_written()?;
@@ -27,7 +28,7 @@ pub fn verify() -> Result<()> {
     fly("M4F", &rust)
 }
 
-/// On the host with the library, too, under the address sanitizer.
+/// Runs the tests on the host with the library, too, under the address sanitizer.
 pub fn watched() -> Result<()> {
     let archive = watched_archive()?;
     compiler::record()?;
@@ -37,7 +38,7 @@ pub fn watched() -> Result<()> {
     compare("watched host", &shell::output(&mut Command::new(flight))?, &in_rust()?)
 }
 
-/// The other cores, and the host's package as a CMake project takes it: one codec costs what it is, not the whole.
+/// Tests the other cores, and the host's package in a CMake project: a program with one codec must not contain all.
 pub fn cores() -> Result<()> {
     compiler::with_cmake(&super::host()?)?;
     compiler::record()?;
@@ -62,7 +63,7 @@ fn fly(core: &str, rust: &[String]) -> Result<()> {
     compare(core, &flown, rust)
 }
 
-/// `sf f32 spikes=2074 hash=…`: what the crate makes of the flight on the host, as C prints it.
+/// Returns the crate's results for the flight on the host, as C prints them: `sf f32 spikes=2074 hash=…`.
 fn in_rust() -> Result<Vec<String>> {
     let printed = host::flight_log()?;
     let lines = printed.lines().map(|line| {
@@ -74,7 +75,7 @@ fn in_rust() -> Result<Vec<String>> {
     Ok(lines.filter(|line| !is_drawn(line)).collect())
 }
 
-/// Fails unless both have the very same lines, in any order.
+/// Fails unless both have the same lines, in any order.
 fn compare(place: &str, flown: &str, rust: &[String]) -> Result<()> {
     let flown: Vec<&str> = flown.lines().collect();
     let differing: Vec<String> = rust

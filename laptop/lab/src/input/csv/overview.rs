@@ -1,4 +1,4 @@
-//! An overview of a table: its columns, and how its rows came.
+//! Summarises a table: its columns, and the times of its rows.
 
 use super::is_missing;
 use crate::Result;
@@ -11,15 +11,15 @@ use catalogue::run::Words;
 /// A summary of a table.
 #[derive(Debug)]
 pub struct Summary {
-    /// Its columns besides times and counts.
+    /// The columns, except those of times and counts.
     pub columns: Vec<ColumnSummary>,
     /// Number of rows.
     pub rows: u64,
-    /// Its length, rate and gaps.
+    /// Length, rate and gaps.
     pub clock: Clock,
-    /// The times that its clock ran over.
+    /// How often the clock wrapped around.
     pub rollover: Rollover,
-    /// Notes for the user on how it is read.
+    /// Notes for the user on how the table is read.
     pub notes: Vec<Words>,
 }
 
@@ -28,16 +28,16 @@ pub struct Summary {
 pub struct ColumnSummary {
     /// Its name.
     pub name: String,
-    /// Number of rows without a value, or with one that is not finite.
+    /// Number of rows in which the value is missing or not finite.
     pub missing: u64,
-    /// The first value that is no number, and its line.
+    /// The first value that is not a number, and its line.
     pub text: Option<(u64, String)>,
 }
 
-/// Summarises a table, whose columns need not all hold numbers.
+/// Summarises a table, whose columns may also hold text.
 ///
 /// # Errors
-/// Returns an error if the table cannot be read, or a time is none.
+/// Returns an error if the table cannot be read, or if a time is invalid.
 pub fn summary(input: &InputOptions) -> Result<Summary> {
     let mut options = input.clone();
     options.channel.columns = vec![ALL.to_owned()];

@@ -1,4 +1,4 @@
-//! Fields of one topic of a log, as samples.
+//! Reads fields of one topic of a log as samples.
 
 use super::damage;
 use crate::input::time::{Named, TimeUnit, of_given};
@@ -17,7 +17,7 @@ pub struct Channel {
     time: Option<String>,
     time_unit: Option<TimeUnit>,
     skip_non_finite: bool,
-    /// The places of the fields, for each topic of the log that has this name.
+    /// Where the fields lie, for each topic of the log that has this name.
     plans: Vec<Option<Plan>>,
     samples: u64,
     values: Vec<f64>,
@@ -25,7 +25,7 @@ pub struct Channel {
     notes: Vec<Words>,
 }
 
-/// The places of the fields in a message, and of the time if the message has it.
+/// Where the fields lie in a message, and the time if the message has one.
 struct Plan {
     fields: Vec<Path>,
     time: Option<Time>,
@@ -40,7 +40,7 @@ impl Channel {
     /// Opens the channels of a log.
     ///
     /// # Errors
-    /// The log, topic or fields are missing, or cannot be read.
+    /// Returns an error if the log, the topic or a field is missing or cannot be read.
     pub fn open(options: &InputOptions, kind: Kind) -> Result<Self> {
         let file = options.name();
         let fields: Vec<String> = options.fields().map(str::to_owned).collect();
@@ -65,7 +65,7 @@ impl Channel {
         })
     }
 
-    /// Plans for the topics that came up.
+    /// Makes the plans for topics that have appeared since the last call.
     fn plan(&mut self) -> Result<()> {
         for topic in self.log.topics().iter().skip(self.plans.len()) {
             // ROS takes names with and without a slash before them.
@@ -109,7 +109,7 @@ impl Channel {
         Ok(Plan { fields, time })
     }
 
-    /// The unit of a number that is a time.
+    /// Returns the unit of a field that holds a time.
     fn unit(&self, field: &str) -> TimeUnit {
         self.time_unit.unwrap_or_else(|| {
             match of_given(field.rsplit('.').next().unwrap_or(field)) {
@@ -119,7 +119,7 @@ impl Channel {
         })
     }
 
-    /// Takes a message of the topic.
+    /// Reads a message of the topic.
     fn take(&mut self, entry: Entry, chunk: &mut Chunk) -> Result<()> {
         let Some(plan) = self.plans[entry.topic].as_ref() else { return Ok(()) };
         let topic = &self.log.topics()[entry.topic];
@@ -150,7 +150,7 @@ impl Channel {
         Ok(())
     }
 
-    /// The error of a topic without messages, or of an unknown topic.
+    /// Makes the error of a topic that is unknown or has no messages.
     fn nothing(&self) -> Error {
         let topic = self.topic.clone();
         if self.plans.iter().any(Option::is_some) {
@@ -162,7 +162,7 @@ impl Channel {
     }
 }
 
-/// The values of a message, those of short arrays not a number, and its time in µs.
+/// Reads a message's values, which are NaN beyond the end of a short array, and its time in µs.
 fn read(
     topic: &Topic,
     plan: &Plan,
@@ -183,7 +183,7 @@ fn read(
     })
 }
 
-/// The numbers of a field that has several.
+/// Lists the numbers within a field that has several.
 fn within(definition: &Definition, field: &str) -> String {
     let (numbers, _) = definition.names();
     let own: Vec<&str> =

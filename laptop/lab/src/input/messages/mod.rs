@@ -1,6 +1,6 @@
-//! Flight logs as recordings: fields of a topic as channels, and an overview of a log.
+//! Reads flight logs: fields of a topic as channels, and an overview of a log.
 //!
-//! The formats themselves are the crate `flight-logs`.
+//! The formats themselves are in the crate `flight-logs`.
 
 mod channel;
 mod overview;
@@ -10,7 +10,7 @@ pub use overview::{Overview, overview};
 
 use flight_logs::Damage;
 
-/// Returns what is done about damage.
+/// Returns how the log reader should treat damage.
 pub fn damage(accept_cut: bool) -> Damage {
     if accept_cut { Damage::Skip } else { Damage::Refuse }
 }

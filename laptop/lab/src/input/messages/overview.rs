@@ -1,4 +1,4 @@
-//! An overview of a log: its topics, and how their messages came.
+//! Summarises a log: its topics, and the times of their messages.
 
 use super::damage;
 use crate::Result;
@@ -13,25 +13,25 @@ use std::path::Path;
 pub struct Overview {
     /// Its name.
     pub name: String,
-    /// The type of its messages, if they have one.
+    /// Type of the messages; empty if they have none.
     pub kind: String,
-    /// Its fields of numbers.
+    /// The fields with numbers.
     pub fields: Vec<String>,
-    /// Its fields of text.
+    /// The fields with text.
     pub texts: Vec<String>,
-    /// The reason that its fields cannot be read.
+    /// The reason that the fields cannot be read, if so.
     pub unread: Option<String>,
     /// Number of messages.
     pub count: u64,
-    /// Its length, rate and gaps.
+    /// Length, rate and gaps.
     pub clock: Clock,
-    /// The times that its clock ran over.
+    /// How often the clock wrapped around.
     pub rollover: Rollover,
-    /// Number of messages missing, by the numbers that they have.
+    /// Number of missing messages, according to the counter in the messages.
     pub missing: u64,
 }
 
-/// Summarises a log by topic, with notes on all else.
+/// Summarises each topic of a log, and adds notes about the log.
 ///
 /// # Errors
 /// Returns an error if the log cannot be read.
@@ -67,11 +67,11 @@ pub fn overview(
     Ok((topics, log.faults().notes()))
 }
 
-/// The messages of one topic as they come.
+/// The state of summarising one topic.
 struct Watched {
     times: Times,
     count: u64,
-    /// The place of the number with which messages count themselves.
+    /// Where the messages' own counter lies, if they have one.
     counter: Option<FieldPath>,
     previous: Option<u32>,
     missing: u64,

@@ -1,4 +1,4 @@
-//! The network as Rust: constant data for `spikewire-network`.
+//! Writes the network as Rust: constant data for `spikewire-network`.
 
 use super::super::Trains;
 use super::super::chip::{Told, list};
@@ -8,7 +8,7 @@ use super::rule::{Current, Fires, Rule};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Numbers as the crate's constructors take them.
+/// A number type, and how its numbers are written for the constructors of `spikewire-network`.
 pub(super) trait Spelled: Number {
     /// The crate's type of potentials.
     const TYPE: &'static str;
@@ -17,7 +17,7 @@ pub(super) trait Spelled: Number {
 
     fn spell(self) -> String;
     fn spell_factor(factor: Self::Factor) -> String;
-    /// The constructor of weights with these rows.
+    /// Writes the constructor of weights with these rows.
     fn spell_weights(rows: &[&[Self]], shift: u32) -> String;
 }
 
@@ -65,8 +65,8 @@ fn spell_rows<K: Copy>(rows: &[&[K]], spell: impl Fn(K) -> String) -> String {
     text
 }
 
-/// Writes a module, whose weights are shifted so by layer; `units` is what a potential of 1 stands for, of integers. The
-/// steps `check` run before arming.
+/// Writes a module. `shifts` are the shifts of each layer's weights; `units` are the values of a potential of 1, for
+/// integers; the steps in `check` are run before arming.
 pub(super) fn emit<K: Spelled>(
     net: &Net<K>,
     shifts: &[u32],
@@ -108,7 +108,7 @@ use spikewire_network::{{{used}}};
     )
 }
 
-/// What a module may import, beside what every one does.
+/// Names that a module imports if it uses them, besides those that every module imports.
 const NAMES: [&str; 16] = [
     "Cuba",
     "Forward",
@@ -128,7 +128,7 @@ const NAMES: [&str; 16] = [
     "Values",
 ];
 
-/// A layer's weights, neurons and type.
+/// Writes the statics of a layer: its weights, neurons and type.
 fn statics<K: Spelled>(layer: &Layer<K>, number: usize, shift: u32) -> String {
     let Layer { name, weights, own, neurons, rule } = layer;
     let (inputs, count, numbers) = (weights.len(), neurons.len(), K::TYPE);
@@ -179,7 +179,7 @@ type Layer{number} = Layer<'static, {kind}, {inputs}, {count}, Spiking, {recurre
     text
 }
 
-/// The type of a neuron.
+/// Writes the type of a neuron.
 fn kind<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     let (numbers, reset) = (K::TYPE, rule.reset.type_name());
     let inner = match neuron.spike {
@@ -193,7 +193,7 @@ fn kind<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     }
 }
 
-/// The constructor of a neuron.
+/// Writes the constructor of a neuron.
 fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     let (numbers, new, zero) = (K::TYPE, K::NEW, K::default());
     let decay = K::spell_factor(neuron.decay);
@@ -226,7 +226,7 @@ fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     text
 }
 
-/// The whole network.
+/// Writes the constructor of the whole network.
 fn network<K: Spelled>(net: &Net<K>) -> String {
     let (mut kind, mut value) = (String::new(), String::new());
     for (number, layer) in (1..).zip(&net.layers) {
@@ -254,7 +254,7 @@ pub static NETWORK: Trained = {value};
     )
 }
 
-/// The steps before arming, and what must come of them.
+/// Writes the steps that run before arming, and the outcome that they must have.
 fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
     let done = net.run(inputs);
     let (steps, layers) = (inputs.len(), net.layers.len());

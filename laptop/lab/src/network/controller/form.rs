@@ -1,4 +1,5 @@
-//! From a file to the form: numbers by step, gains in the weights.
+//! Converts a file to the form of `spikewire-network`: its numbers are for a step, and gains are contained in the
+//! weights.
 
 use super::super::nir::{Array, Chain, Neurons, Stage, Weights};
 use super::super::trained;
@@ -8,20 +9,21 @@ use super::{Asked, Model};
 use crate::network::NetworkKind;
 use crate::network::fault::{Context, Result, bail, ensure};
 
-/// The largest number of the crate's in `f32`.
+/// Largest number that the crate accepts in `f32`.
 const LARGEST: f64 = 1e15;
 
-/// The part of a step from which on a current lasts one step: the times of a recording are not quite those of training.
+/// Share of a step from which on a time constant counts as a whole step: the step of a recording and that of the
+/// training may differ a little.
 const A_STEP: f64 = 0.98;
 
-/// How far rounding leaves a gain beside the 1 that is meant.
+/// How far rounding may move a gain away from 1.
 const ROUNDING: f64 = 1e-5;
 
 impl Model {
-    /// A network in JSON.
+    /// Converts a network in JSON.
     ///
     /// # Errors
-    /// A number is out of the range.
+    /// Returns an error if a number is out of its range.
     pub(in super::super) fn of_plain(trained: trained::Trained, asked: &Asked) -> Result<Self> {
         let trained::Trained { layers, readout } = trained;
         ensure!(
@@ -55,10 +57,10 @@ impl Model {
         Self::new(Net { layers }, Vec::new())
     }
 
-    /// A NIR graph, by a rule.
+    /// Converts a NIR graph, by the rule asked for.
     ///
     /// # Errors
-    /// The rule is not said as a whole, or does not go with the file.
+    /// Returns an error if the rule is incomplete, or if it does not go with the file.
     pub(in super::super) fn of_nir(chain: Chain, asked: &Asked) -> Result<Self> {
         let Chain { stages, readout, sum, mut notes } = chain;
         let all = || stages.iter().chain(&readout);
@@ -139,13 +141,14 @@ impl Layer<f64> {
     }
 }
 
-/// Weights by input, from those by neuron.
+/// Transposes weights, from rows by neuron to rows by input.
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let inputs = rows.first().map_or(0, Vec::len);
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Recurrent weights, given by neuron; of each to itself alone, only these.
+/// Converts recurrent weights, given in rows by neuron; if each neuron leads to itself alone, only those weights are
+/// kept.
 fn own(rows: &[Vec<f64>]) -> Own<f64> {
     if rows.is_empty() {
         return Own::None;
@@ -161,7 +164,7 @@ fn own(rows: &[Vec<f64>]) -> Own<f64> {
     }
 }
 
-/// A layer in steps.
+/// Converts a layer.
 fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Layer<f64>> {
     let Stage { weights: Weights { mut rows, bias }, recurrent, neurons } = stage;
     let name = neurons.name();
@@ -219,11 +222,11 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
 
 struct Stepped {
     neuron: Neuron<f64>,
-    /// The factor of the inputs.
+    /// Factor of the inputs.
     gain: f64,
 }
 
-/// A neuron's numbers by step; its bias is still to be added.
+/// Converts a neuron's numbers to those for a step, except for its bias, which is added later.
 fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
     let dt = rule.dt;
     let resistance = neurons.resistance.at(at);
@@ -256,7 +259,7 @@ fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
 }
 
 impl Neurons {
-    /// The potential at which a neuron begins, which is 0 in the crate.
+    /// Returns the potential at which the framework starts a neuron; in `spikewire-network` it is 0.
     fn start(&self, at: usize, rule: &Rule) -> f64 {
         let of = |all: Option<&Array>| all.map_or(0.0, |all| all.at(at));
         match rule.framework {
@@ -269,7 +272,7 @@ impl Neurons {
 }
 
 impl Neuron<f64> {
-    /// The same neuron with potentials told from `start`, so that it begins at 0.
+    /// Shifts all potentials by `start`, so that the neuron starts at 0.
     fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
         self.inner -= (1.0 - self.decay) * start;
         if let Some(spike) = &mut self.spike {
@@ -282,7 +285,7 @@ impl Neuron<f64> {
     }
 }
 
-/// The share that a step leaves of what has this time constant.
+/// Returns the factor by which a step multiplies a quantity with this time constant.
 fn left(tau: f64, rule: &Rule) -> Result<f64> {
     let Rule { dt, framework, decay, .. } = *rule;
     ensure!(tau > 0.0 && tau.is_finite(), "a time constant of {tau} s");

@@ -1,4 +1,4 @@
-//! Networks on the flight controller itself, for the crate `spikewire-network`.
+//! Brings networks onto the flight controller itself, for the crate `spikewire-network`.
 
 mod emit;
 mod form;
@@ -22,40 +22,40 @@ use net::{Done, Net, Own, State};
 use number::Number;
 use quantise::Integers;
 
-/// A network in the crate's form, in double precision.
+/// A network in double precision, in the form of `spikewire-network`.
 pub struct Model {
     net: Net<f64>,
-    /// What is odd about its file.
+    /// Notes on peculiarities of its file.
     notes: Vec<String>,
 }
 
-/// The controller's numbers.
+/// The number type on the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
     /// Single precision, for cores with a floating-point unit.
     Float,
-    /// Weights of 8 bits, potentials of 32.
+    /// Integers: weights of 8 bits, potentials of 32 bits.
     Integer,
 }
 
-/// A network for the controller, and the recording with which it is brought there.
+/// A network for the controller, and the recording on which it is tuned and tested.
 pub struct ControllerRequest<'a> {
     /// The network.
     pub model: &'a Model,
-    /// The controller's numbers.
+    /// The number type on the controller.
     pub numbers: Numbers,
     /// The spikes on which integers are tuned, by step.
     pub tuned: &'a Trains,
-    /// Spikes of another recording.
+    /// Spikes of another recording, on which the result is only tested.
     pub held_out: Option<HeldOut<'a>>,
-    /// Called with the neurons that are done and those in all.
+    /// Called with the number of neurons that are done, and the number in all.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// Steps of the check before arming.
+/// Number of steps of the check before arming.
 const CHECKED: usize = 10;
 
-/// The network in the controller's numbers.
+/// The network in either number type of the controller.
 enum Held {
     Float(Net<f32>),
     Integer(Integers),
@@ -70,28 +70,29 @@ struct OnController {
 }
 
 impl Model {
-    /// Number of inputs.
+    /// Returns the number of inputs.
     pub fn inputs(&self) -> usize {
         self.net.layers.first().map_or(0, net::Layer::inputs)
     }
 
-    /// The name of the first layer.
+    /// Returns the name of the first layer.
     pub fn first(&self) -> &str {
         self.net.layers.first().map_or("", |layer| &layer.name)
     }
 
-    /// The neurons that fire, by layer and step, in double precision.
+    /// Runs the network in double precision; returns the neurons that fire, by layer and step.
     pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
         self.net.run(inputs).fired
     }
 
-    /// The same in `f32`, bit for bit as the controller computes it; and the potentials of the last layer, by step.
+    /// Runs the network in `f32`, bit for bit as the controller does; returns the neurons that fire, by layer and step,
+    /// and the potentials of the last layer, by step.
     pub fn run_as_flown(&self, inputs: &Trains) -> (Vec<Trains>, Vec<Vec<f32>>) {
         let Done { fired, potentials, .. } = quantise::float(&self.net).run(inputs);
         (fired, potentials)
     }
 
-    /// The same step by step.
+    /// Prepares the network to run in `f32` step by step, bit for bit as the controller does.
     pub fn as_flown(&self) -> Flown {
         let net = quantise::float(&self.net);
         Flown { state: net.state(), net }
@@ -105,14 +106,14 @@ impl Model {
         Original { layers, readout, fired, potentials }
     }
 
-    /// Whether the outputs are potentials.
+    /// Returns whether the outputs are potentials rather than spikes.
     fn is_silent(&self) -> bool {
         let last = self.net.layers.last().and_then(|layer| layer.neurons.first());
         last.is_some_and(|neuron| neuron.spike.is_none())
     }
 }
 
-/// A network in `f32`, bit for bit as the controller computes it, and its state.
+/// A network and its state in `f32`, bit for bit as on the controller.
 #[derive(Clone)]
 pub struct Flown {
     net: Net<f32>,
@@ -120,41 +121,41 @@ pub struct Flown {
 }
 
 impl Flown {
-    /// How many neurons each layer has.
+    /// Returns the number of neurons of each layer.
     pub fn layers(&self) -> impl Iterator<Item = usize> {
         self.net.layers.iter().map(|layer| layer.neurons.len())
     }
 
-    /// Number of inputs.
+    /// Returns the number of inputs.
     pub fn inputs(&self) -> usize {
         self.net.layers.first().map_or(0, net::Layer::inputs)
     }
 
-    /// Puts it at rest.
+    /// Resets the network to rest.
     pub fn reset(&mut self) {
         self.state = self.net.state();
     }
 
-    /// Takes a step with these inputs, in this order, each below [`inputs`](Self::inputs).
+    /// Runs a step with these inputs, in this order; each must be below [`inputs`](Self::inputs).
     pub fn step(&mut self, inputs: &[u16]) {
         self.net.step(&mut self.state, inputs);
     }
 
-    /// The neurons of each layer that fired in the last step, by rising number.
+    /// Returns the neurons of each layer that fired in the last step, in rising order.
     pub fn fired(&self) -> impl Iterator<Item = &[u16]> {
         self.state.iter().map(|state| &state.fired[..])
     }
 
-    /// The potentials of the last layer.
+    /// Returns the potentials of the last layer.
     pub fn potentials(&self) -> &[f32] {
         self.state.last().map_or(&[], |last| &last.potentials)
     }
 }
 
-/// Brings a network onto the controller, and runs it there beside double precision.
+/// Brings a network onto the controller, and compares it there with double precision.
 ///
 /// # Errors
-/// The network has too many inputs or neurons.
+/// Returns an error if the network has too many inputs or neurons.
 pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     let ControllerRequest { model, numbers, tuned, held_out, progress } = *request;
     let original = model.original(tuned);
@@ -189,9 +190,9 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
-/// The steps of the recording in which most neurons fire from rest on, those of the last layer before all.
+/// Finds the steps of the recording in which most neurons fire, starting from rest; the last layer counts first.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
-    /// Beginnings that are tried.
+    /// Number of starts that are tried.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
     let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);
@@ -204,7 +205,7 @@ fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
 }
 
 impl OnController {
-    /// Bytes of flash of weights and neurons, and of RAM.
+    /// Returns the bytes that weights and neurons take in flash, and those that the state takes in RAM.
     fn bytes_of(&self) -> (usize, usize) {
         match &self.held {
             Held::Float(net) => bytes(net, 4),
@@ -227,7 +228,7 @@ impl OnController {
     }
 }
 
-/// Flash and RAM of a network whose weights take so many bytes, as the crate's types have them.
+/// Returns the bytes in flash and RAM of a network, as the crate's types store it, if a weight takes `weight` bytes.
 fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
     let (mut flash, mut ram) = (0, 0);
     for layer in &net.layers {

@@ -1,61 +1,63 @@
-//! A network in the one form that all frameworks' neurons have, and what it does.
+//! A network in the form of `spikewire-network`, which covers the neurons of all frameworks, and its simulation.
 
 use super::super::Trains;
 use super::number::Number;
 use super::rule::{Current, Fires, Reset, Rule};
 
-/// A network in these numbers.
+/// A network in the number type `K`.
 #[derive(Clone, Debug)]
 pub(super) struct Net<K: Number> {
     pub layers: Vec<Layer<K>>,
 }
 
-/// Neurons, and what leads to them.
+/// A layer: its neurons, and the weights that lead to them.
 #[derive(Clone, Debug)]
 pub(super) struct Layer<K: Number> {
-    /// The name in its file.
+    /// Name in the file.
     pub name: String,
-    /// By input, then neuron.
+    /// The weights, by input, then by neuron.
     pub weights: Vec<Vec<K>>,
     pub own: Own<K>,
     pub neurons: Vec<Neuron<K>>,
     pub rule: Rule,
 }
 
-/// What leads a layer's spikes back to it, a step later.
+/// Recurrent weights of a layer; its spikes act through them a step later.
 #[derive(Clone, Debug)]
 pub(super) enum Own<K> {
     None,
-    /// By the neuron that fired, then neuron.
+    /// The weights, by the neuron that fired, then by neuron.
     Full(Vec<Vec<K>>),
-    /// Each to itself.
+    /// The weight of each neuron to itself.
     OneToOne(Vec<K>),
 }
 
-/// The crate's form of a neuron: `I = a I + x + bias`, then `u = b v + I + inner`; without a current `u = b v + x + bias`.
+/// A neuron: `I = a I + x + bias`, then `u = b v + I + inner`; without a current `u = b v + x + bias`. `a` and `b` are
+/// the decays, `x` is the sum of the inputs, `v` the potential before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Neuron<K: Number> {
-    /// The share of the current that a step leaves.
+    /// Factor `a` by which a step multiplies the current; `None` for a neuron without a current.
     pub current: Option<K::Factor>,
-    /// The share of the potential that a step leaves.
+    /// Factor `b` by which a step multiplies the potential.
     pub decay: K::Factor,
     pub bias: K,
-    /// What is added behind the current.
+    /// Constant added to the potential after the current.
     pub inner: K,
-    /// Neurons that never fire have none.
+    /// How the neuron fires; `None` if it never does.
     pub spike: Option<Spike<K>>,
 }
 
-/// When a neuron fires.
+/// The threshold and reset of a neuron.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spike<K> {
     pub threshold: K,
-    /// The value that the potential is set to, or what is subtracted from it.
+    /// The value to which the potential is set, or which is subtracted from it.
     pub reset: K,
 }
 
 impl<K: Number> Neuron<K> {
-    /// Takes a step with the sum of bias and inputs, and tells if the neuron fires and if a number left its range.
+    /// Runs a step; `sum` is that of bias and inputs. Returns whether the neuron fires, and whether a number left its
+    /// range.
     #[inline]
     pub(super) fn step(&self, rule: &Rule, v: &mut K, current: &mut K, sum: K) -> (bool, bool) {
         let mut is_outside = false;
@@ -110,7 +112,7 @@ impl<K: Number> Neuron<K> {
     }
 }
 
-/// What a layer keeps from step to step.
+/// The state of a layer between steps.
 #[derive(Clone)]
 pub(super) struct State<K> {
     pub potentials: Vec<K>,
@@ -123,7 +125,8 @@ impl<K: Number> Layer<K> {
         self.weights.len()
     }
 
-    /// Weights that are added in a step with so many spikes of inputs, and of its own in the step before.
+    /// Returns the number of weights added in a step, given the number of input spikes, and of the layer's own spikes
+    /// in the step before.
     pub(super) fn operations(&self, inputs: usize, own: usize) -> usize {
         let back = match self.own {
             Own::None => 0,
@@ -166,21 +169,21 @@ impl<K: Number> Layer<K> {
     }
 }
 
-/// What a network did.
+/// The outcome of a run.
 #[derive(Default)]
 pub(super) struct Done<K> {
     /// The neurons that fired, by layer and step.
     pub fired: Vec<Trains>,
-    /// The last layer's potentials, by step.
+    /// The last layer's potentials, for each step.
     pub potentials: Vec<Vec<K>>,
-    /// Weights added, by step.
+    /// Number of weights added, for each step.
     pub operations: Vec<u64>,
-    /// Numbers that left their range.
+    /// How often a number left its range.
     pub saturated: u32,
 }
 
 impl<K: Number> Net<K> {
-    /// How neurons fire, a line for all or one for each layer that does.
+    /// Describes how neurons fire: in one line for all layers, or in one for each layer that fires.
     pub(super) fn rules(&self) -> Vec<String> {
         let fires = |layer: &&Layer<K>| layer.neurons.iter().any(|neuron| neuron.spike.is_some());
         let firing: Vec<_> = self.layers.iter().filter(fires).collect();
@@ -204,7 +207,7 @@ impl<K: Number> Net<K> {
         self.layers.iter().map(rest).collect()
     }
 
-    /// Takes a step. Returns the number of weights added, and of numbers that left their range.
+    /// Runs a step. Returns the number of weights added, and how often a number left its range.
     pub(super) fn step(&self, state: &mut [State<K>], inputs: &[u16]) -> (usize, u32) {
         let (mut operations, mut saturated) = (0, 0);
         let mut drive = inputs.to_vec();

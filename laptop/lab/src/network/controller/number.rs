@@ -1,17 +1,17 @@
-//! Numbers of a network: double precision, and those of the controller.
+//! The number types of a network: double precision, and those of the controller.
 
 use std::fmt::Debug;
 
-/// A number with the operations of a neuron, each rounded by itself, as the crate has them.
+/// A number type with a neuron's operations, each rounded as in `spikewire-network`.
 pub(super) trait Number: Copy + Default + PartialOrd + Debug + Send + Sync {
-    /// A decay.
+    /// The type of a decay.
     type Factor: Copy + PartialEq + Debug + Send + Sync;
 
     fn scaled(self, factor: Self::Factor) -> Self;
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
 
-    /// The number in its range, and whether it was outside.
+    /// Clamps the number to its range; returns whether it was outside.
     fn bounded(self) -> (Self, bool) {
         (self, false)
     }
@@ -40,10 +40,10 @@ macro_rules! float {
 float!(f64);
 float!(f32);
 
-/// The range of potentials and currents in whole numbers.
+/// Bound of potentials and currents in integers.
 pub(super) const RANGE: i32 = 1 << 29;
 
-/// The decay that stands for 1, in whole numbers.
+/// The integer that represents a decay of 1.
 pub(super) const ONE: f64 = 65_536.0;
 
 impl Number for i32 {

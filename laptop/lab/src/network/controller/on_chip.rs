@@ -1,18 +1,18 @@
-//! A network in the crate's form as the chips take it: neurons at rest at 0, without a current.
+//! Converts a network from the form of `spikewire-network` to that of the chips: neurons rest at 0 and have no current.
 
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
 use super::net::{Layer, Neuron, Own, Spike};
 use crate::network::fault::{Context, Result, ensure};
 
-/// The share of a current that a step may leave of it.
+/// Largest share of a current that may remain after a step.
 const CURRENT: f64 = 1e-3;
 
 impl Model {
-    /// The network as the chips take it.
+    /// Converts the network for the chips.
     ///
     /// # Errors
-    /// A current lasts, or outputs that never fire have a bias.
+    /// Returns an error if a current lasts longer than a step, or if outputs that never fire have a bias.
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =
@@ -29,7 +29,7 @@ impl Model {
     }
 }
 
-/// Weights by neuron, from those by input.
+/// Transposes weights, from rows by input to rows by neuron.
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let neurons = rows.first().map_or(0, Vec::len);
     (0..neurons).map(|neuron| rows.iter().map(|row| row[neuron]).collect()).collect()

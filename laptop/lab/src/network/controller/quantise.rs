@@ -1,4 +1,4 @@
-//! From double precision to the controller's numbers.
+//! Converts a network from double precision to the controller's number types.
 
 use super::super::{Distance, Trains};
 use super::net::{Layer, Net, Neuron, Own, Spike};
@@ -7,19 +7,20 @@ use super::rule::Rule;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Shares of the scale at which the largest weight is 127: above 1 it is clipped, for the sake of the others.
+/// Scales that are tried, as multiples of the one at which the largest weight becomes 127. Above 1 the largest weights
+/// are clipped, so that the others are rounded less.
 const SCALES: [f64; 14] =
     [1.0, 0.97, 0.94, 0.91, 0.88, 0.85, 0.8, 0.75, 0.7, 1.05, 1.1, 1.2, 1.4, 1.8];
-/// The largest weight.
+/// Largest weight.
 const LARGEST: f64 = 127.0;
-/// Binary places by which potentials are finer than weights, where nothing speaks against it.
+/// Binary places by which potentials are finer than weights, if their range allows.
 const SHIFT: u32 = 8;
-/// The largest bias, threshold and reset value.
+/// Largest bias, threshold and reset value.
 const MOST: f64 = (1 << 27) as f64;
-/// Steps of the recording that the search looks at.
+/// Number of steps of the recording that the search uses.
 const STEPS: usize = 4_000;
 
-/// Each number rounded once.
+/// Rounds each number to `f32`.
 pub(super) fn float(net: &Net<f64>) -> Net<f32> {
     let row = |row: &Vec<f64>| row.iter().map(|&weight| weight as f32).collect::<Vec<_>>();
     let layer = |layer: &Layer<f64>| Layer {
@@ -52,16 +53,16 @@ pub(super) fn float(net: &Net<f64>) -> Net<f32> {
 /// A network with weights of 8 bits.
 pub(super) struct Integers {
     pub net: Net<i32>,
-    /// By layer, how weights are shifted.
+    /// How far each layer's weights are shifted, in bits.
     pub shifts: Vec<u32>,
-    /// By layer, the weights that were larger than 8 bits hold.
+    /// Number of weights of each layer that exceeded 8 bits.
     pub clipped: Vec<usize>,
-    /// What a potential of 1 stands for, for each neuron of the last layer.
+    /// The value that a potential of 1 represents, for each neuron of the last layer.
     pub units: Vec<f64>,
 }
 
-/// Finds for each neuron the scale of its weights with which its spikes, or its potentials if it never fires, are nearest
-/// to the original's. `fired` and `potentials` are the original's.
+/// Finds for each neuron the scale of its weights at which its spikes are nearest to the original's, or its potentials
+/// if it never fires. `fired` and `potentials` are the original's.
 pub(super) fn integers(
     net: &Net<f64>,
     inputs: &Trains,
@@ -106,15 +107,15 @@ fn has(fired: &[u16], neuron: usize) -> bool {
     fired.binary_search(&(neuron as u16)).is_ok()
 }
 
-/// What leads to one neuron, and the neuron, in whole numbers.
+/// A neuron in integers, and the weights that lead to it.
 struct Column {
-    /// By input, shifted.
+    /// The weights by input, shifted.
     weights: Vec<i32>,
-    /// By the neuron of the layer that fired, shifted; of each to itself alone, one.
+    /// The recurrent weights by the neuron that fired, shifted; a single one if each neuron leads to itself alone.
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
-    /// What a potential of 1 stands for.
+    /// The value that a potential of 1 represents.
     unit: f64,
 }
 
@@ -127,7 +128,7 @@ impl Layer<f64> {
         }
     }
 
-    /// The scale at which a neuron's largest weight is 127.
+    /// Returns the scale at which a neuron's largest weight becomes 127.
     fn scale(&self, at: usize) -> f64 {
         let own = self.own_weights(at);
         let weights = self.weights.iter().map(|row| row[at]).chain(own);
@@ -141,7 +142,7 @@ impl Layer<f64> {
         }
     }
 
-    /// The shift that leaves thresholds and biases in their range.
+    /// Returns the largest shift at which thresholds and biases stay in their range.
     fn shift(&self) -> u32 {
         let numbers = (0..self.neurons.len()).map(|at| self.neurons[at].largest() * self.scale(at));
         let most = numbers.fold(0.0, f64::max);
@@ -207,7 +208,8 @@ impl Column {
         Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
     }
 
-    /// How far the neuron is from what it should do, with the layer's other spikes as the original has them.
+    /// Returns how far the neuron's spikes or potentials are from the target, with the layer's other spikes as in the
+    /// original.
     fn distance(
         &self,
         rule: Rule,

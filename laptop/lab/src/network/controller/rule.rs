@@ -1,4 +1,4 @@
-//! The rule by which neurons step, which a NIR file does not say.
+//! The rule by which neurons decay, fire and reset, which a NIR file does not contain.
 
 use super::open::Choice;
 use crate::network::fault::{NetworkKind, Result};
@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 /// The framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// snnTorch, which trains with five kinds of reset and writes none of them.
+    /// snnTorch, which trains with five kinds of reset and writes none of them into its files.
     SnnTorch,
     /// Norse.
     Norse,
@@ -17,91 +17,91 @@ pub enum Framework {
     Rockpool,
     /// Sinabs.
     Sinabs,
-    /// The reference program of NIR itself.
+    /// NIR's own reference program.
     Nir,
 }
 
-/// What a spike does to its neuron, by the crate's types of these names.
+/// What a spike does to its neuron's potential; the names are those of the types in `spikewire-network`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reset {
     /// Sets the potential to `v_reset` in the same step.
     ToValue,
-    /// Sets it at the beginning of the next step.
+    /// Sets the potential to `v_reset` at the beginning of the next step.
     ToValueLate,
-    /// Holds it at `v_reset` through the next step.
+    /// Holds the potential at `v_reset` through the next step.
     ToValueHeld,
     /// Subtracts the threshold in the same step.
     Subtract,
-    /// Subtracts it in the next step.
+    /// Subtracts the threshold in the next step.
     SubtractLate,
     /// snnTorch's subtraction with `reset_delay=False`.
     SubtractNoDelay,
 }
 
-/// The potential at which a neuron fires.
+/// How the potential is compared with the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fires {
-    /// Above the threshold.
+    /// Fires above the threshold.
     Above,
-    /// At the threshold already.
+    /// Fires at or above the threshold.
     At,
 }
 
-/// The share of a potential that a step leaves.
+/// How a time constant `tau` becomes the factor of a step of length `dt`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
     /// 1 - dt / tau.
     Euler,
-    /// e to the -dt / tau.
+    /// e to the power of -dt / tau.
     Exponential,
 }
 
-/// The current that a potential takes, of neurons with both.
+/// Which current drives the potential, for neurons that have both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Current {
-    /// That of this step.
+    /// The current of this step.
     New,
-    /// That of the step before.
+    /// The current of the step before.
     Old,
-    /// That of this step, to which a spike adds its whole weight, as in Norse's `LIFCell`.
+    /// The current of this step, to which a spike adds its whole weight, as in Norse's `LIFCell`.
     Whole,
 }
 
-/// The choices as far as they are said.
+/// The parts of a rule that a user gave.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
-    /// The framework, which says some of the others.
+    /// The framework, which implies some of the others.
     pub framework: Option<Framework>,
-    /// What a spike does: of all neurons, or of each layer that fires; nothing if it is not said.
+    /// What a spike does: one entry for all layers, or one for each layer that fires; empty if not given.
     pub resets: Vec<Reset>,
-    /// When a neuron fires.
+    /// How potentials are compared with thresholds.
     pub fires: Option<Fires>,
     /// How potentials and currents decay.
     pub decay: Option<Decay>,
-    /// Which current is taken.
+    /// Which current drives the potential.
     pub current: Option<Current>,
-    /// Seconds of a step.
+    /// Length of a step, in seconds.
     pub dt: Option<f64>,
 }
 
-/// The whole rule of a layer.
+/// The complete rule of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     /// The framework, if it was named.
     pub framework: Option<Framework>,
-    /// What a spike does.
+    /// What a spike does to its neuron's potential.
     pub reset: Reset,
-    /// When a neuron fires.
+    /// How potentials are compared with thresholds.
     pub fires: Fires,
     /// How potentials and currents decay.
     pub decay: Decay,
-    /// Which current is taken.
+    /// Which current drives the potential.
     pub current: Current,
-    /// Seconds of a step.
+    /// Length of a step, in seconds.
     pub dt: f64,
 }
 
-/// The rule of networks in JSON, whose numbers are by step: above the threshold, to 0, at once.
+/// The rule of networks in JSON, whose numbers are for a step: fires above the threshold, and sets to 0 at once.
 pub(super) const PLAIN: Rule = Rule {
     framework: None,
     reset: Reset::ToValue,
@@ -111,22 +111,22 @@ pub(super) const PLAIN: Rule = Rule {
     dt: 1.0,
 };
 
-/// The step that snnTorch and `SpikingJelly` write with, unless they are told another.
+/// Length of the step, in seconds, with which snnTorch and `SpikingJelly` write files by default.
 const WRITTEN: f64 = 1e-4;
 
-/// The parts of a network that need a choice.
+/// Which parts of a rule a network needs.
 #[derive(Clone, Copy)]
 pub(super) struct Needs {
-    /// Neurons that fire.
+    /// Whether it has neurons that fire.
     pub fires: bool,
-    /// Neurons with a current.
+    /// Whether it has neurons with a current.
     pub current: bool,
-    /// Time constants.
+    /// Whether it has time constants.
     pub time: bool,
 }
 
 impl Framework {
-    /// Its name, as it is asked for.
+    /// Returns the name by which users choose the framework.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SnnTorch => "snntorch",
@@ -138,7 +138,7 @@ impl Framework {
         }
     }
 
-    /// What it says by itself.
+    /// Returns the parts of the rule that the framework implies.
     fn says(self) -> Asked {
         use {Current as C, Decay as D, Fires as F, Framework as W, Reset as R};
         let (reset, fires, decay, current, dt) = match self {
@@ -154,17 +154,17 @@ impl Framework {
         Asked { framework: Some(self), resets, fires, decay: Some(decay), current, dt }
     }
 
-    /// Whether its files mean gains of 1, which rounding leaves beside 1.
+    /// Returns whether gains near 1 in the framework's files are meant to be exactly 1.
     pub(super) const fn means_ones(self) -> bool {
         matches!(self, Self::SnnTorch | Self::SpikingJelly)
     }
 }
 
 impl Asked {
-    /// The whole rule.
+    /// Returns the complete rule.
     ///
     /// # Errors
-    /// A choice that the network needs is not said; the error lists all of them.
+    /// Returns an error that lists all missing parts which the network needs.
     pub(super) fn rule(&self, needs: Needs) -> Result<Rule> {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         let (reset, fires) = (self.reset(&says), self.fires.or(says.fires));
@@ -193,7 +193,7 @@ impl Asked {
         })
     }
 
-    /// The rule of a network in JSON, which says it unless something else is asked for.
+    /// Returns the rule of a network in JSON, changed by what was asked for.
     pub(in super::super) fn or_plain(&self) -> Rule {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Rule {
@@ -204,7 +204,7 @@ impl Asked {
         }
     }
 
-    /// The same, with what every chip has where nothing is said, and with a recording's time of a step.
+    /// Completes the rule with what holds for every chip, and with `seconds`, the step of a recording.
     pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Self {
@@ -216,14 +216,14 @@ impl Asked {
         }
     }
 
-    /// The first layer's reset, by what is asked for or what the framework says.
+    /// Returns the first layer's reset: the one asked for, or the framework's.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }
 }
 
 impl Reset {
-    /// The crate's type.
+    /// Returns the name of the type in `spikewire-network`.
     pub(super) const fn type_name(self) -> &'static str {
         match self {
             Self::ToValue => "ToValue",
@@ -235,7 +235,7 @@ impl Reset {
         }
     }
 
-    /// Whether a spike subtracts the threshold, rather than set the potential.
+    /// Returns whether a spike subtracts the threshold, rather than setting the potential.
     pub const fn subtracts(self) -> bool {
         !matches!(self, Self::ToValue | Self::ToValueLate | Self::ToValueHeld)
     }

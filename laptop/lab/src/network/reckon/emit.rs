@@ -1,4 +1,4 @@
-//! The network as Rust: constant data for `spikewire_chips`.
+//! Writes the network as Rust: constant data for `spikewire_chips`.
 
 use super::super::chip::{Told, lines, list};
 use super::Quantised;

@@ -34,7 +34,7 @@ impl Chip for ReckOn {
     }
 }
 
-/// SPI clocks of a word and its header.
+/// Number of SPI clocks for a word and its header.
 const FRAME: u32 = 64;
 
 impl OnChip for Quantised {

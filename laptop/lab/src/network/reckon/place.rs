@@ -1,4 +1,4 @@
-//! The places of the layers' neurons on the chip.
+//! Assigns the layers' neurons to the chip's.
 
 use super::super::Trained;
 use crate::network::fault::{Result, ensure};
@@ -7,17 +7,18 @@ const NEURONS: usize = 256;
 const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
 
-/// The chip's neurons in pairs, which share leak and threshold: a pair is of one layer, of neurons that leak alike.
+/// The assignment of neurons. The chip's neurons form pairs that share leak and threshold: both belong to one layer,
+/// and leak alike.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// The layer and neuron of each of the chip's neurons; `None` where a layer's last pair has one neuron only.
+    /// Layer and neuron for each of the chip's neurons; `None` for the free half of a layer's last pair.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
-    /// The chip's neuron of each layer and neuron.
+    /// The chip's neuron, by layer and neuron.
     by_layer: Vec<Vec<usize>>,
 }
 
 impl Places {
-    /// Finds room for the network.
+    /// Assigns all neurons of the network.
     ///
     /// # Errors
     /// Returns an error if the chip has too few neurons, inputs or outputs.
@@ -65,12 +66,12 @@ impl Places {
         Ok(Self { neurons, by_layer })
     }
 
-    /// The neuron of the chip.
+    /// Returns the chip's neuron for a neuron of a layer.
     pub(super) fn of(&self, layer: usize, neuron: usize) -> usize {
         self.by_layer[layer][neuron]
     }
 
-    /// The neurons of a pair, by layer and neuron.
+    /// Returns the neurons of each pair, as layer and neuron.
     pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
     }

@@ -9,22 +9,22 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A share of the potential, as the chip holds it for neurons and for outputs.
+/// The integer that represents a factor of 1: for neurons, and for outputs.
 const KEEP: f64 = 32_768.0;
 const OUTPUT_KEEP: f64 = 128.0;
-/// The least that a neuron keeps.
+/// Smallest factor that the chip can hold for a neuron.
 const LEAST_KEEP: f64 = 0.875;
 const LARGEST: f64 = 127.0;
-/// The largest potential that the recording may make: the rest of the range is for other recordings.
+/// Largest potential that the recording may reach; the rest of the range is left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// The scales that are tried, as parts of the one with which the largest weight just fits.
+/// Scales that are tried, as multiples of the one at which the largest weight just fits.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
-/// Shifts left that weights may have.
+/// Number of left shifts that weights may have.
 const SHIFTS: u8 = 8;
-/// An output without weights of its own follows its neuron: half of it is left each step, so that the bits of the
-/// potential are the neuron's last steps.
+/// Weight, shift and factor of an output without trained weights, which follows its neuron. A step halves its
+/// potential, so that the bits of the potential are the neuron's last steps.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// The bit of an answer that says whether the neuron has fired last.
+/// Bit of an answer that says whether the neuron fired last.
 pub(super) const FIRED: u32 = 12;
 
 /// A network as `ReckOn` holds it.
@@ -32,46 +32,47 @@ pub(super) const FIRED: u32 = 12;
 pub(super) struct Quantised {
     pub(super) places: Places,
     pub(super) pairs: Vec<ReckOnPair>,
-    /// The weights by input, then neuron. The bias is the last input, if there is one.
+    /// The weights, by input, then by neuron. The bias is the last input, if there is one.
     pub(super) inputs: Vec<Vec<i8>>,
-    /// The weights by neuron that sends, then neuron.
+    /// The weights, by sending neuron, then by receiving neuron.
     pub(super) recurrent: Vec<Vec<i8>>,
-    /// The weights by neuron, then output.
+    /// The weights, by neuron, then by output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
-    /// The input that every step must be told.
+    /// The input that carries the bias and must fire in every step, if there is one.
     pub(super) bias: Option<usize>,
-    /// The name and size of each layer.
+    /// Name and size of each layer.
     pub(super) layers: Vec<(String, usize)>,
-    /// The value of an answer of 1 in the training's units; `None` if an answer's bits are the spikes of a neuron.
+    /// The value that an answer of 1 represents, in the training's units; `None` if an answer's bits are a neuron's
+    /// spikes.
     pub(super) unit: Option<f64>,
-    /// The change of each layer's weights, then of the outputs', if they have any.
+    /// How rounding changed the weights of each layer, then those of the outputs, if they have any.
     pub(super) changes: Vec<Change>,
-    /// Neurons and outputs that leak otherwise than trained, and by how much at most.
+    /// Number of neurons and outputs whose leak differs from the trained one, and the largest difference.
     pub(super) shared_keeps: (usize, f64),
 }
 
-/// The change of weights by rounding.
+/// How rounding changed a set of weights.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Change {
     pub(super) name: String,
     pub(super) weights: usize,
-    /// Larger than the chip's.
+    /// Number of weights that exceeded the chip's range.
     pub(super) clipped: usize,
-    /// Too small for the chip.
+    /// Number of weights that were rounded to 0.
     pub(super) vanished: usize,
-    /// The sums of the squares of the weights, and of their changes.
+    /// Sum of the squared weights, and sum of their squared changes.
     sums: [f64; 2],
 }
 
 impl Change {
-    /// The root mean square of the changes to that of the weights.
+    /// Returns the ratio of the root mean square of the changes to that of the weights.
     pub(super) fn relative(&self) -> f64 {
         let [weights, changes] = self.sums;
         if weights > 0.0 { (changes / weights).sqrt() } else { 0.0 }
     }
 
-    /// The weight on the chip, for a weight of `1` that is `scale` there before it is shifted.
+    /// Rounds a weight for the chip; a weight of 1 becomes `scale`, before it is shifted.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let rounded = (weight * scale).round();
         let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
@@ -85,17 +86,17 @@ impl Change {
     }
 }
 
-/// A neuron and all that leads to it, its threshold taken as 1.
+/// A neuron and the weights that lead to it, divided by its threshold.
 struct Source {
     layer: usize,
     neuron: usize,
     keep: f64,
-    /// The weights of each input; the bias is the last, if there is one.
+    /// The weights of the inputs; the bias is the last, if there is one.
     inputs: Vec<f64>,
-    /// Neurons of the chip, and their weights.
+    /// Neurons of the chip that lead to it, with their weights.
     recurrent: Vec<(usize, f64)>,
     has_bias: bool,
-    /// The largest potential.
+    /// Largest potential in double precision.
     peak: f64,
 }
 
@@ -112,7 +113,7 @@ impl Source {
     }
 }
 
-/// The scale of a pair: the largest with which its largest weights and potentials fit.
+/// Returns the largest scale at which the weights and potentials of a pair fit.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -122,7 +123,7 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     (ROOM / room).min(of_kind(0)).min(of_kind(1))
 }
 
-/// How much the weights of a pair change, as a sum of squares, beside what leaks lose by rounding.
+/// Returns how much rounding changes a pair: the sum of the squared changes of its weights, and of its leaks' losses.
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -136,9 +137,9 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     pair.iter().map(of_source).sum()
 }
 
-/// Brings a network onto the chip: the shifts with which weights change least, then for each pair of neurons the scale
-/// with which its spikes are nearest to the original's, driven by what fires in double precision. Calls `progress` with
-/// the neurons that are done and those in all.
+/// Brings a network onto the chip. First chooses the shifts with which the weights change least; then for each pair of
+/// neurons the scale at which its spikes are nearest to the original's, driven by the spikes in double precision. Calls
+/// `progress` with the number of neurons that are done, and the number in all.
 ///
 /// # Errors
 /// Returns an error if the network does not fit.
@@ -277,7 +278,7 @@ fn source(
     Source { layer: at, neuron, keep, inputs, recurrent, has_bias, peak: peak / threshold }
 }
 
-/// The largest potentials in double precision, by layer and neuron.
+/// Returns the largest potentials in double precision, by layer and neuron.
 fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> {
     let before = std::iter::once(inputs).chain(fired);
     let of_layer = |(layer, before): (&Layer, &Trains)| {
@@ -288,15 +289,15 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
     trained.layers.iter().zip(before).map(of_layer).collect()
 }
 
-/// The input that drives a layer in a step.
+/// The spikes that drive a layer in a step.
 struct Drive {
-    /// Inputs of the network, each once.
+    /// Inputs of the network, each at most once.
     inputs: Vec<u16>,
-    /// Neurons of the layer before, in the same step, and its own in the step before: by layer and neuron.
+    /// Neurons of the layer before, in the same step, and the layer's own in the step before, as layer and neuron.
     neurons: Vec<(usize, usize)>,
 }
 
-/// By layer and step, as it is in double precision.
+/// Returns the spikes in double precision that drive each layer in each step.
 fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive>> {
     let of_layer = |(at, layer): (usize, &Layer)| {
         let of_step = |step: usize| {
@@ -321,7 +322,7 @@ fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive
     trained.layers.iter().enumerate().map(of_layer).collect()
 }
 
-/// How all neurons fire.
+/// How all neurons fire and reset.
 #[derive(Clone, Copy)]
 struct Firing {
     resets_to_zero: bool,
@@ -370,7 +371,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// How far its spikes are from the original's.
+    /// Returns the distance of its spikes from the original's.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let mut is_over = false;
@@ -393,7 +394,7 @@ impl<'a> Held<'a> {
 }
 
 impl Quantised {
-    /// Ticks from a step's own to the one whose answer shows what its inputs did.
+    /// Returns the number of ticks from a step to the one whose answer shows the effect of the step's inputs.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
     }
@@ -421,7 +422,7 @@ impl Quantised {
         *most = most.max(difference);
     }
 
-    /// Outputs whose potentials are read.
+    /// Sets the outputs' weights, for a network whose outputs are potentials.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
         let mean = keep.iter().sum::<f64>() / keep.len() as f64;
@@ -456,7 +457,7 @@ impl Quantised {
         Ok(())
     }
 
-    /// An output for each neuron of the last layer.
+    /// Adds an output for each neuron of the last layer, which follows its spikes.
     fn follow(&mut self, last: usize) {
         let (weight, shift, keep) = FOLLOWS;
         let outputs = self.layers[last].1;

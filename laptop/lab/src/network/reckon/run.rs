@@ -1,4 +1,4 @@
-//! The network on the chip's model, clock by clock, through the crate's driver.
+//! Runs the network on the chip's model, clock by clock, through the driver of `spikewire-chips`.
 
 use super::super::Trains;
 use super::super::chip::{Ran, refused};
@@ -10,15 +10,15 @@ use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
 
 type Chip = ReckOn<Spi, Port>;
 
-/// The chip's clocks to one of its SPI.
+/// Number of the chip's clocks for one SPI clock.
 const RATIO: u32 = 10;
 
-/// Loads the network, verifies it and runs it as one sample: each step's inputs, its bias, then a tick. Neurons of the
-/// first layer fire at the next tick, those of each further layer one later, and outputs show what the last layer fired
-/// at the tick after; all are told in the step in which they fire in double precision.
+/// Loads the network, verifies it and runs it as one sample: for each step its inputs, the bias and a tick. Neurons of
+/// the first layer fire at the next tick, those of each further layer one tick later, and outputs show the last layer's
+/// spikes one tick after that. The result assigns all of them to the step in which they fire in double precision.
 ///
 /// # Errors
-/// The chip refuses something.
+/// Returns an error if the chip refuses a call.
 pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
     let board = Board::new(RATIO, 1);
     let mut chip = Chip::new(board.spi(), board.port(), Chip::MAX_CLOCKS);

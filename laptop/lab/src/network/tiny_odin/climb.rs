@@ -1,8 +1,8 @@
-//! The search for a neuron's numbers: the nearest of its first choices, and from there the nearest neighbours.
+//! The search for a neuron's numbers, by hill climbing.
 
-/// Finds the choice that is nearest to the original, and its distance. From the best `climbs` of the first choices it goes
-/// on to neighbours for as long as one is nearer. `distance` may give up where a choice is no nearer than its second
-/// argument, as almost all are.
+/// Finds the choice with the smallest distance from the original; returns both. The `climbs` best of the first choices
+/// are replaced by a neighbour for as long as that is nearer. `distance` is given the smallest distance so far, and may
+/// give up once a choice exceeds it, as almost all do.
 pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
     first: impl IntoIterator<Item = C>,
     neighbours: impl Fn(C) -> N,

@@ -1,10 +1,10 @@
-//! The network as Rust: constant data for `spikewire_chips`.
+//! Writes the network as Rust: constant data for `spikewire_chips`.
 
 use super::super::chip::{Told, lines, list};
 use super::Quantised;
 use spikewire_chips::{Describe, TinyOdinNeuron};
 
-/// A file of Rust, which compiles without `std` beside the crate's feature `embedded-hal`.
+/// Writes Rust source, which compiles without `std` if `spikewire-chips` has its feature `embedded-hal`.
 pub(super) fn emit(network: &Quantised, told: &Told) -> String {
     let (count, inputs) = (network.neurons(), network.inputs());
     let outputs = (0..count).filter(|&neuron| network.output(neuron as u8).is_some());

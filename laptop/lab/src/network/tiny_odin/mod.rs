@@ -1,4 +1,4 @@
-//! tinyODIN: 256 neurons, weights of 4 bits, thresholds looked at after every spike.
+//! Brings networks onto tinyODIN: 256 neurons, weights of 4 bits, thresholds compared after every spike.
 
 mod climb;
 mod emit;
@@ -67,7 +67,7 @@ impl Chip for TinyOdin {
     }
 }
 
-/// The part of a recording on which a network's numbers are found.
+/// Share of a recording on which a network's numbers are searched, as numerator and denominator.
 const FOUND: (usize, usize) = (3, 4);
 
 impl OnChip for Quantised {

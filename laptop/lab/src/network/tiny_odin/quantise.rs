@@ -13,69 +13,69 @@ const NEURONS: usize = 256;
 const ROWS: usize = 256;
 const MAX_THRESHOLD: f64 = 2047.0;
 const MAX_LEAK: f64 = 127.0;
-/// The values tried for the largest weight: above 7 it is clipped, for the sake of the others.
+/// Largest weights that are tried. Above 7 the largest weights are clipped, so that the others are rounded less.
 const LARGEST: [f64; 20] = [
     7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 10.0, 3.0, 12.0, 2.0, 14.0, 1.0, 16.0, 6.5, 5.5, 4.5, 3.5, 7.5,
     8.5, 20.0,
 ];
-/// Number of choices from which the search goes on.
+/// Number of choices from which the search climbs.
 const CLIMBS: usize = 2;
-/// The leaks that are tried, as parts of the leak at half the threshold.
+/// Leaks that are tried, as multiples of what the original loses at half the threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
-/// Neurons of each layer that tell which steps suit it.
+/// Number of neurons of each layer on which the number of steps between leaks is tried.
 const SURVEYED: usize = 32;
-/// Stands for a leak among weights.
+/// The marker of a leak among weights.
 const LEAK: i8 = i8::MIN;
-/// The spikes of a layer in a step after which it counts as one that drives itself.
+/// Number of a layer's spikes in a step from which it counts as driving itself without end.
 const MOST_SPIKES: usize = 10_000;
-/// Steps from one leak to the next, of all neurons, that are tried.
+/// Numbers of steps between two leaks of all neurons that are tried.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
 
-/// A network as tinyODIN holds it: the layers' neurons one after the other, then, if a layer has a bias, an input more
-/// that every step must be told.
+/// A network as tinyODIN holds it: the neurons of all layers one after the other. If a layer has a bias, there is one
+/// more input, which must fire in every step.
 #[derive(Clone, Debug)]
 pub(super) struct Quantised {
     /// The layers.
     pub layers: Vec<ChipLayer>,
-    /// Inputs without the bias.
+    /// Number of inputs, without the bias.
     inputs: usize,
     /// Whether there is a bias.
     pub has_bias: bool,
-    /// Whether neurons send spikes to neurons.
+    /// Whether a layer is recurrent.
     is_recurrent: bool,
-    /// How many steps go from one leak of all neurons to the next.
+    /// Number of steps between two leaks of all neurons.
     pub steps_a_leak: usize,
 }
 
 /// A layer's neurons.
 #[derive(Clone, Debug)]
 pub(super) struct ChipLayer {
-    /// The name in its file.
+    /// Name in the file.
     pub name: String,
-    /// How many spikes it takes from before it.
+    /// Number of inputs from the layer before.
     inputs: usize,
     /// The neurons, in order.
     pub neurons: Vec<ChipNeuron>,
 }
 
-/// A neuron, and what leads to it.
+/// A neuron, and the weights that lead to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ChipNeuron {
-    /// The weights by input, then in a recurrent layer by its neurons.
+    /// The weights, by input, then in a recurrent layer by its neurons.
     pub weights: Vec<i8>,
-    /// The weight that every step adds.
+    /// Weight that every step adds.
     pub bias: i8,
-    /// The potential at which it fires.
+    /// Potential at which it fires.
     pub threshold: u16,
-    /// The amount that a leak takes off.
+    /// Amount that a leak subtracts.
     pub leak: u8,
-    /// How many weights were larger than the chip's.
+    /// Number of weights that exceeded the chip's range.
     pub clipped: usize,
 }
 
-/// Brings a network onto the chip, layer by layer: for each neuron the scale of its weights, its threshold and its
-/// leak with which its spikes are nearest to the original's, driven by what the chip's layer before fires, in the chip's
-/// order. Calls `progress` with the neurons that are done and those in all.
+/// Brings a network onto the chip, layer by layer. Finds for each neuron the scale of its weights, the threshold and
+/// the leak with which its spikes are nearest to the original's, driven by the spikes of the chip's layer before in the
+/// chip's order. Calls `progress` with the number of neurons that are done, and the number in all.
 ///
 /// # Errors
 /// Returns an error if the network does not fit.
@@ -172,16 +172,17 @@ fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
     Ok(())
 }
 
-/// The spikes that drive a layer, by step: its inputs, then in a recurrent layer its own neurons, counted on from them.
+/// The spikes that drive a layer, by step: its inputs, then in a recurrent layer its own neurons, numbered on from the
+/// inputs.
 struct Drive {
-    /// The end of each step's spikes.
+    /// Where each step's spikes end.
     ends: Vec<usize>,
     spikes: Vec<u16>,
 }
 
 impl Drive {
-    /// The spikes as the chip's neurons see them: those of neurons come in their own step, behind the inputs. `fired`
-    /// is what the layer itself will do.
+    /// Lists the spikes as the chip's neurons see them: spikes of neurons come in their own step, after the inputs.
+    /// `fired` is the layer's own spikes.
     fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
         let (mut ends, mut spikes) = (Vec::new(), Vec::new());
         let first = layer.inputs() as u16;
@@ -196,7 +197,7 @@ impl Drive {
     }
 }
 
-/// How often each neuron fires, by step.
+/// Returns for each neuron and step how often the neuron fires.
 fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
     let mut counts = vec![vec![0; fired.len()]; neurons];
     for (step, fired) in fired.iter().enumerate() {
@@ -208,8 +209,9 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
 }
 
 impl ChipLayer {
-    /// Who fires, by step, in the chip's order: after each spike every neuron looks at its threshold, and a neuron's
-    /// own spikes wait behind those that came before. `own` is the first index of the layer's own spikes.
+    /// Returns the neurons that fire in each step, in the chip's order: after each spike every neuron compares with its
+    /// threshold, and the layer's own spikes queue behind earlier ones. `own` is the index of the layer's first own
+    /// spike.
     fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
         let mut potentials = vec![0_i32; self.neurons.len()];
         let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {
@@ -254,21 +256,22 @@ impl ChipLayer {
 /// The searched settings of a neuron.
 #[derive(Clone, Copy)]
 struct Choice {
-    /// The value of a weight of 1 on the chip.
+    /// The value that a weight of 1 on the chip represents.
     unit: f64,
     threshold: u16,
     leak: u8,
 }
 
-/// The spikes that a neuron should have.
+/// The spikes that a neuron should have, and those that drive it.
 struct Aim<'a> {
     drive: &'a Drive,
-    /// How often it fires, by step.
+    /// How often the neuron fires, for each step.
     target: &'a [u16],
     steps_a_leak: usize,
 }
 
-/// The best neuron, and its distance from the original. From the best choices the search goes on, from so many.
+/// Finds the numbers with which a neuron is nearest to the original, and returns their distance with them. Climbs from
+/// the `climbs` best first choices.
 fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuron) {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();
@@ -280,7 +283,7 @@ fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuro
     (least, neuron(best))
 }
 
-/// The first choices of the search: scales, with the threshold that belongs to them and some leaks.
+/// Returns the first choices of the search: scales with their thresholds, and some leaks.
 fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -334,7 +337,7 @@ impl ChipNeuron {
         Self { weights, bias, threshold, leak, clipped }
     }
 
-    /// The potential after a weight, or after a [`LEAK`].
+    /// Returns the potential after a weight, or after a [`LEAK`].
     fn driven(&self, potential: i32, weight: i8) -> i32 {
         if weight == LEAK {
             potential.signum() * (potential.abs() - i32::from(self.leak)).max(0)
@@ -343,7 +346,7 @@ impl ChipNeuron {
         }
     }
 
-    /// How far its spikes are from what they should be; infinite if that is `most` or more.
+    /// Returns the distance of its spikes from the target, or infinity once that reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let threshold = i32::from(self.threshold);
@@ -379,7 +382,7 @@ impl ChipNeuron {
 }
 
 impl Quantised {
-    /// The layer and the place in it of a neuron of the chip.
+    /// Returns the layer of one of the chip's neurons, and its index in it.
     pub(super) fn place(&self, neuron: usize) -> Option<(usize, usize)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
@@ -391,12 +394,12 @@ impl Quantised {
         None
     }
 
-    /// Whether a leak does anything.
+    /// Returns whether a leak has any effect.
     pub(super) fn leaks(&self) -> bool {
         self.layers.iter().flat_map(|layer| &layer.neurons).any(|neuron| neuron.leak > 0)
     }
 
-    /// How many neurons.
+    /// Returns the number of neurons.
     pub(super) fn count(&self) -> usize {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
@@ -464,7 +467,8 @@ mod tests {
     use super::*;
     use crate::network::{Fires, Reset};
 
-    /// Steps of a spike at most: of several the chip's neuron may fire at the first, and keep what the others add.
+    /// Steps have one spike at most: with several, the chip's neuron might fire at the first, and keep what the others
+    /// add.
     fn some(inputs: u16, steps: u32) -> Trains {
         let fires = |step: u32, input: u16| {
             let mixed = (step * 257 + u32::from(input) * 7919).wrapping_mul(0x9E37_79B9);
@@ -487,7 +491,7 @@ mod tests {
         }
     }
 
-    /// A network that the chip can hold comes out as it is: the neurons fire at the same steps.
+    /// The weights fit the chip exactly: the neurons fire at the same steps.
     #[test]
     fn whole_weights_without_a_leak_lose_nothing() {
         let weights = vec![vec![3.0, 7.0, 1.0], vec![2.0, 0.0, 5.0]];

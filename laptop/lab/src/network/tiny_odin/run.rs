@@ -1,4 +1,4 @@
-//! The network on the chip's model, clock by clock, through the crate's driver.
+//! Runs the network on the chip's model, clock by clock, through the driver of `spikewire-chips`.
 
 use super::super::Trains;
 use super::super::chip::{Ran, Stepped, refused};
@@ -7,21 +7,21 @@ use crate::Result;
 use silicon::Board;
 use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
-/// The chip's clocks to one of its SPI.
+/// Number of the chip's clocks for one SPI clock.
 pub(super) const RATIO: u32 = 4;
 
-/// The steps that come, each the inputs that fire.
+/// The steps as they arrive, each with the inputs that fire.
 pub(super) type Steps<'a> = dyn Iterator<Item = Result<Vec<u16>>> + 'a;
 
-/// Told what came of each step.
+/// A function that is given the outcome of each step.
 pub(super) type See<'a> = dyn FnMut(Stepped) -> Result<()> + 'a;
 
-/// Loads the network, verifies it and runs it on the steps that come. Each step's leak comes first, unless no
-/// neuron leaks, then its bias, then
-/// its inputs in order. `see` is told what came of each, before the next is taken. Returns how many spikes got lost.
+/// Loads the network, verifies it and runs it on steps as they arrive. In each step the leak comes first, unless no
+/// neuron leaks, then the bias, then the inputs in order. The outcome is passed to `see` before the next step is read.
+/// Returns the number of spikes lost.
 ///
 /// # Errors
-/// The chip or `see` refuses something.
+/// Returns an error if the chip or `see` refuses a step.
 pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'_>) -> Result<u32> {
     let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
     board.pins().has_full_pin = true;
@@ -56,10 +56,10 @@ pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'
     Ok(board.pins().chip.overflows)
 }
 
-/// Runs a network of so many layers on a recording's steps, by the function that follows them.
+/// Runs a network with this number of layers on a recording's steps; `follow` is the function that runs it.
 ///
 /// # Errors
-/// The chip refuses something.
+/// Returns an error if the chip refuses a call.
 pub(super) fn run(
     layers: usize,
     inputs: &Trains,

@@ -1,4 +1,4 @@
-//! The guide for PX4 as a module of the firmware's own build, for its simulation in the loop.
+//! The guide for PX4, as a module of the firmware's own build, for its simulator (SITL).
 
 use super::{
     super::{host, put, room, work},
@@ -10,7 +10,7 @@ use crate::setup;
 use anyhow::{Context, Result};
 use std::{fs, path::Path};
 
-/// A whole program of the firmware, with the guide as its module. All that is made lies outside the checkout.
+/// Builds a complete program of the firmware, with the guide as its module. All output lies outside the checkout.
 pub fn px4(checkout: &Path) -> Result<()> {
     setup::packages("what builds PX4", &["cmake", "g++", "ninja-build"])?;
     let python = python::environment("px4")?;
@@ -42,7 +42,7 @@ pub fn px4(checkout: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What the firmware's build asks of Python.
+/// Python packages that the firmware's build needs.
 const PACKAGES: [&str; 10] = [
     "empy>=3.3,<4",
     "jinja2",
@@ -56,7 +56,7 @@ const PACKAGES: [&str; 10] = [
     "toml",
 ];
 
-/// The indented lines of the comment that the guide begins with: its CMakeLists.txt.
+/// Returns the indented lines of the comment at the start of the guide: its CMakeLists.txt.
 fn indented(guide: &str) -> String {
     let lines = guide.lines().filter_map(|line| line.strip_prefix("//     "));
     lines.map(|line| format!("{line}\n")).collect()

@@ -1,10 +1,10 @@
-//! The network as Rust: constant data for `spikewire_chips`.
+//! Writes the network as Rust: constant data for `spikewire_chips`.
 
 use super::super::super::chip::{Told, lines, list};
 use super::Gated;
 use spikewire_chips::{Describe, Steps, StepsLayer, TinyOdinNeuron};
 
-/// A file of Rust, which compiles without `std`.
+/// Writes Rust source, which compiles without `std`.
 pub(super) fn emit(network: &Gated, told: &Told) -> String {
     let (source, meaning) = (&told.source, &told.inputs);
     let (count, rows) = (network.neurons(), network.inputs());

@@ -1,5 +1,5 @@
-//! Networks whose neurons compare with their thresholds once a step, by rows of weights that raise them and let them
-//! fall.
+//! Networks whose neurons compare with their thresholds once a step. During a step their potentials are kept too low to
+//! fire; then events called rungs raise them step by step, so that they compare, and others lower them again.
 
 mod emit;
 mod neuron;
@@ -22,9 +22,9 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Neurons of each layer that tell which shape suits it.
+/// Number of neurons of each layer on which a shape is tried.
 const SURVEYED: usize = 8;
-/// Shapes of which the whole network is found.
+/// Number of shapes with which the whole network is quantised.
 const CHOSEN: usize = 2;
 
 /// A network as tinyODIN holds it.
@@ -38,15 +38,15 @@ pub(super) struct Gated {
 
 #[derive(Clone, Debug)]
 struct GatedLayer {
-    /// The name in its file.
+    /// Name in the file.
     name: String,
     inputs: usize,
-    /// Whether its spikes lead back to it.
+    /// Whether the layer is recurrent.
     loops: bool,
     neurons: Vec<GatedNeuron>,
 }
 
-/// Finds networks of the shapes that promise most, with the progress of the neurons. Empty if none fits.
+/// Quantises the network for each of the most promising shapes, and reports progress; empty if none fits.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -105,7 +105,8 @@ pub(super) fn quantise(
     found.collect()
 }
 
-/// The most that a step adds to a neuron of what is above 0, in largest weights, and the mean threshold.
+/// Returns the largest sum of positive weights that a step adds to a neuron, in units of its largest weight, and the
+/// median threshold in the same units.
 fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     let (mut most, mut thresholds) = (0.0_f64, Vec::new());
     for ((layer, own), before) in
@@ -143,7 +144,7 @@ fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     (most, thresholds.get(thresholds.len() / 2).copied().unwrap_or(1.0))
 }
 
-/// Whether each neuron fires, by step.
+/// Returns for each neuron and step whether the neuron fires.
 fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
     let mut all = vec![vec![false; fired.len()]; neurons];
     for (step, fired) in fired.iter().enumerate() {
@@ -155,7 +156,7 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
 }
 
 impl Gated {
-    /// Layer by layer, each driven by what the chip's layer before fires.
+    /// Quantises layer by layer; each is driven by the spikes of the chip's layer before it.
     fn find(
         trained: &Trained,
         inputs: &Trains,
@@ -185,7 +186,7 @@ impl Gated {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
 
-    /// The layer, the place in it and the numbers of a neuron of the chip.
+    /// Returns the layer, the index in it and the numbers of one of the chip's neurons.
     fn at(&self, neuron: usize) -> Option<(usize, usize, &GatedNeuron)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
@@ -197,12 +198,12 @@ impl Gated {
         None
     }
 
-    /// The rows of inputs and neurons, and all rows.
+    /// Returns the number of rows of inputs and neurons, and of all rows.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
 
-    /// The weight of a row onto a neuron: see `spikewire_chips::Steps` for their order.
+    /// Returns the weight of a row onto a neuron; `spikewire_chips::Steps` documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };
         let rows = usize::from(self.shape.rows);

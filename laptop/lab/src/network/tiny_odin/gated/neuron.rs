@@ -1,31 +1,32 @@
-//! A neuron that compares once a step, in the chip's whole numbers.
+//! A neuron that compares once a step, in the chip's integers.
 
 use super::shape::Shape;
 
-/// A neuron, and what leads to it. Its potential is that of the moment at which it compares, less what it is raised by.
+/// A neuron, and the weights that lead to it. Its potential is the one at which it compares, without what rungs add to
+/// it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
-    /// The weights by input, then in a recurrent layer by its neurons: the sums of their rows.
+    /// The weights, by input, then in a recurrent layer by its neurons; each is the sum of its rows.
     pub weights: Vec<i16>,
-    /// The weight that every step adds.
+    /// Weight that every step adds.
     pub bias: i16,
-    /// The potential at which it fires.
+    /// Potential at which it fires.
     pub threshold: u16,
-    /// The amount by which a leak moves the potential.
+    /// Amount by which a leak moves the potential.
     pub leak: u8,
-    /// The amount by which an event raises it.
+    /// Amount by which a rung raises the potential.
     pub rung: u8,
-    /// Leaks of its own after a spike.
+    /// Number of leaks that it alone gets after a spike.
     pub own_leaks: u16,
-    /// How many weights were larger than the chip's.
+    /// Number of weights that exceeded the chip's range.
     pub clipped: usize,
 }
 
-/// What a step adds to a potential.
+/// The sum of the weights that a step adds to a potential.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Added {
     pub all: i32,
-    /// What is above 0 of it, which may come first.
+    /// Sum of the positive weights, which may arrive first.
     pub raised: i32,
 }
 
@@ -42,7 +43,7 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Takes a step, and tells if the neuron fires.
+    /// Runs a step; returns whether the neuron fires.
     #[inline]
     pub(super) fn step(
         &self,
@@ -73,14 +74,14 @@ impl GatedNeuron {
         fires
     }
 
-    /// A row's part of a weight, of so many rows.
+    /// Returns the part of a weight that row `row` of `rows` carries.
     pub(super) fn part(weight: i16, row: usize, rows: u16) -> i8 {
         let rows = rows as i16;
         let rest = i16::from((row as i16) < weight.abs() % rows);
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// The potential with which the chip's neuron begins, and its threshold.
+    /// Returns the potential with which the chip's neuron starts, and its threshold.
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

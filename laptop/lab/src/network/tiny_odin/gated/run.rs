@@ -1,4 +1,4 @@
-//! The network on the chip's model, clock by clock, through the crate's driver.
+//! Runs the network on the chip's model, clock by clock, through the driver of `spikewire-chips`.
 
 use super::super::super::chip::{Stepped, refused};
 use super::super::run::{self, RATIO};
@@ -8,7 +8,7 @@ use silicon::Board;
 use spikewire_chips::{Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput};
 
 impl Gated {
-    /// Hands over the steps of the driver.
+    /// Passes the driver's description of the steps to `see`.
     pub(super) fn with_steps<T>(&self, see: impl FnOnce(&Steps) -> T) -> T {
         let layers = self.layers.iter();
         let layers: Vec<StepsLayer> = layers
@@ -30,7 +30,7 @@ impl Gated {
     }
 }
 
-/// Loads the network, verifies it and runs it on the steps that come.
+/// Loads the network, verifies it and runs it on steps as they arrive.
 pub(super) fn follow(
     network: &Gated,
     inputs: &mut run::Steps<'_>,

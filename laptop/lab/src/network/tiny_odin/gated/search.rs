@@ -8,15 +8,16 @@ use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
-/// The values tried for the largest weight, with one row: above 7 it is clipped, for the sake of the others.
-/// With the last all weights vanish, so that the neuron stays silent.
+/// Largest weights that are tried, with one row. Above 7 the largest weights are clipped, so that the others are
+/// rounded less. With the last value all weights become 0, so that the neuron stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
-/// The rungs that are tried first.
+/// Rungs that are tried first.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
-/// The choices from which the search goes on.
+/// Number of choices from which the search climbs.
 pub(super) const CLIMBS: usize = 2;
 
-/// The spikes that drive a layer, by step: its inputs, then its own neurons of the step before, counted on from them.
+/// The spikes that drive a layer, by step: its inputs, then its own neurons of the step before, numbered on from the
+/// inputs.
 pub(super) struct Drive {
     ends: Vec<usize>,
     spikes: Vec<u16>,
@@ -37,10 +38,10 @@ impl Drive {
     }
 }
 
-/// The spikes that a neuron should have.
+/// The spikes that a neuron should have, and those that drive it.
 pub(super) struct Aim<'a> {
     pub drive: &'a Drive,
-    /// Whether it fires, by step.
+    /// Whether the neuron fires, for each step.
     pub target: &'a [bool],
     pub shape: &'a Shape,
 }
@@ -48,16 +49,17 @@ pub(super) struct Aim<'a> {
 /// The searched settings of a neuron.
 #[derive(Clone, Copy, PartialEq)]
 struct Choice {
-    /// The value of a weight of 1 on the chip.
+    /// The value that a weight of 1 on the chip represents.
     unit: f64,
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Leaks of its own beyond those that its reset needs.
+    /// Number of its own leaks beyond those that its reset needs.
     more: i16,
 }
 
-/// The best neuron, and its distance from the original. From the best choices the search goes on, from so many.
+/// Finds the numbers with which a neuron is nearest to the original, and returns their distance with them. Climbs from
+/// the `climbs` best first choices.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
@@ -144,7 +146,7 @@ impl Choice {
     }
 }
 
-/// A neuron with these settings.
+/// Makes a neuron with these settings.
 fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron {
     let Choice { unit, threshold, leak, rung, more } = choice;
     let rows = f64::from(shape.rows);
@@ -162,8 +164,8 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Leaks that a neuron needs after a spike: to 0 from wherever rungs and leaks have brought it, or by the amount by which
-/// its reset lies beside subtraction.
+/// Returns the number of leaks that a neuron needs after a spike. They lead to 0 from wherever rungs and leaks have
+/// left it, or make up the difference between its reset and plain subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {
@@ -189,7 +191,7 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
 }
 
 impl GatedNeuron {
-    /// How far its spikes are from what they should be; infinite if that is `most` or more.
+    /// Returns the distance of its spikes from the target, or infinity once that reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let (mut potential, mut first) = (0_i32, 0);

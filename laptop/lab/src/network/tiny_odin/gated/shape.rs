@@ -1,30 +1,30 @@
-//! The steps that all neurons of a gated network share: rows of a weight, rungs, leaks.
+//! The events of a step that all neurons of a gated network share: rows of a weight, rungs, leaks.
 
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, NEURONS, ROWS};
 
-/// Leaks on one side of a potential of 0, at most.
+/// Maximum number of leaks on one side of a potential of 0.
 const LEVELS: u16 = 6;
-/// Rows of a weight that are tried.
+/// Numbers of rows for a weight that are tried.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
-/// Rungs for other recordings, which may bring more at once.
+/// Factor by which there are more rungs than this recording needs, as others may add more in a step.
 const SPARE: f64 = 1.5;
-/// Rungs from one leak to the next, at most.
+/// Maximum number of rungs between two leaks.
 const WIDEST: f64 = 12.0;
 
-/// The steps that neurons share.
+/// The events of a step that neurons share.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Rows of an input or a neuron that sends spikes: bits of its weights.
+    /// Number of rows for each input or sending neuron; a weight is the sum of its rows.
     pub rows: u16,
-    /// Events that raise a neuron above 0 before it compares, and up to 0.
+    /// Number of rungs that raise a neuron above 0 before it compares; `below` is the number that raise it up to 0.
     pub above: u16,
     pub below: u16,
-    /// By turn of the steps: after how many events of the fall there is a leak.
+    /// For each turn of steps, after how many events of the fall there is a leak; the turns are repeated.
     pub leaks: Vec<Vec<u16>>,
-    /// Events that lift neurons that fired to 0 for leaks of their own; 0 where a spike subtracts.
+    /// Number of events that lift neurons that fired up to 0, for their own leaks; 0 if a spike subtracts.
     pub lift: u16,
-    /// Rungs from leak to leak.
+    /// Number of rungs between two leaks.
     pub spacing: u16,
 }
 
@@ -37,14 +37,14 @@ impl Shape {
         if self.leaks.is_empty() { &[] } else { &self.leaks[step % self.leaks.len()] }
     }
 
-    /// Events of a step beside its spikes and the leaks of neurons that fired.
+    /// Returns the number of events of a step, without its spikes and without the leaks of neurons that fired.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         usize::from(self.rungs()) * (layers + 1) + leaks / self.leaks.len().max(1)
     }
 }
 
-/// Rows that a network takes whose weights take so many each.
+/// Returns the number of rows that a network needs if each weight takes `rows`.
 pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     let last = trained.layers.len() - 1;
     let senders = trained.layers.iter().enumerate().map(|(at, layer)| {
@@ -55,8 +55,8 @@ pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     sources * rows + trained.layers.len() + 2
 }
 
-/// All shapes that are tried, for a network that adds so much at most within a step, with its largest weight as 1, and
-/// whose usual threshold is so many of its largest weights.
+/// Returns all shapes to try. `drive` is the most that a step adds to a neuron, and `threshold` the usual threshold,
+/// both in units of the largest weight.
 pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f64) -> Vec<Shape> {
     let neurons = || trained.layers.iter().flat_map(|layer| &layer.neurons);
     if neurons().count() >= NEURONS - 1 {
