@@ -14,11 +14,12 @@ type Filtering = (&'static str, f32, Option<f32>);
 
 /// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, error of the clock in millionths, label,
 /// fingerprint, filter, channels.
-type Told = (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>);
+type FlightFields =
+    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>);
 
 /// Reads a flight's file.
 #[pyfunction]
-pub(crate) fn flight(path: &str) -> PyResult<Told> {
+pub(crate) fn flight(path: &str) -> PyResult<FlightFields> {
     let flight = Flight::read(path).map_err(|error| PyValueError::new_err(error.to_string()))?;
     let filter = flight.filter.map(|own| match own {
         Filter::FirstOrder { corner } => ("first_order", corner, None),

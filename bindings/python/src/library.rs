@@ -31,12 +31,12 @@ use crate::work;
 use catalogue::run::Given;
 
 /// A tuned scheme: its name, its keywords, its figures as JSON, and what a file says of it.
-type Told = (&'static str, Vec<(&'static str, Keyword)>, String, Vec<String>);
+type TunedFields = (&'static str, Vec<(&'static str, Keyword)>, String, Vec<String>);
 
 /// Long work tells this many parts.
 const PARTS: usize = 1_000_000;
 
-fn told(scheme: Scheme, row: &Row, channel: &str) -> Result<Told> {
+fn tuned_fields(scheme: Scheme, row: &Row, channel: &str) -> Result<TunedFields> {
     let given = keywords(&row.settings.to_asked(scheme.info()));
     Ok((scheme.name(), given, serde_json::to_string(row)?, row.comments(channel)))
 }
@@ -205,7 +205,7 @@ pub(crate) fn tune(
     name: &str,
     keywords: Tune,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Vec<Told>, Vec<String>)> {
+) -> PyResult<(Vec<TunedFields>, Vec<String>)> {
     let recordings = signals.iter().map(|values| recording(name, values, rate));
     let recordings = recordings.collect::<PyResult<Vec<_>>>()?;
     watched(py, progress, |watch| {
@@ -215,7 +215,7 @@ pub(crate) fn tune(
             let missed: Vec<String> = tuned.missed.iter().map(ToString::to_string).collect();
             bail!("{name}: of the settings tried none keeps to all limits: {}", missed.join("; "));
         }
-        let rows = tuned.rows.iter().map(|(scheme, row)| told(*scheme, row, name));
+        let rows = tuned.rows.iter().map(|(scheme, row)| tuned_fields(*scheme, row, name));
         let missed = tuned.missed.iter().map(ToString::to_string).collect();
         Ok((rows.collect::<Result<_>>()?, missed))
     })
@@ -262,14 +262,14 @@ pub(crate) fn advise(
     rate: Option<f64>,
     keywords: Advise,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<(String, String, Option<Told>)>> {
+) -> PyResult<Vec<(String, String, Option<TunedFields>)>> {
     let recordings = signals.iter().map(|(name, values)| recording(name, values, rate));
     let recordings = recordings.collect::<PyResult<Vec<_>>>()?;
     let names: Vec<&str> = signals.iter().map(|(name, _)| name.as_str()).collect();
     watched(py, progress, |watch| {
         let all = lab::advise::advise(&keywords.request(recordings)?, watch)?;
         let said = all.iter().zip(&names).map(|(own, name)| {
-            let best = own.best().map(|(scheme, row)| told(scheme, row, name));
+            let best = own.best().map(|(scheme, row)| tuned_fields(scheme, row, name));
             Ok((own.page(), serde_json::to_string(own)?, best.transpose()?))
         });
         said.collect()

@@ -1,5 +1,5 @@
 //! A random search: calls of tinyODIN's driver in any order, with late answers to outputs, and with up to three SPI
-//! clocks lost or doubled. Whenever a call is `Ok`, the chip's memories and registers must be as the caller was told.
+//! clocks lost or doubled. Whenever a call is `Ok`, the chip's memories and registers must be as the caller knows them.
 //!
 //! `cargo test` tries a few schedules, `cargo test --release -p host-tests --test chip_search -- --ignored` 100 000.
 
@@ -73,7 +73,7 @@ impl Random {
 }
 
 /// What the caller knows of the chip.
-struct Told {
+struct Known {
     neurons: Vec<u128>,
     synapses: Vec<u32>,
     registers: Option<TinyOdinRegisters>,
@@ -83,7 +83,7 @@ struct Told {
     is_stale: bool,
 }
 
-impl Told {
+impl Known {
     /// Takes over the content of the memories, as that of unknown memory is accepted.
     fn of(board: &TinyBoard) -> Self {
         let pins = board.pins();
@@ -132,12 +132,12 @@ impl Told {
     fn compare(&mut self, board: &TinyBoard, at: &str) {
         let pins = board.pins();
         let is_exact = !std::mem::take(&mut self.is_stale);
-        for (n, (told, is)) in self.neurons.iter().zip(&pins.chip.neurons).enumerate() {
+        for (n, (known, actual)) in self.neurons.iter().zip(&pins.chip.neurons).enumerate() {
             let mask = if is_exact { u128::MAX } else { !STATE };
-            assert_eq!(told & mask, is & mask, "neuron {n} {at}");
+            assert_eq!(known & mask, actual & mask, "neuron {n} {at}");
         }
-        for (n, (told, is)) in self.synapses.iter().zip(&pins.chip.synapses).enumerate() {
-            assert_eq!(told, is, "synapses from {n} {at}");
+        for (n, (known, actual)) in self.synapses.iter().zip(&pins.chip.synapses).enumerate() {
+            assert_eq!(known, actual, "synapses from {n} {at}");
         }
         if is_exact {
             assert_eq!(self.out, self.fired, "{at}");
@@ -204,26 +204,26 @@ fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
     }
     let mut chip = TinyOdin::new(board.spi(), board.port(), 20 + random.of_any_size(11))
         .with_time_step(NonZeroU32::new(1_000).unwrap());
-    let mut told: Option<Told> = None;
+    let mut known: Option<Known> = None;
     let mut now = 0;
     for call in 0..4 + random.below(16) {
         let at = format!("after call {call} of seed {seed}");
         tally.calls += 1;
-        let result = match &mut told {
+        let result = match &mut known {
             None => {
                 let result = chip.reset(&mut board.clone()).map(drop);
                 if result.is_ok() {
-                    told = Some(Told::of(&board));
+                    known = Some(Known::of(&board));
                 }
                 result
             }
-            Some(told) if told.registers.is_none() => {
-                gated(&mut random, &mut chip, told, &board, &at)
+            Some(known) if known.registers.is_none() => {
+                gated(&mut random, &mut chip, known, &board, &at)
             }
-            Some(told) => {
+            Some(known) => {
                 board.run(random.of_any_size(12));
-                let result = running(&mut random, &mut chip, told, &mut now);
-                if result.is_ok() && told.registers.is_none() {
+                let result = running(&mut random, &mut chip, known, &mut now);
+                if result.is_ok() && known.registers.is_none() {
                     tally.gates += 1;
                 }
                 result
@@ -231,18 +231,18 @@ fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
         };
         match result {
             Ok(()) => {
-                if let Some(told) = &mut told
-                    && told.registers.is_none()
+                if let Some(known) = &mut known
+                    && known.registers.is_none()
                 {
                     board.run(10);
-                    told.compare(&board, &at);
+                    known.compare(&board, &at);
                 }
             }
             // Nothing was changed, or the chip runs on.
             Err(ChipError::NoProbe | ChipError::Busy | ChipError::Handshake(Phase::Idle)) => {}
             Err(_) => {
                 tally.errors += 1;
-                told = None;
+                known = None;
             }
         }
     }
@@ -252,7 +252,7 @@ fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
 fn gated(
     random: &mut Random,
     chip: &mut Tiny,
-    told: &mut Told,
+    known: &mut Known,
     board: &TinyBoard,
     at: &str,
 ) -> Result<(), Error> {
@@ -261,21 +261,21 @@ fn gated(
         0 | 1 => {
             let (neuron, value) = (random.byte(), random.neuron());
             gated.set_neuron(neuron, &value)?;
-            told.set_neuron(neuron, value);
+            known.set_neuron(neuron, value);
         }
         2 => {
             let (pre, post, weight) = (random.byte(), random.byte(), random.weight());
             gated.set_synapse(pre, post, weight)?;
-            told.set_synapse(pre, post, weight);
+            known.set_synapse(pre, post, weight);
         }
         3 => {
             let neuron = random.byte();
-            let bytes = told.neurons[usize::from(neuron)].to_le_bytes();
+            let bytes = known.neurons[usize::from(neuron)].to_le_bytes();
             assert_eq!(gated.neuron(neuron)?, TinyOdinInput::neuron(bytes), "{at}");
         }
         4 => {
             let (pre, post) = (random.byte(), random.byte());
-            let word = told.synapses[usize::from(pre) << 5 | usize::from(post) >> 3];
+            let word = known.synapses[usize::from(pre) << 5 | usize::from(post) >> 3];
             let bits = (word >> (4 * (post & 7)) & 0xF) as u8;
             assert_eq!(gated.synapse(pre, post)?, TinyOdinInput::synapse(bits), "{at}");
         }
@@ -283,11 +283,11 @@ fn gated(
             let is_recurrent = random.below(3) == 0;
             let network = random.network(is_recurrent);
             gated.load(&network, |_| ())?;
-            told.set_network(&network);
+            known.set_network(&network);
             if is_recurrent {
                 return Ok(());
             }
-            start(chip, told, board, network.registers(), at)?;
+            start(chip, known, board, network.registers(), at)?;
         }
         _ => {
             let registers = TinyOdinRegisters {
@@ -295,7 +295,7 @@ fn gated(
                 output_source: OutputSource::Neurons,
                 last_neuron: random.of_any_size(8).min(255) as u8,
             };
-            start(chip, told, board, registers, at)?;
+            start(chip, known, board, registers, at)?;
         }
     }
     Ok(())
@@ -303,17 +303,17 @@ fn gated(
 
 fn start(
     chip: &mut Tiny,
-    told: &mut Told,
+    known: &mut Known,
     board: &TinyBoard,
     registers: TinyOdinRegisters,
     at: &str,
 ) -> Result<(), Error> {
     chip.gated()?.run(&registers)?;
-    told.registers = Some(registers);
+    known.registers = Some(registers);
     let pins = board.pins();
     assert!(!pins.chip.is_gated(), "{at}");
     // The probe has left every neuron as it was.
-    assert_eq!(told.neurons, pins.chip.neurons, "{at}");
+    assert_eq!(known.neurons, pins.chip.neurons, "{at}");
     let [_, open, source, last, ..] = pins.chip.registers.0;
     let expected = (registers.is_open_loop, false, registers.last_neuron);
     assert_eq!((open & 1 == 1, source & 1 == 1, last as u8), expected, "{at}");
@@ -324,18 +324,18 @@ fn start(
 fn running(
     random: &mut Random,
     chip: &mut Tiny,
-    told: &mut Told,
+    known: &mut Known,
     now: &mut u32,
 ) -> Result<(), Error> {
     let mut running = chip.running()?;
-    let mut out = std::mem::take(&mut told.out);
+    let mut out = std::mem::take(&mut known.out);
     let result = match random.below(8) {
         0 => {
             let gated = running.gate(|neuron| out.push(neuron)).map(drop);
             if gated.is_ok() {
                 // For the comparison the registers still count.
-                told.out = out;
-                finish(told);
+                known.out = out;
+                finish(known);
                 return Ok(());
             }
             gated
@@ -355,7 +355,7 @@ fn running(
             *now += 500;
             let sent = running.send(input, |neuron| out.push(neuron));
             if !matches!(sent, Err(ChipError::Handshake(Phase::Idle) | ChipError::NotReset)) {
-                told.take(input);
+                known.take(input);
             }
             match sent {
                 // Under way: the calls that follow bring it to its end.
@@ -364,7 +364,7 @@ fn running(
             }
         }
     };
-    told.out = out;
+    known.out = out;
     match result {
         Err(ChipError::Handshake(_)) => Ok(()),
         result => result,
@@ -372,13 +372,13 @@ fn running(
 }
 
 /// Updates what the caller knows when the chip has been gated; from then on spikes of a closed loop no longer count.
-fn finish(told: &mut Told) {
-    if !told.is_open_loop() {
-        told.fired.clear();
-        told.out.clear();
+fn finish(known: &mut Known) {
+    if !known.is_open_loop() {
+        known.fired.clear();
+        known.out.clear();
     }
-    told.is_stale = !told.is_open_loop();
-    told.registers = None;
+    known.is_stale = !known.is_open_loop();
+    known.registers = None;
 }
 
 fn search(seeds: std::ops::Range<u64>, most_faults: u32) -> Tally {

@@ -175,7 +175,7 @@ fn a_log_on_the_ground_or_too_short_has_a_verdict() {
     let rest = spikewire(&format!("advise {} {SHORT}", flight("vtol_at_rest.csv")), "");
     assert_eq!(rest.status, 2);
     assert!(
-        rest.told.contains("nothing can be advised") && !rest.output.contains("take "),
+        rest.stderr.contains("nothing can be advised") && !rest.output.contains("take "),
         "{}",
         rest.output
     );

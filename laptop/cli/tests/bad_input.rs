@@ -54,8 +54,8 @@ fn bytes_that_are_no_text_are_shown_as_escapes() {
     let table = b"x\n1\n2\n3\n4\n5\n6\n7\n8\n\x01\xff\x1b[31m\xc2\xb5\n";
     let ran = spikewire_bytes("encode --scheme sf --threshold 1 -", table);
     let words = r"line 10, column x: value `\u{1}\xff\u{1b}[31mµ` is not a number";
-    assert!(ran.status == 2 && ran.told.contains(words), "{}", ran.told);
+    assert!(ran.status == 2 && ran.stderr.contains(words), "{}", ran.stderr);
     let long = format!("x\n1\n{}\n", "y".repeat(5000));
-    let told = spikewire_bytes("encode --scheme sf --threshold 1 -", long.as_bytes()).told;
+    let told = spikewire_bytes("encode --scheme sf --threshold 1 -", long.as_bytes()).stderr;
     assert!(told.len() < 200, "{}", told.len());
 }

@@ -65,7 +65,7 @@ fn a_benchmark_that_differs_is_an_error() {
     });
     let ran = differing.unwrap();
     assert_eq!(ran.status, 2);
-    assert!(ran.told.contains("error: not as in the paper: "), "{}", ran.told);
+    assert!(ran.stderr.contains("error: not as in the paper: "), "{}", ran.stderr);
     assert!(ran.output.contains(" !"), "{}", ran.output);
     let good = good("bench --tests 40 --cases 1 --seed 7", "").output;
     assert!(good.contains("\nWith 40 signals a case, a mean may be off by "), "{good}");

@@ -21,7 +21,7 @@ fn each_channel_is_as_if_alone_at_addresses_by_column() {
     let hexarotor = flight("hexarotor.csv");
     for (scheme, neurons) in SCHEMES {
         let all = ran!("encode --scheme {scheme} --columns {} {hexarotor}", COLUMNS.join(","));
-        assert!(all.told.contains("3627 samples of 6 channels"), "{}", all.told);
+        assert!(all.stderr.contains("3627 samples of 6 channels"), "{}", all.stderr);
         let together = events(&all.output);
         let decoded = good("decode", &all.output).output;
         assert!(decoded.starts_with(&format!("index,{},time_us\n", COLUMNS.join(","))));

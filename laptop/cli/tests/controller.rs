@@ -172,7 +172,7 @@ fn a_file_that_does_not_say_the_rule_is_refused_with_the_choices() {
         refused(&network(name, options), "", words);
     }
     // What the choice named leaves open is all that is asked for.
-    let told = common::spikewire(&network("braille_subtract.nir", "--as snntorch"), "").told;
+    let told = common::spikewire(&network("braille_subtract.nir", "--as snntorch"), "").stderr;
     assert!(!told.contains("--fires") && !told.contains("--dt"), "{told}");
     let chip = network("braille_subtract.nir", "--as snntorch --reset zero")
         .replace("controller", "tinyodin");
@@ -184,7 +184,7 @@ fn what_a_reader_would_do_with_a_file_is_told() {
     // Norse's file, whose gain is none of snnTorch's.
     let (_one, one) = file("one.txt", "0\n\n0\n");
     let lif = nir("lif.nir").display().to_string();
-    let told = ran!("network {lif} --on controller --as snntorch --reset to-value {one}").told;
+    let told = ran!("network {lif} --on controller --as snntorch --reset to-value {one}").stderr;
     assert!(told.contains("a gain of 0.040000, where snnTorch writes 1"), "{told}");
 }
 
@@ -202,16 +202,16 @@ fn a_network_becomes_the_module_of_the_firmware() {
         "outputs agree in 100.0 % of 256 steps",
         "a step adds 105.9 weights, 407 at most, and visits 47 neurons",
     ] {
-        assert!(ran.told.contains(words), "{}", ran.told);
+        assert!(ran.stderr.contains(words), "{}", ran.stderr);
     }
     // In integers a quarter of the weights' bytes, and almost the same spikes; on other spikes too.
     let held_out = format!("--held-out {}", nir("braille.txt").display());
     let ran =
         good(&network("braille_subtract.nir", &format!("{options} --numbers i8 {held_out}")), "");
     assert!(ran.output.contains("Weights::packed(") && ran.output.contains("pub const UNITS"));
-    let told = ran.told.split_once("held out:\n").unwrap().1;
+    let told = ran.stderr.split_once("held out:\n").unwrap().1;
     let share = told.split("outputs agree in ").nth(1).unwrap().split(' ').next().unwrap();
-    assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.told);
+    assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.stderr);
 }
 
 /// JSON contains its rule; the potentials of outputs that never fire are compared too.
@@ -227,7 +227,7 @@ fn json_goes_onto_the_controller_and_answers_step_by_step() {
         let ran = ran!("network {network} --on controller --numbers {numbers} {steps}");
         assert!(ran.output.contains("pub type Trained = Then<Layer1, Layer2>;"), "{}", ran.output);
         let potentials = format!("potentials of 1.1832, on the chip {off} off");
-        assert!(ran.told.contains(&potentials), "{}", ran.told);
+        assert!(ran.stderr.contains(&potentials), "{}", ran.stderr);
     }
     let bytes = format!("network {network} --on controller {steps} --bytes {network}.bytes");
     refused(&bytes, "", &["compiled in"]);

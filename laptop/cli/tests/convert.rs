@@ -55,11 +55,11 @@ fn every_format_gives_back_what_it_was_given() {
     let events = events();
     for format in FORMATS {
         let there = convert("csv", format, events.as_bytes());
-        assert!(there.told.contains("1499 events at"), "{format}: {}", there.told);
-        assert!(!there.told.contains("another time"), "{format}: {}", there.told);
+        assert!(there.stderr.contains("1499 events at"), "{format}: {}", there.stderr);
+        assert!(!there.stderr.contains("another time"), "{format}: {}", there.stderr);
         let back = convert(format, "csv", &there.output);
         assert_eq!(rows(&back.output), events, "{format}");
-        assert!(back.told.contains("\n0 bytes skipped\n"), "{format}: {}", back.told);
+        assert!(back.stderr.contains("\n0 bytes skipped\n"), "{format}: {}", back.stderr);
     }
 }
 
@@ -104,7 +104,7 @@ fn datagrams_hold_a_time_step_of_up_to_255_keys() {
     let bytes = [1, 0x38, 9, 0, 0, 0, 1, 0, 0, 0, 2, 8, 0, 0, 0, 0, 3, 0, 0, 0];
     let read = convert("eieio,base=1,step=1", "csv", &bytes);
     assert_eq!(rows(&read.output), table([(9, 0, 1), (9, 2, 1)]));
-    assert!(read.told.contains("\n4 bytes skipped\n"), "{}", read.told);
+    assert!(read.stderr.contains("\n4 bytes skipped\n"), "{}", read.stderr);
     let (_directory, path) = file("x", [&bytes[..10], &[1, 8, 1, 0, 0, 0].repeat(20_000)].concat());
     let late = ran!("convert --from eieio,base=1,step=1 --to csv {path}").output;
     assert_eq!(late.matches("\n9,0,1").count(), 20_001);
@@ -126,7 +126,7 @@ fn rows_that_no_address_has_are_skipped() {
     let words = [8_u32 << 28, 1 << 28 | 3 << 11 | 31, 1 << 28 | 3 << 11 | 32];
     let read = convert("evt2", "csv", &words.map(u32::to_le_bytes).concat());
     assert_eq!(rows(&read.output), table([(0, 31 << 11 | 3, 1)]));
-    assert!(read.told.contains("\n4 bytes skipped\n"), "{}", read.told);
+    assert!(read.stderr.contains("\n4 bytes skipped\n"), "{}", read.stderr);
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn a_file_that_is_cut_anywhere_gives_the_events_before_the_cut() {
     // Before the first event or frame it may be of any format.
     let cut = |format: &str, bytes: &[u8]| {
         let read = spikewire_bytes(&format!("convert --from {format} --to csv"), bytes);
-        assert!(read.status == 0 || read.told.contains("another format"), "{}", read.told);
+        assert!(read.status == 0 || read.stderr.contains("another format"), "{}", read.stderr);
         read
     };
     for format in ["link", "edvs:e1", "edvs:e4", "es", "evt2", "eieio,step=1"] {
@@ -157,8 +157,8 @@ fn a_file_that_is_cut_anywhere_gives_the_events_before_the_cut() {
         }
         let read = cut(format, &bytes[..bytes.len() - 1]);
         let is_told =
-            read.told.contains("the end is cut") || !read.told.contains("\n0 bytes skipped");
-        assert!(is_told, "{format}: {}", read.told);
+            read.stderr.contains("the end is cut") || !read.stderr.contains("\n0 bytes skipped");
+        assert!(is_told, "{format}: {}", read.stderr);
     }
 }
 
@@ -167,7 +167,7 @@ fn damage_in_a_link_costs_frames_that_are_counted() {
     let events = events();
     let bytes = convert("csv", "link", events.as_bytes()).output;
     let frames = {
-        let told = convert("link", "csv", &bytes).told;
+        let told = convert("link", "csv", &bytes).stderr;
         let line = told.lines().nth(1).unwrap();
         line.split(' ').next().unwrap().parse::<usize>().unwrap()
     };
@@ -179,14 +179,14 @@ fn damage_in_a_link_costs_frames_that_are_counted() {
         let rows = rows(&read.output);
         assert!(rows.lines().all(|row| events.contains(row)), "flip at {at}");
         assert!(
-            read.told.contains(&format!("{} frames:", frames - 1)),
+            read.stderr.contains(&format!("{} frames:", frames - 1)),
             "flip at {at}: {}",
-            read.told
+            read.stderr
         );
-        assert!(!read.told.contains("\n0 bytes skipped"), "flip at {at}: {}", read.told);
+        assert!(!read.stderr.contains("\n0 bytes skipped"), "flip at {at}: {}", read.stderr);
     }
     let middle = convert("link", "csv", &bytes[100..]);
-    assert!(!middle.told.contains("\n0 bytes skipped"), "{}", middle.told);
+    assert!(!middle.stderr.contains("\n0 bytes skipped"), "{}", middle.stderr);
     assert!(events.ends_with(rows(&middle.output).split_once('\n').unwrap().1));
 }
 
@@ -195,7 +195,7 @@ fn a_camera_is_read_from_the_middle_of_its_stream() {
     let events = table((0..50).map(|i| (i * 100, (i % 8) as u16, 1)));
     let bytes = convert("csv", "edvs:e2", events.as_bytes()).output;
     let read = convert("edvs:e2", "csv", &bytes[2..]);
-    assert!(read.told.contains("\n2 bytes skipped\n"), "{}", read.told);
+    assert!(read.stderr.contains("\n2 bytes skipped\n"), "{}", read.stderr);
     assert!(events.ends_with(rows(&read.output).split_once('\n').unwrap().1));
 }
 

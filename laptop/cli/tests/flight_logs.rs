@@ -62,7 +62,7 @@ fn messages_that_are_not_as_their_format_says_are_skipped_and_told() {
     );
     assert!(told.contains(&words), "{told}");
     let ran = ran!("{SCHEME} --field on {path}");
-    assert!(ran.told.contains(&words) && ran.output.contains("# samples=30\n"), "{}", ran.told);
+    assert!(ran.stderr.contains(&words) && ran.output.contains("# samples=30\n"), "{}", ran.stderr);
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn damage_is_told_apart_from_a_cut_and_got_past() {
     let ran = ran!("{SCHEME} --field on --accept-cut {path}");
     assert!(ran.output.contains("# samples=20\n"), "{}", ran.output);
     let words = format!("1 damaged stretches were skipped, the first at byte {damaged}\n");
-    assert!(ran.told.contains(&words), "{}", ran.told);
+    assert!(ran.stderr.contains(&words), "{}", ran.stderr);
     let (_directory, path) = file("cut.ulg", &bytes[..damaged - 5]);
     refused(
         &format!("info {path}"),

@@ -128,7 +128,7 @@ fn assert_sampled<S: Sample>(board: &Board<S>, frames: &[Vec<u8>], options: &str
     let heard = good_bytes(&format!("listen {options}"), &frames.concat());
     let lines = values(&heard.output);
     let exact = lines.iter().filter(|line| line.known == "exact");
-    assert!(exact.clone().count() > 500, "{options}: {}", heard.told);
+    assert!(exact.clone().count() > 500, "{options}: {}", heard.stderr);
     for line in exact {
         let place =
             |&(tick, address, _): &(u32, u16, S)| (tick, address) == (line.tick, line.address);
@@ -285,7 +285,7 @@ fn after_a_lost_frame_values_are_estimates_until_the_next_keyframe() {
     let mut frames = board.frames.clone();
     frames.remove(lost);
     let heard = good_bytes(&format!("listen {THREE}"), &frames.concat());
-    assert!(heard.told.contains(" 1 lost in 1 gaps"), "{}", heard.told);
+    assert!(heard.stderr.contains(" 1 lost in 1 gaps"), "{}", heard.stderr);
     let text = str::from_utf8(&heard.output).unwrap();
     let (before, after) = text.split_once("# lost_frames=1\n").unwrap();
     assert!(!before.contains("estimate"));
@@ -334,7 +334,7 @@ fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
         ),
         (Vec::new(), ["0 frames: 0 lost".into(), "0 restarts".into()]),
     ] {
-        let told = good_bytes(&format!("listen {THREE}"), &bytes).told;
+        let told = good_bytes(&format!("listen {THREE}"), &bytes).stderr;
         assert!(words.iter().all(|own| told.contains(own)), "{words:?}: {told}");
     }
 }
@@ -345,25 +345,29 @@ fn what_no_decoder_is_there_for_is_counted() {
     let two = good_bytes("listen --scheme sf --thresholds 7.5,3.1", &board.frames.concat());
     let outside = board.values.iter().filter(|(_, address, _)| *address == 2).count() + 5;
     let told = format!("\n{outside} events and keyframes at addresses without a decoder\n");
-    assert!(two.told.contains(&told) && !two.told.contains("contradict"), "{}", two.told);
+    assert!(two.stderr.contains(&told) && !two.stderr.contains("contradict"), "{}", two.stderr);
     assert!(values(&two.output).iter().all(|value| value.address < 2));
 
     let narrow =
         good_bytes("listen --sample i16 --scheme sf --threshold 7", &board.frames.concat());
     let told = "\n15 keyframes of another sample type\n";
-    assert!(narrow.told.contains(told), "{}", narrow.told);
+    assert!(narrow.stderr.contains(told), "{}", narrow.stderr);
     assert!(values(&narrow.output).iter().all(|value| value.known == "estimate"));
 
     let other =
         good_bytes("listen --scheme hsa --filter triang:3 --shift 0", &board.frames.concat());
     let told = "\n15 keyframes, which this scheme does not have: is --scheme the sender's?\n";
-    assert!(other.told.contains(told) && !other.told.contains("sample type"), "{}", other.told);
+    assert!(
+        other.stderr.contains(told) && !other.stderr.contains("sample type"),
+        "{}",
+        other.stderr
+    );
 }
 
 #[test]
 fn keyframes_of_step_forward_tell_wrong_parameters() {
     let bytes = three_floats().frames.concat();
-    let told = |options: &str| good_bytes(&format!("listen {options}"), &bytes).told;
+    let told = |options: &str| good_bytes(&format!("listen {options}"), &bytes).stderr;
     assert!(!told(THREE).contains("contradict"));
     // Those after the first of each of 3 channels.
     let all = "12 of 12 keyframes contradict the values before them: are --scheme, --threshold and";
@@ -375,7 +379,7 @@ fn keyframes_of_step_forward_tell_wrong_parameters() {
     assert!(other.contains("\n15 keyframes of another sample type\n"), "{other}");
     // Theirs are samples.
     let contrast = board(&[TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
-    let told = good_bytes("listen --scheme tbr --threshold 9", &contrast.frames.concat()).told;
+    let told = good_bytes("listen --scheme tbr --threshold 9", &contrast.frames.concat()).stderr;
     assert!(!told.contains("contradict"), "{told}");
 }
 
@@ -393,11 +397,11 @@ fn slots_are_heard_after_any_uptime() {
     // Without the first sample, and the only heartbeat.
     let heard = good_bytes(&format!("listen {options} 50"), &silent.frames[2..].concat());
     assert_eq!(values(&heard.output).len(), 0);
-    assert!(heard.told.contains("\nno value is exact: no heartbeat since"), "{}", heard.told);
+    assert!(heard.stderr.contains("\nno value is exact: no heartbeat since"), "{}", heard.stderr);
     let board = board_since_boot(&scheme, 50, 0, 20);
     let heard = good_bytes(&format!("listen {options} 101"), &board.frames.concat());
     let why = "\nno value is exact: 10 sub-timesteps of 101 µs are longer than the link's period of 1000 µs\n";
-    assert!(heard.told.contains(why), "{}", heard.told);
+    assert!(heard.stderr.contains(why), "{}", heard.stderr);
 }
 
 #[test]
@@ -410,9 +414,9 @@ fn a_loss_at_the_sender_is_told() {
     let heard = good_bytes("listen", &bytes);
     assert_eq!(heard.output, b"tick,address,polarity\n# restart\n# lost_events\n");
     assert!(
-        heard.told.contains("\n1 frames before which the sender lost events\n"),
+        heard.stderr.contains("\n1 frames before which the sender lost events\n"),
         "{}",
-        heard.told
+        heard.stderr
     );
 }
 
@@ -422,7 +426,7 @@ fn what_no_link_holds_is_refused() {
     refused(&format!("listen --scheme sf --thresholds {many}"), "", &["1 to 256 channels"]);
     let foreign = spikewire_bytes("listen --from es", b"Event Stream\x02\0\0\x01");
     assert_eq!(foreign.status, 2);
-    assert!(foreign.told.contains("generic events"), "{}", foreign.told);
+    assert!(foreign.stderr.contains("generic events"), "{}", foreign.stderr);
 }
 
 /// Opens a serial line: returns the board's end, and the name of the laptop's end, which stays open while the last file

@@ -255,7 +255,7 @@ fn gaps_missing_messages_and_rates_that_jump_are_told() {
     let (_directory, path) = file("log.mcap", Kind::Mcap.of((0..400).step_by(2).chain(400..500)));
     let said = "the rate jumps 1 times: 200.00 Hz from about sample 192\n";
     for ran in [ran!("info {path}"), ran!("{SCHEME} {path}")] {
-        assert!((ran.output + &ran.told).contains(said));
+        assert!((ran.output + &ran.stderr).contains(said));
     }
 }
 
@@ -353,6 +353,6 @@ fn messages_longer_than_their_definition_are_told() {
     let info = ran!("info {path}").output;
     assert!(info.contains(words), "{info}");
     let score = format!("score --scheme sf --threshold 0.1 --topic imu --field rate {path}");
-    let told = good(&score, "").told;
+    let told = good(&score, "").stderr;
     assert!(told.contains(words), "{told}");
 }

@@ -37,14 +37,14 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     let firmware =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rate-loop/src/roll.rs");
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
-    let [neurons, _, spikes, on_chip, distance] = figures(&ran.told, "node `lif1`: ")[..] else {
-        panic!("{}", ran.told)
+    let [neurons, _, spikes, on_chip, distance] = figures(&ran.stderr, "node `lif1`: ")[..] else {
+        panic!("{}", ran.stderr)
     };
     assert_eq!(neurons, 12.0);
-    assert!(spikes > 2_000.0 && (spikes - on_chip).abs() < 0.05 * spikes, "{}", ran.told);
-    assert!(distance < 0.1 * spikes, "{}", ran.told);
-    let winners = figures(&ran.told, "the output that fires most is the same in ");
-    assert!(winners[0] > 80.0, "{}", ran.told);
+    assert!(spikes > 2_000.0 && (spikes - on_chip).abs() < 0.05 * spikes, "{}", ran.stderr);
+    assert!(distance < 0.1 * spikes, "{}", ran.stderr);
+    let winners = figures(&ran.stderr, "the output that fires most is the same in ");
+    assert!(winners[0] > 80.0, "{}", ran.stderr);
 }
 
 /// Writes a network in JSON that step forward drives; returns the file and the command that brings it onto the chip.
@@ -86,15 +86,15 @@ fn networks_that_a_chip_can_hold_cost_nothing() {
     ] {
         let (_directory, command) = driven(layers, 0.05, options);
         let ran = good(&command, "");
-        assert!(ran.told.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.told);
-        let spikes = ran.told.rsplit("layer: neurons").next().unwrap();
+        assert!(ran.stderr.contains("\noutputs agree in 100.0 % of 3627 steps"), "{}", ran.stderr);
+        let spikes = ran.stderr.rsplit("layer: neurons").next().unwrap();
         for layer in names {
             let figures = figures(spikes, &format!("{layer}: "));
             let [_, clipped, spikes, on_chip, distance] = figures[..] else {
-                panic!("{}", ran.told)
+                panic!("{}", ran.stderr)
             };
-            assert!(spikes > 10.0, "{}", ran.told);
-            assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.told);
+            assert!(spikes > 10.0, "{}", ran.stderr);
+            assert_eq!((clipped, distance, on_chip), (0.0, 0.0, spikes), "{}", ran.stderr);
         }
         assert!(written.iter().all(|words| ran.output.contains(words)), "{}", ran.output);
         assert_eq!(ran.output.contains("BIAS"), layers.contains("bias"), "{}", ran.output);
@@ -155,13 +155,13 @@ fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
     // Neurons of ReckOn keep 0.875 at least.
     let half = r#"{"weights": [[0.4, -0.3]], "keep": 0.6, "threshold": 0.5}]"#;
     let (_directory, command) = driven(half, 0.05, "--chip reckon");
-    let told = good(&command, "").told;
+    let told = good(&command, "").stderr;
     let leaks = "warning: 1 neurons or outputs leak otherwise than trained, by up to 0.2750";
     assert!(told.contains(leaks), "{told}");
 
     let silent = r#"{"weights": [[1, 1]], "threshold": 1e9}]"#;
     let (_directory, command) = driven(silent, 0.1, "--no-held-out");
-    let silent = good(&command, "").told;
+    let silent = good(&command, "").stderr;
     assert!(silent.contains("warning: no output fires") && !silent.contains("100.0 %"), "{silent}");
     assert!(silent.contains("--held-out shows another"), "{silent}");
 
@@ -169,12 +169,12 @@ fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
     let low = r#"{"weights": [[0.31, -0.29], [0.27, 0.33]], "keep": 0.5, "threshold": 0.5},
         {"weights": [[0.61, -0.59]], "keep": 0.3, "threshold": 0.55}]"#;
     let (_directory, command) = driven(low, 0.1, "--compare spike");
-    let tuned = good(&command, "").told;
+    let tuned = good(&command, "").stderr;
     let rest = tuned.split("\nheld out:\n").nth(1).unwrap();
     let share = figures(rest, "outputs agree in ")[2];
     assert_eq!(tuned.contains("warning: step by step"), share < 50.0, "{tuned}");
     assert!(share >= 50.0 || tuned.contains("comparing after each spike"), "{tuned}");
-    let low = ran!("{command} --held-out {}", flight("vtol_at_rest.csv")).told;
+    let low = ran!("{command} --held-out {}", flight("vtol_at_rest.csv")).stderr;
     let held_out = low.split("\nheld out:\n").nth(1).unwrap();
     assert!(held_out.starts_with("layer 1: 2, ") && !low.contains("--held-out"), "{low}");
 }
@@ -192,7 +192,7 @@ fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
     // Nothing leaks, so that nothing is done in a step without a spike.
     let idle = ran.output.lines().map(|line| line.starts_with('0')).collect::<Vec<_>>();
     assert_eq!(idle, [false, false, true, false, false], "{}", ran.output);
-    assert!(ran.told.contains("outputs agree in 100.0 % of 7 steps"), "{}", ran.told);
+    assert!(ran.stderr.contains("outputs agree in 100.0 % of 7 steps"), "{}", ran.stderr);
     // Without --live there is the constant, as from a recording.
     let ran = ran!("network {network} {steps} {AS_THE_CHIP}");
     assert!(ran.output.contains("TinyOdinNetwork<2, 2, 2>"), "{}", ran.output);
@@ -216,12 +216,12 @@ fn neurons_compare_once_a_step_where_that_holds_better() {
     let steps = (0..300_u32).map(|at| ["0 1", "0", "", "1"][(at * at % 13 % 4) as usize]);
     let steps: Vec<&str> = steps.collect();
     let (_steps, steps) = file("steps.txt", steps.join("\n") + "\n");
-    let by_spike = good(&format!("network {network} {steps} --compare spike"), "").told;
+    let by_spike = good(&format!("network {network} {steps} --compare spike"), "").stderr;
     let by_spike = figures(&by_spike, "outputs agree in ")[2];
     assert!(by_spike < 90.0, "{by_spike}");
     for compare in ["", "--compare step"] {
         let ran = good(&format!("network {network} {steps} {compare}"), "");
-        assert_eq!(ran.told.matches("outputs agree in 100.0 % of").count(), 2, "{}", ran.told);
+        assert_eq!(ran.stderr.matches("outputs agree in 100.0 % of").count(), 2, "{}", ran.stderr);
         for words in ["pub static STEPS: Steps = Steps {", "inputs: 2,", "TinyOdinNetwork<"] {
             assert!(ran.output.contains(words), "{}", ran.output);
         }
@@ -252,9 +252,9 @@ fn resets_are_asked_for_and_compared_with_the_frameworks_own_spikes() {
                 ),
                 "",
             );
-            let reading = figures(&ran.told, "in double precision, as the file")[0];
-            assert_eq!(reading == 100.0, is_own, "{}", ran.told);
-            assert_eq!(ran.told.contains("may be others"), !is_own, "{}", ran.told);
+            let reading = figures(&ran.stderr, "in double precision, as the file")[0];
+            assert_eq!(reading == 100.0, is_own, "{}", ran.stderr);
+            assert_eq!(ran.stderr.contains("may be others"), !is_own, "{}", ran.stderr);
         }
     }
     let (_short, short) = file("short.txt", "0\n");
@@ -273,8 +273,8 @@ fn reckon_subtracts_where_the_network_does() {
     let (_steps, steps) = file("steps.txt", steps);
     for reset in ["subtract", "subtract-late", "zero"] {
         let ran = good(&format!("network {network} {steps} --chip reckon --reset {reset}"), "");
-        let share = figures(ran.told.split("held out:").nth(1).unwrap(), "outputs agree in ")[2];
-        assert!(share > 90.0, "{reset}: {}", ran.told);
+        let share = figures(ran.stderr.split("held out:").nth(1).unwrap(), "outputs agree in ")[2];
+        assert!(share > 90.0, "{reset}: {}", ran.stderr);
         let shared = format!("resets_to_zero: {}", reset == "zero");
         assert!(ran.output.contains(&shared), "{}", ran.output);
     }
@@ -288,11 +288,11 @@ fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let code = "--scheme sf --threshold 0.05 --columns gyro_x,gyro_y,gyro_z";
     let ran =
         good(&format!("network {network} {code} --compare step {}", flight("hexarotor.csv")), "");
-    let held_out = ran.told.split("held out:").nth(1).unwrap();
+    let held_out = ran.stderr.split("held out:").nth(1).unwrap();
     let [_, _, share, active, ..] = figures(held_out, "outputs agree in ")[..] else {
-        panic!("{}", ran.told)
+        panic!("{}", ran.stderr)
     };
-    assert!(share >= 90.0 && active > 50.0, "{}", ran.told);
+    assert!(share >= 90.0 && active > 50.0, "{}", ran.stderr);
 }
 
 /// Returns the roll rates that `turns.py` trains on, or holds out: every third stretch of 250 samples is held out.
@@ -323,28 +323,28 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     // A header, pairs, and 25 inputs, 32 neurons and 3 outputs for each neuron.
     assert_eq!(fs::read(bytes).unwrap().len(), 16 + 16 * 4 + 32 * (25 + 32 + 3));
     assert!(
-        ran.told.contains("32 of the chip's 256 neurons, 25 of its 256 inputs"),
+        ran.stderr.contains("32 of the chip's 256 neurons, 25 of its 256 inputs"),
         "{}",
-        ran.told
+        ran.stderr
     );
-    let (tuned, held_out) = ran.told.split_once("held out:\n").unwrap();
+    let (tuned, held_out) = ran.stderr.split_once("held out:\n").unwrap();
     for (told, expected) in [(tuned, 2147.0), (held_out, 1365.0)] {
         let of_spikes = told.rsplit_once("\nlayer: neurons").map_or(told, |(_, told)| told);
         let [neurons, clipped, spikes, on_chip, _] = figures(of_spikes, "node `neurons`: ")[..]
         else {
-            panic!("{}", ran.told)
+            panic!("{}", ran.stderr)
         };
-        assert_eq!((neurons, clipped, spikes), (32.0, 0.0, expected), "{}", ran.told);
-        assert!((on_chip - spikes).abs() < 0.03 * spikes, "{}", ran.told);
+        assert_eq!((neurons, clipped, spikes), (32.0, 0.0, expected), "{}", ran.stderr);
+        assert!((on_chip - spikes).abs() < 0.03 * spikes, "{}", ran.stderr);
         let [_, _, agreeing, _] = figures(told, "outputs agree")[..] else {
-            panic!("{}", ran.told)
+            panic!("{}", ran.stderr)
         };
-        assert!(agreeing > 97.0, "{}", ran.told);
+        assert!(agreeing > 97.0, "{}", ran.stderr);
         let of_outputs = told.rsplit("node `outputs`: ").next().unwrap();
         let [_, size, error] = figures(of_outputs, "3 outputs, ")[..] else {
-            panic!("{}", ran.told)
+            panic!("{}", ran.stderr)
         };
-        assert!(error < 0.15 * size, "{}", ran.told);
+        assert!(error < 0.15 * size, "{}", ran.stderr);
     }
     let firmware =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/rate-loop/src/turns.rs");
@@ -376,10 +376,10 @@ fn nested_and_recurrent_graphs_are_taken() {
         .map(|weight| weight.parse().unwrap())
         .collect();
     assert!(row[0] < 0 && row[1] == 0, "{row:?}");
-    let [_, _, spikes, on_chip, _] = figures(&recurrent.told, "node `lif1.lif`: ")[..] else {
-        panic!("{}", recurrent.told)
+    let [_, _, spikes, on_chip, _] = figures(&recurrent.stderr, "node `lif1.lif`: ")[..] else {
+        panic!("{}", recurrent.stderr)
     };
-    assert!(spikes > 1_000.0 && (spikes - on_chip).abs() < 0.1 * spikes, "{}", recurrent.told);
+    assert!(spikes > 1_000.0 && (spikes - on_chip).abs() < 0.1 * spikes, "{}", recurrent.stderr);
 }
 
 /// A damaged file is refused or read as another network; the program never panics.
@@ -395,7 +395,7 @@ fn damaged_files_are_refused() {
         for bytes in [&whole[..at], &flipped] {
             let (_directory, path) = file("damaged.nir", bytes);
             let ran = spikewire(&format!("network {path} {code}"), "");
-            assert!([0, 2].contains(&ran.status), "{at}: {} {}", ran.status, ran.told);
+            assert!([0, 2].contains(&ran.status), "{at}: {} {}", ran.status, ran.stderr);
             refusals += usize::from(ran.status == 2);
         }
     }

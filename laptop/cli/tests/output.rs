@@ -68,5 +68,9 @@ fn a_message_is_short_though_names_are_many() {
     let table = format!("{}\n{row}\n{row}\n", names.join(","));
     let ran = spikewire("encode --scheme sf --threshold 1 -", &table);
     assert_eq!(ran.status, 2);
-    assert!(ran.told.contains("c18, c19 and 99980 more") && ran.told.len() < 500, "{}", ran.told);
+    assert!(
+        ran.stderr.contains("c18, c19 and 99980 more") && ran.stderr.len() < 500,
+        "{}",
+        ran.stderr
+    );
 }

@@ -11,7 +11,7 @@ use tiny_skia::Pixmap;
 fn plot(options: &str, ending: &str) -> (Vec<u8>, String) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("picture").with_extension(ending);
-    let told = ran!("plot {options} -o {}", path.display()).told;
+    let told = ran!("plot {options} -o {}", path.display()).stderr;
     (fs::read(path).unwrap(), told)
 }
 

@@ -76,14 +76,14 @@ fn fault(case: &str, names: &Names) -> Option<String> {
         input = good_bytes(&command, &input).output;
         command = plain(next, names);
     }
-    let RanBytes { status, output, told } = spikewire_bytes(&command, &input);
+    let RanBytes { status, output, stderr } = spikewire_bytes(&command, &input);
     let output = String::from_utf8_lossy(&output);
     let words = unescaped(&plain(words.trim_start_matches(' '), names));
     let is_right = match sign {
         "==" => status == 0 && output == words,
-        "=>" => status == 2 && words.split(" | ").all(|own| told.contains(own)),
+        "=>" => status == 2 && words.split(" | ").all(|own| stderr.contains(own)),
         _ => {
-            let said = format!("{output}{told}");
+            let said = format!("{output}{stderr}");
             let is_said = |own: &str| match own.strip_prefix('!') {
                 Some(unsaid) => !said.contains(unsaid),
                 None => said.contains(own),
@@ -93,7 +93,7 @@ fn fault(case: &str, names: &Names) -> Option<String> {
     };
     (!is_right).then(|| {
         let most = |text: &str| text.chars().take(1000).collect::<String>();
-        format!("{case}\n{status}: {}{}", most(&output), most(&told))
+        format!("{case}\n{status}: {}{}", most(&output), most(&stderr))
     })
 }
 

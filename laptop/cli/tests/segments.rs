@@ -20,7 +20,7 @@ fn table(times: impl Iterator<Item = i64>) -> String {
 fn spikes_a_second(path: &str) -> (String, f64) {
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
     let rows: serde_json::Value = ran.json();
-    (ran.told, rows[0]["spikes_per_second"].as_f64().unwrap())
+    (ran.stderr, rows[0]["spikes_per_second"].as_f64().unwrap())
 }
 
 #[test]
@@ -86,6 +86,6 @@ fn an_unsorted_bag_has_a_length_and_a_rate() {
     let ran = ran!("info {path}").output;
     assert!(ran.contains("160 samples") && ran.contains("0.795 s, 200.00 Hz"), "{ran}");
     let score = format!("score --scheme sf --threshold 0.1 --topic /imu --field rate {path}");
-    let told = good(&score, "").told;
+    let told = good(&score, "").stderr;
     assert!(told.contains("159 steps back in time"), "{told}");
 }

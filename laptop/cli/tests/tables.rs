@@ -45,7 +45,7 @@ fn other_encodings_and_compressed_tables_are_read() {
         for channel in ["x", "3"] {
             let ran = spikewire_bytes(&format!("{SF} --column {channel} -"), &bytes);
             let output = String::from_utf8(ran.output).unwrap();
-            assert!(output.contains("\n1,0,1,5000\n"), "{what}: {}", ran.told);
+            assert!(output.contains("\n1,0,1,5000\n"), "{what}: {}", ran.stderr);
         }
         let ran = good_bytes(&format!("{SF} --column 2 -"), &bytes);
         assert!(String::from_utf8(ran.output).unwrap().contains("# column=roll µ\n"), "{what}");
@@ -73,7 +73,7 @@ fn all_frames_of_zstandard_are_read() {
         (&damaged[..], "damaged"),
     ] {
         let ran = spikewire_bytes(&format!("{SF} -"), bytes);
-        assert!(ran.status == 2 && ran.told.contains(words), "{}", ran.told);
+        assert!(ran.status == 2 && ran.stderr.contains(words), "{}", ran.stderr);
     }
 }
 
@@ -103,8 +103,8 @@ fn a_binary_file_is_no_file_of_spikes() {
         noise.splice(..start.len(), start.iter().copied());
         let (_directory, path) = file("spikes", &noise);
         let told = common::spikewire(&format!("decode {path}"), "");
-        assert_eq!((told.status, told.told.lines().count()), (2, 1), "{}", told.told);
-        assert!(told.told.contains("binary") && told.told.len() < 300, "{}", told.told);
+        assert_eq!((told.status, told.stderr.lines().count()), (2, 1), "{}", told.stderr);
+        assert!(told.stderr.contains("binary") && told.stderr.len() < 300, "{}", told.stderr);
     }
 }
 

@@ -12,8 +12,8 @@ fn repeated_times_are_no_gaps() {
         "encode --scheme sf --threshold 0.5 -",
         &format!("time_us,x\n{}", rows.collect::<String>()),
     );
-    assert!(ran.told.contains("0 gaps above 30.000 ms"), "{}", ran.told);
-    assert!(ran.told.contains("3000 times equal the one before"), "{}", ran.told);
+    assert!(ran.stderr.contains("0 gaps above 30.000 ms"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("3000 times equal the one before"), "{}", ran.stderr);
 }
 
 #[test]

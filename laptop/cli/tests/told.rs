@@ -7,7 +7,7 @@ use common::{events, file, flight, good, ran, refused, table};
 #[test]
 fn a_rate_code_that_reaches_the_signal_has_no_note() {
     let (_directory, signal) = file("signal.csv", good("signal --seconds 5", "").output);
-    let reached = ran!("score --scheme hsa --paper {signal}").told;
+    let reached = ran!("score --scheme hsa --paper {signal}").stderr;
     assert!(!reached.contains("too low") && !reached.contains("most that"), "{reached}");
 }
 
@@ -31,14 +31,14 @@ fn columns_that_a_sample_type_loses_are_told() {
     let encode = |sample: &str, values: &[f64]| {
         let (_directory, path) = file("x.csv", table(values));
         let options = format!("--scheme sf --threshold 20 --sample {sample} {path}");
-        (ran!("encode {options}"), ran!("score {options}").told)
+        (ran!("encode {options}"), ran!("score {options}").stderr)
     };
     let ((single, scored), (whole, _)) = (encode("f32", &latitude), encode("i32", &latitude));
-    for told in [&single.told, &scored] {
+    for told in [&single.stderr, &scored] {
         assert!(told.contains("f32 loses the column's own steps: "), "{told}");
         assert!(told.contains("; i32 holds them"), "{told}");
     }
-    assert!(!whole.told.contains("loses"), "{}", whole.told);
+    assert!(!whole.stderr.contains("loses"), "{}", whole.stderr);
     assert_ne!(events(&single.output), events(&whole.output));
     let far: Vec<f64> = (0..2000).map(|sample| 1e9 + (f64::from(sample) * 0.01).sin()).collect();
     let (_directory, path) = file("far.csv", table(&far));

@@ -163,13 +163,13 @@ fn where_a_search_ends_is_said() {
     let ask = |more: &str| {
         let asked = format!("tune {flight} --channel gyro_x --max-rmse 0.001 {SHORT}");
         let ran = spikewire(&format!("{asked} {more}"), "");
-        assert_eq!(ran.status, 2, "{}", ran.told);
+        assert_eq!(ran.status, 2, "{}", ran.stderr);
         assert!(
-            ran.told.contains("of the settings tried none keeps to all limits"),
+            ran.stderr.contains("of the settings tried none keeps to all limits"),
             "{}",
-            ran.told
+            ran.stderr
         );
-        ran.told
+        ran.stderr
     };
     let position = ask("--scheme position");
     assert!(position.contains("position: none of 100 settings"), "{position}");
@@ -291,8 +291,8 @@ fn what_says_nothing_is_refused() {
     ] {
         let (_directory, path) = file("log.csv", table(&values));
         let ran = spikewire(&format!("{tune} {path}"), "");
-        assert_eq!((ran.status, ran.output.as_str()), (2, ""), "{}", ran.told);
-        assert!(ran.told.contains(words), "{}", ran.told);
+        assert_eq!((ran.status, ran.output.as_str()), (2, ""), "{}", ran.stderr);
+        assert!(ran.stderr.contains(words), "{}", ran.stderr);
     }
     let rest = flight("vtol_at_rest.csv");
     refused(&format!("tune --channel gyro_x --scheme sf {rest}"), "", &["all on the ground"]);

@@ -80,7 +80,7 @@ fn hear(values: Option<(Box<dyn EventReader + '_>, Box<dyn EventWriter>)>) -> Re
     let format: Format = "link".parse()?;
     let heard = Rc::new(RefCell::new(Heard::default()));
     let stream = |(reader, own), is_values| {
-        Stream::new(reader, Box::new(Told { own, heard: heard.clone(), is_values }), false)
+        Stream::new(reader, Box::new(Recorder { own, heard: heard.clone(), is_values }), false)
     };
     let mut spikes = stream((format.reader("the board"), Format::Csv.writer(false)), false);
     let mut values = values.map(|values| stream(values, true));
@@ -140,13 +140,13 @@ impl Heard {
 }
 
 /// Writes a file, and notes what the picture shows.
-struct Told {
+struct Recorder {
     own: Box<dyn EventWriter>,
     heard: Rc<RefCell<Heard>>,
     is_values: bool,
 }
 
-impl EventWriter for Told {
+impl EventWriter for Recorder {
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> lab::Result<()> {
         let mut heard = self.heard.borrow_mut();
         match *item {

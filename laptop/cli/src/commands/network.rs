@@ -15,7 +15,7 @@ use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
     Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model,
-    NetworkKind, Numbers, OnChip, Request, Stepped, Told, Trained, Trains, WINDOW, bring,
+    NetworkKind, Numbers, OnChip, Remarks, Request, Stepped, Trained, Trains, WINDOW, bring,
     bring_to_controller,
 };
 use lab::output::Output;
@@ -220,10 +220,10 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     bar.finish_and_clear();
     let brought = brought.map_err(|error| error.at(&name))?;
 
-    let told = Told { source: name, inputs: driven.words, step_us: driven.step_us };
+    let remarks = Remarks { source: name, inputs: driven.words, step_us: driven.step_us };
     if output.is_some() || !options.live {
         let mut output = Output::open(output.as_deref(), &input.input)?;
-        output.write_all(brought.network.emit(&told).as_bytes())?;
+        output.write_all(brought.network.emit(&remarks).as_bytes())?;
         output.finish()?;
     }
     if let Some(path) = &options.bytes {

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 pub struct Ran {
     pub status: i32,
     pub output: String,
-    pub told: String,
+    pub stderr: String,
 }
 
 impl Ran {
@@ -26,15 +26,15 @@ pub(crate) use ran;
 
 /// Runs `spikewire` with arguments separated by blanks, and with `input` on standard input.
 pub fn spikewire(arguments: &str, input: &str) -> Ran {
-    let RanBytes { status, output, told } = spikewire_bytes(arguments, input.as_bytes());
-    Ran { status, output: String::from_utf8(output).unwrap(), told }
+    let RanBytes { status, output, stderr } = spikewire_bytes(arguments, input.as_bytes());
+    Ran { status, output: String::from_utf8(output).unwrap(), stderr }
 }
 
 /// The outcome of a run whose output may be binary.
 pub struct RanBytes {
     pub status: i32,
     pub output: Vec<u8>,
-    pub told: String,
+    pub stderr: String,
 }
 
 /// Runs `spikewire` as [`spikewire`] does, with bytes in and out.
@@ -58,30 +58,34 @@ pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     RanBytes {
         status: done.status.code().unwrap(),
         output: done.stdout,
-        told: String::from_utf8(done.stderr).unwrap(),
+        stderr: String::from_utf8(done.stderr).unwrap(),
     }
 }
 
 /// Runs `spikewire` with bytes in and out, and fails the test if the run fails.
 pub fn good_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     let ran = spikewire_bytes(arguments, input);
-    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
+    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.stderr);
     ran
 }
 
 /// Runs `spikewire`, and fails the test if the run fails.
 pub fn good(arguments: &str, input: &str) -> Ran {
     let ran = spikewire(arguments, input);
-    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.told);
+    assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.stderr);
     ran
 }
 
 /// Runs `spikewire`, and fails the test unless it is refused with a message that holds all of `words`.
 pub fn refused(arguments: &str, input: &str, words: &[&str]) {
     let ran = spikewire_bytes(arguments, input.as_bytes());
-    assert_eq!(ran.status, 2, "spikewire {arguments}: {}", ran.told);
+    assert_eq!(ran.status, 2, "spikewire {arguments}: {}", ran.stderr);
     for word in words {
-        assert!(ran.told.contains(word), "spikewire {arguments}: `{word}` is not in: {}", ran.told);
+        assert!(
+            ran.stderr.contains(word),
+            "spikewire {arguments}: `{word}` is not in: {}",
+            ran.stderr
+        );
     }
 }
 

@@ -56,9 +56,9 @@ pub struct Clock {
     samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
-    gaps: Told<Step>,
-    backward: Told<Step>,
-    restarts: Told<Step>,
+    gaps: Listed<Step>,
+    backward: Listed<Step>,
+    restarts: Listed<Step>,
     repeated: u64,
     /// The earliest and the latest time of this segment; `before` is the length of the segments before it, in µs.
     span: Option<(i64, i64)>,
@@ -66,7 +66,7 @@ pub struct Clock {
     /// The last times, up to [`RUN`] steps of them; `run_step` is the step between samples in the run before.
     run: Vec<i64>,
     run_step: f64,
-    jumps: Told<Jump>,
+    jumps: Listed<Jump>,
     is_timed: bool,
 }
 
@@ -79,12 +79,12 @@ const JUMP: f64 = 1.5;
 
 /// The number of unusual things of one kind, and the first few of them.
 #[derive(Clone, Debug)]
-struct Told<T> {
+struct Listed<T> {
     count: u64,
     first: Vec<T>,
 }
 
-impl<T> Default for Told<T> {
+impl<T> Default for Listed<T> {
     fn default() -> Self {
         Self { count: 0, first: Vec::new() }
     }
@@ -110,15 +110,15 @@ impl Clock {
             samples_a_step,
             previous: None,
             seen: 0,
-            gaps: Told::default(),
-            backward: Told::default(),
-            restarts: Told::default(),
+            gaps: Listed::default(),
+            backward: Listed::default(),
+            restarts: Listed::default(),
             repeated: 0,
             span: None,
             before: 0,
             run: Vec::with_capacity(RUN + 1),
             run_step: usual_step / samples_a_step,
-            jumps: Told::default(),
+            jumps: Listed::default(),
             is_timed: !first_times.is_empty(),
         }
     }
@@ -209,17 +209,17 @@ impl Clock {
     }
 }
 
-impl<T> Told<T> {
+impl<T> Listed<T> {
     fn take(&mut self, step: T) {
-        const TOLD: usize = 5;
+        const LISTED: usize = 5;
         self.count += 1;
-        if self.first.len() < TOLD {
+        if self.first.len() < LISTED {
             self.first.push(step);
         }
     }
 }
 
-impl<T: fmt::Display> fmt::Display for Told<T> {
+impl<T: fmt::Display> fmt::Display for Listed<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (place, step) in self.first.iter().enumerate() {
             let before = if place == 0 { ": " } else { ", " };

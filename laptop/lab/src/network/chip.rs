@@ -64,7 +64,7 @@ pub trait OnChip {
     fn clipped(&self) -> Vec<usize>;
 
     /// Writes Rust source, which compiles without `std` if `spikewire-chips` has its feature `embedded-hal`.
-    fn emit(&self, told: &Told) -> String;
+    fn emit(&self, remarks: &Remarks) -> String;
 
     /// Returns the network as bytes, which the driver loads at run time.
     ///
@@ -108,7 +108,7 @@ pub struct Stepped {
 }
 
 /// Remarks for the readers of the generated file.
-pub struct Told {
+pub struct Remarks {
     /// Where the network comes from.
     pub source: String,
     /// What its inputs mean.
@@ -117,7 +117,7 @@ pub struct Told {
     pub step_us: Option<f64>,
 }
 
-impl Told {
+impl Remarks {
     /// Returns a comma and the duration of `steps` steps in the recording, if it is known.
     pub(super) fn micros(&self, steps: usize) -> String {
         self.step_us.map_or(String::new(), |step| {

@@ -15,7 +15,7 @@ mod trained;
 pub use bring::{
     Brought, Figures, HeldOut, LayerFigures, PotentialFigures, Request, WINDOW, bring,
 };
-pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Stepped, Told};
+pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Remarks, Stepped};
 pub use controller::{
     Asked, Choice, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers,
     Reset, Rule, bring_to_controller,

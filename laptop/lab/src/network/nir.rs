@@ -312,8 +312,8 @@ fn read_weights(node: &Group, kind: &str) -> Result<Weights> {
 fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Neurons> {
     let array = |what: &str| -> Result<Array> {
         let (_, numbers) = numbers(node, what)?;
-        let told = numbers.len();
-        ensure!(told == 1 || told == count, "{told} values of `{what}` for {count} neurons");
+        let given = numbers.len();
+        ensure!(given == 1 || given == count, "{given} values of `{what}` for {count} neurons");
         if let Some(odd) = numbers.iter().find(|number| !number.is_finite()) {
             bail!("`{what}` holds {odd}");
         }

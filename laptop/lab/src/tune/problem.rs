@@ -97,9 +97,9 @@ pub struct Excess {
     /// The limited quantity.
     pub limit: Limit,
     /// Value of the settings.
-    pub is: f64,
+    pub value: f64,
     /// Value that is allowed.
-    pub may_be: f64,
+    pub allowed: f64,
     /// Excess, as a share of the limit.
     pub part: f64,
 }
@@ -281,11 +281,11 @@ impl<'a> Problem<'a> {
             asked.push((Limit::Rmse, tally.rmse(), Some(rmse)));
         }
         // Rounding is no excess.
-        let is_above = |is: f64, may_be: f64| is > may_be * (1.0 + 1e-12);
-        let part = |is: f64, may_be: f64| ((is - may_be) / may_be.max(1e-9)).min(1e6);
-        let excess = asked.into_iter().filter_map(|(limit, is, may_be)| {
-            let may_be = may_be.filter(|may_be| is_above(is, *may_be))?;
-            Some(Excess { limit, is, may_be, part: part(is, may_be) })
+        let is_above = |value: f64, allowed: f64| value > allowed * (1.0 + 1e-12);
+        let part = |value: f64, allowed: f64| ((value - allowed) / allowed.max(1e-9)).min(1e6);
+        let excess = asked.into_iter().filter_map(|(limit, value, allowed)| {
+            let allowed = allowed.filter(|allowed| is_above(value, *allowed))?;
+            Some(Excess { limit, value, allowed, part: part(value, allowed) })
         });
         let mut excess: Vec<Excess> = excess.collect();
         if let Goal::LeastError(efficiency) = self.goal {
@@ -293,8 +293,8 @@ impl<'a> Problem<'a> {
             let most = most_spikes(efficiency, tally.samples);
             if tally.spikes > most {
                 let part = part(tally.spikes as f64, most.max(1) as f64);
-                let is = tally.efficiency();
-                excess.push(Excess { limit: Limit::Efficiency, is, may_be: efficiency, part });
+                let value = tally.efficiency();
+                excess.push(Excess { limit: Limit::Efficiency, value, allowed: efficiency, part });
             }
         }
         excess

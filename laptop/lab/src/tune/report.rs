@@ -333,9 +333,9 @@ pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
         settings.map_or(String::new(), |settings| brief(settings.entries())),
     ));
     for (place, one) in best.excess.iter().enumerate() {
-        let is = if one.is.is_finite() { short(one.is) } else { "not known".to_owned() };
+        let value = if one.value.is_finite() { short(one.value) } else { "not known".to_owned() };
         words = words.text(if place > 0 { ", " } else { "" }).setting(one.limit.name());
-        words = words.text(format_args!(" {} is {is}", short(one.may_be)));
+        words = words.text(format_args!(" {} is {value}", short(one.allowed)));
     }
     let ends = found.ends.iter().map(|end| format!("; {}", end.words()));
     words.text(ends.collect::<String>())

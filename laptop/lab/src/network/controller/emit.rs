@@ -1,8 +1,8 @@
 //! Writes the network as Rust: constant data for `spikewire-network`.
 
 use super::super::Trains;
-use super::super::chip::{Told, list};
-use super::net::{Layer, Net, Neuron, Own};
+use super::super::chip::{Remarks, list};
+use super::net::{Layer, Net, Neuron, Recurrent};
 use super::number::Number;
 use super::rule::{Current, Fires, Rule};
 use std::collections::BTreeSet;
@@ -72,7 +72,7 @@ pub(super) fn emit<K: Spelled>(
     shifts: &[u32],
     units: &[f64],
     check: &Trains,
-    told: &Told,
+    remarks: &Remarks,
 ) -> String {
     let mut body = String::new();
     for (number, layer) in (1..).zip(&net.layers) {
@@ -89,7 +89,7 @@ pub(super) fn emit<K: Spelled>(
         );
     }
     body += &checked(net, check);
-    let Told { source, inputs, step_us } = told;
+    let Remarks { source, inputs, step_us } = remarks;
     let every = step_us.map_or(String::new(), |step| format!(" A step: {step} µs."));
     let words: BTreeSet<&str> = body.split(|c: char| !c.is_alphanumeric()).collect();
     let used = list(NAMES.iter().filter(|name| words.contains(*name)));
@@ -142,9 +142,9 @@ static WEIGHTS_{number}: Weights<{numbers}, {inputs}, {count}> = {};
         K::spell_weights(&rows, shift)
     );
     let rows: Vec<&[K]> = match own {
-        Own::None => vec![],
-        Own::Full(rows) => rows.iter().map(Vec::as_slice).collect(),
-        Own::OneToOne(own) => vec![own],
+        Recurrent::None => vec![],
+        Recurrent::Full(rows) => rows.iter().map(Vec::as_slice).collect(),
+        Recurrent::OneToOne(own) => vec![own],
     };
     if !rows.is_empty() {
         _ = write!(
@@ -164,9 +164,9 @@ static OWN_{number}: Weights<{numbers}, {}, {count}> = {};
         format!("[\n{}]", lines.collect::<String>())
     };
     let recurrence = match own {
-        Own::None => "Forward".to_owned(),
-        Own::Full(_) => format!("Full<'static, {numbers}, {count}>"),
-        Own::OneToOne(_) => format!("OneToOne<'static, {numbers}, {count}>"),
+        Recurrent::None => "Forward".to_owned(),
+        Recurrent::Full(_) => format!("Full<'static, {numbers}, {count}>"),
+        Recurrent::OneToOne(_) => format!("OneToOne<'static, {numbers}, {count}>"),
     };
     _ = write!(
         text,
@@ -231,9 +231,9 @@ fn network<K: Spelled>(net: &Net<K>) -> String {
     let (mut kind, mut value) = (String::new(), String::new());
     for (number, layer) in (1..).zip(&net.layers) {
         let own = match layer.own {
-            Own::None => String::new(),
-            Own::Full(_) => format!(".recurrent(Full(&OWN_{number}))"),
-            Own::OneToOne(_) => format!(".recurrent(OneToOne(&OWN_{number}))"),
+            Recurrent::None => String::new(),
+            Recurrent::Full(_) => format!(".recurrent(Full(&OWN_{number}))"),
+            Recurrent::OneToOne(_) => format!(".recurrent(OneToOne(&OWN_{number}))"),
         };
         let one = format!("Layer::new(&WEIGHTS_{number}, &NEURONS_{number}){own}");
         if number == 1 {

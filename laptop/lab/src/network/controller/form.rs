@@ -3,7 +3,7 @@
 
 use super::super::nir::{Array, Chain, Neurons, Stage, Weights};
 use super::super::trained;
-use super::net::{Layer, Net, Neuron, Own, Spike};
+use super::net::{Layer, Net, Neuron, Recurrent, Spike};
 use super::rule::{Current, Decay, Framework, Needs, Reset, Rule};
 use super::{Asked, Model};
 use crate::network::NetworkKind;
@@ -52,7 +52,7 @@ impl Model {
             let silent =
                 |decay| Neuron { current: None, decay, bias: 0.0, inner: 0.0, spike: None };
             let neurons = keep.into_iter().map(silent).collect();
-            Layer { name, weights: turned(&weights), own: Own::None, neurons, rule }
+            Layer { name, weights: turned(&weights), own: Recurrent::None, neurons, rule }
         }));
         Self::new(Net { layers }, Vec::new())
     }
@@ -91,7 +91,13 @@ impl Model {
                 spike: None,
             };
             let neurons = (0..rows.len()).map(one).collect();
-            Layer { name: "sums".into(), weights: turned(&rows), own: Own::None, neurons, rule }
+            Layer {
+                name: "sums".into(),
+                weights: turned(&rows),
+                own: Recurrent::None,
+                neurons,
+                rule,
+            }
         }));
         Self::new(Net { layers }, notes)
     }
@@ -118,8 +124,8 @@ impl Model {
 
 impl Layer<f64> {
     fn check(&self) -> Result<()> {
-        let own: &[Vec<f64>] = if let Own::Full(own) = &self.own { own } else { &[] };
-        let one = if let Own::OneToOne(own) = &self.own { &own[..] } else { &[] };
+        let own: &[Vec<f64>] = if let Recurrent::Full(own) = &self.own { own } else { &[] };
+        let one = if let Recurrent::OneToOne(own) = &self.own { &own[..] } else { &[] };
         let weights = self.weights.iter().chain(own).flatten().chain(one);
         let of_neurons = self.neurons.iter().flat_map(|neuron| {
             let Spike { threshold, reset } =
@@ -149,18 +155,18 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// Converts recurrent weights, given in rows by neuron; if each neuron leads to itself alone, only those weights are
 /// kept.
-fn own(rows: &[Vec<f64>]) -> Own<f64> {
+fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
-        return Own::None;
+        return Recurrent::None;
     }
     let is_diagonal = rows
         .iter()
         .enumerate()
         .all(|(at, row)| row.iter().enumerate().all(|(from, &weight)| from == at || weight == 0.0));
     if is_diagonal {
-        Own::OneToOne(rows.iter().enumerate().map(|(at, row)| row[at]).collect())
+        Recurrent::OneToOne(rows.iter().enumerate().map(|(at, row)| row[at]).collect())
     } else {
-        Own::Full(turned(rows))
+        Recurrent::Full(turned(rows))
     }
 }
 

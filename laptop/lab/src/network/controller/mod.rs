@@ -15,10 +15,10 @@ pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 
 use super::Trains;
 use super::bring::{Brought, HeldOut, Original, figures};
-use super::chip::{OnChip, Ran, Stepped, Told};
+use super::chip::{OnChip, Ran, Remarks, Stepped};
 use super::costs::Cost;
 use crate::network::fault::{Result, bail};
-use net::{Done, Net, Own, State};
+use net::{Done, Net, Recurrent, State};
 use number::Number;
 use quantise::Integers;
 
@@ -234,9 +234,9 @@ fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
     for layer in &net.layers {
         let count = layer.neurons.len();
         let own = match layer.own {
-            Own::None => 0,
-            Own::Full(_) => count * count,
-            Own::OneToOne(_) => count,
+            Recurrent::None => 0,
+            Recurrent::Full(_) => count * count,
+            Recurrent::OneToOne(_) => count,
         };
         let first = layer.neurons.first();
         let has_current = first.is_some_and(|neuron| neuron.current.is_some());
@@ -286,11 +286,11 @@ impl OnChip for OnController {
         }
     }
 
-    fn emit(&self, told: &Told) -> String {
+    fn emit(&self, remarks: &Remarks) -> String {
         match &self.held {
-            Held::Float(net) => emit::emit(net, &[], &[], &self.check, told),
+            Held::Float(net) => emit::emit(net, &[], &[], &self.check, remarks),
             Held::Integer(Integers { net, shifts, units, .. }) => {
-                emit::emit(net, shifts, units, &self.check, told)
+                emit::emit(net, shifts, units, &self.check, remarks)
             }
         }
     }

@@ -17,14 +17,14 @@ pub(super) struct Layer<K: Number> {
     pub name: String,
     /// The weights, by input, then by neuron.
     pub weights: Vec<Vec<K>>,
-    pub own: Own<K>,
+    pub own: Recurrent<K>,
     pub neurons: Vec<Neuron<K>>,
     pub rule: Rule,
 }
 
 /// Recurrent weights of a layer; its spikes act through them a step later.
 #[derive(Clone, Debug)]
-pub(super) enum Own<K> {
+pub(super) enum Recurrent<K> {
     None,
     /// The weights, by the neuron that fired, then by neuron.
     Full(Vec<Vec<K>>),
@@ -129,9 +129,9 @@ impl<K: Number> Layer<K> {
     /// in the step before.
     pub(super) fn operations(&self, inputs: usize, own: usize) -> usize {
         let back = match self.own {
-            Own::None => 0,
-            Own::Full(_) => own * self.neurons.len(),
-            Own::OneToOne(_) => own,
+            Recurrent::None => 0,
+            Recurrent::Full(_) => own * self.neurons.len(),
+            Recurrent::OneToOne(_) => own,
         };
         inputs * self.neurons.len() + back
     }
@@ -146,13 +146,13 @@ impl<K: Number> Layer<K> {
                 sum = sum.plus(self.weights[usize::from(input)][at]);
             }
             match &self.own {
-                Own::None => {}
-                Own::Full(own) => {
+                Recurrent::None => {}
+                Recurrent::Full(own) => {
                     for &fired in &before {
                         sum = sum.plus(own[usize::from(fired)][at]);
                     }
                 }
-                Own::OneToOne(own) => {
+                Recurrent::OneToOne(own) => {
                     if before.binary_search(&(at as u16)).is_ok() {
                         sum = sum.plus(own[at]);
                     }

@@ -2,7 +2,7 @@
 
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
-use super::net::{Layer, Neuron, Own, Spike};
+use super::net::{Layer, Neuron, Recurrent, Spike};
 use crate::network::fault::{Context, Result, ensure};
 
 /// Largest share of a current that may remain after a step.
@@ -49,9 +49,9 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     let Layer { name, weights, own, neurons, rule } = layer;
     let count = neurons.len();
     let recurrent = match own {
-        Own::None => vec![],
-        Own::Full(own) => turned(&own),
-        Own::OneToOne(own) => {
+        Recurrent::None => vec![],
+        Recurrent::Full(own) => turned(&own),
+        Recurrent::OneToOne(own) => {
             let row = |at: usize| (0..count).map(move |from| f64::from(u8::from(from == at)));
             let rows = own.iter().enumerate();
             rows.map(|(at, weight)| row(at).map(|one| one * weight).collect()).collect()

@@ -1,7 +1,7 @@
 //! Converts a network from double precision to the controller's number types.
 
 use super::super::{Distance, Trains};
-use super::net::{Layer, Net, Neuron, Own, Spike};
+use super::net::{Layer, Net, Neuron, Recurrent, Spike};
 use super::number::ONE;
 use super::rule::Rule;
 use rayon::prelude::*;
@@ -27,9 +27,9 @@ pub(super) fn float(net: &Net<f64>) -> Net<f32> {
         name: layer.name.clone(),
         weights: layer.weights.iter().map(row).collect(),
         own: match &layer.own {
-            Own::None => Own::None,
-            Own::Full(rows) => Own::Full(rows.iter().map(row).collect()),
-            Own::OneToOne(own) => Own::OneToOne(row(own)),
+            Recurrent::None => Recurrent::None,
+            Recurrent::Full(rows) => Recurrent::Full(rows.iter().map(row).collect()),
+            Recurrent::OneToOne(own) => Recurrent::OneToOne(row(own)),
         },
         neurons: layer
             .neurons
@@ -122,9 +122,9 @@ struct Column {
 impl Layer<f64> {
     fn own_weights(&self, at: usize) -> Vec<f64> {
         match &self.own {
-            Own::None => vec![],
-            Own::Full(rows) => rows.iter().map(|row| row[at]).collect(),
-            Own::OneToOne(own) => vec![own[at]],
+            Recurrent::None => vec![],
+            Recurrent::Full(rows) => rows.iter().map(|row| row[at]).collect(),
+            Recurrent::OneToOne(own) => vec![own[at]],
         }
     }
 
@@ -156,9 +156,13 @@ impl Layer<f64> {
                 .collect()
         };
         let own = match &self.own {
-            Own::None => Own::None,
-            Own::Full(_) => Own::Full(rows(columns.len(), &|column, row| column.own[row])),
-            Own::OneToOne(_) => Own::OneToOne(columns.iter().map(|column| column.own[0]).collect()),
+            Recurrent::None => Recurrent::None,
+            Recurrent::Full(_) => {
+                Recurrent::Full(rows(columns.len(), &|column, row| column.own[row]))
+            }
+            Recurrent::OneToOne(_) => {
+                Recurrent::OneToOne(columns.iter().map(|column| column.own[0]).collect())
+            }
         };
         Layer {
             name: self.name.clone(),

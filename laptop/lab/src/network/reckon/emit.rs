@@ -1,13 +1,13 @@
 //! Writes the network as Rust: constant data for `spikewire_chips`.
 
-use super::super::chip::{Told, lines, list};
+use super::super::chip::{Remarks, lines, list};
 use super::Quantised;
 use super::quantise::FIRED;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 
-pub(super) fn emit(network: &Quantised, told: &Told) -> String {
+pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     let (inputs, count, outputs) = (network.inputs(), network.neurons(), network.outputs());
-    let (source, meaning, micros) = (&told.source, &told.inputs, told.micros(1));
+    let (source, meaning, micros) = (&remarks.source, &remarks.inputs, remarks.micros(1));
     let layers = list(network.layers.iter().map(|(name, neurons)| format!("{neurons} ({name})")));
     let bias = network.bias.map_or(String::new(), |bias| {
         format!(

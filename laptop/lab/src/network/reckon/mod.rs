@@ -5,7 +5,7 @@ mod place;
 mod quantise;
 mod run;
 
-use super::chip::{Chip, Compare, OnChip, Ran, Told, written};
+use super::chip::{Chip, Compare, OnChip, Ran, Remarks, written};
 use super::costs::Cost;
 use super::{Trained, Trains};
 use crate::Result;
@@ -46,8 +46,8 @@ impl OnChip for Quantised {
         self.changes.iter().map(|change| change.clipped).collect()
     }
 
-    fn emit(&self, told: &Told) -> String {
-        emit::emit(self, told)
+    fn emit(&self, remarks: &Remarks) -> String {
+        emit::emit(self, remarks)
     }
 
     fn bytes(&self) -> Result<Vec<u8>> {

@@ -35,7 +35,7 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         lost: 0,
     };
     // Spikes are taken from the model, but those of the last layer from what the chip answers, if it does.
-    let told = if network.unit.is_some() { layers } else { layers - 1 };
+    let read_out = if network.unit.is_some() { layers } else { layers - 1 };
     let late = network.late();
     board.pins().chip.fired.clear();
     let silent = vec![];
@@ -60,7 +60,7 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
             let Some((layer, place)) = network.places.neurons[usize::from(neuron)] else {
                 bail!("neuron {neuron} fires, which the network has not")
             };
-            if let Some(step) = step.checked_sub(layer + 1).filter(|_| layer < told)
+            if let Some(step) = step.checked_sub(layer + 1).filter(|_| layer < read_out)
                 && let Some(step) = ran.fired[layer].get_mut(step)
             {
                 step.push(place as u16);
@@ -69,9 +69,9 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         let Some(step) = step.checked_sub(late) else { continue };
         let outputs = &answer[..network.outputs[0].len()];
         if let Some(unit) = network.unit {
-            ran.potentials.push(outputs.iter().map(|&told| f64::from(told) * unit).collect());
+            ran.potentials.push(outputs.iter().map(|&answer| f64::from(answer) * unit).collect());
         } else {
-            let fired = (0..).zip(outputs).filter(|(_, told)| *told >> FIRED & 1 == 1);
+            let fired = (0..).zip(outputs).filter(|(_, answer)| *answer >> FIRED & 1 == 1);
             ran.fired[layers - 1][step] = fired.map(|(output, _)| output).collect();
         }
     }

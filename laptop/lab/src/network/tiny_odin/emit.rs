@@ -1,15 +1,15 @@
 //! Writes the network as Rust: constant data for `spikewire_chips`.
 
-use super::super::chip::{Told, lines, list};
+use super::super::chip::{Remarks, lines, list};
 use super::Quantised;
 use spikewire_chips::{Describe, TinyOdinNeuron};
 
 /// Writes Rust source, which compiles without `std` if `spikewire-chips` has its feature `embedded-hal`.
-pub(super) fn emit(network: &Quantised, told: &Told) -> String {
+pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     let (count, inputs) = (network.neurons(), network.inputs());
     let outputs = (0..count).filter(|&neuron| network.output(neuron as u8).is_some());
     let outputs: Vec<u16> = outputs.collect();
-    let (source, meaning, every) = (&told.source, &told.inputs, network.steps_a_leak);
+    let (source, meaning, every) = (&remarks.source, &remarks.inputs, network.steps_a_leak);
     let layers = list(
         network.layers.iter().map(|layer| format!("{} ({})", layer.neurons.len(), layer.name)),
     );
@@ -21,7 +21,7 @@ pub(super) fn emit(network: &Quantised, told: &Told) -> String {
     } else {
         String::new()
     };
-    let micros = told.micros(every);
+    let micros = remarks.micros(every);
     let idle = if network.leaks() { "" } else { " No neuron leaks: none need be sent." };
     let neurons = lines((0..count).map(|neuron| {
         let TinyOdinNeuron { threshold, leak, .. } = network.neuron(neuron as u8);
@@ -33,7 +33,7 @@ pub(super) fn emit(network: &Quantised, told: &Told) -> String {
     let rows = lines((0..inputs).map(|input| row(&|post| network.input_weight(input, post))));
     let senders = if network.is_recurrent() { count } else { 0 };
     let recurrent = lines((0..senders).map(|pre| row(&|post| network.weight(pre as u8, post))));
-    let (told, places) = (outputs.len(), list(outputs.iter()));
+    let (readable, places) = (outputs.len(), list(outputs.iter()));
     format!(
         "//! {source}, brought onto tinyODIN by `spikewire network`.
 
@@ -45,7 +45,7 @@ pub const STEPS_A_LEAK: NonZeroU32 = NonZeroU32::new({every}).unwrap();
 
 /// Layers of {layers}. Inputs: {meaning}.
 #[rustfmt::skip]
-pub static NETWORK: TinyOdinNetwork<{inputs}, {count}, {told}> = TinyOdinNetwork {{
+pub static NETWORK: TinyOdinNetwork<{inputs}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [
 {neurons}    ],
     inputs: Inputs::Rows([

@@ -7,7 +7,7 @@ mod quantise;
 mod run;
 
 use super::bring::{Original, figures};
-use super::chip::{Chip, Compare, OnChip, Ran, Stepped, Told, written};
+use super::chip::{Chip, Compare, OnChip, Ran, Remarks, Stepped, written};
 use super::costs::Cost;
 use super::{Trained, Trains};
 use crate::network::fault::{Context, Result, bail};
@@ -88,8 +88,8 @@ impl OnChip for Quantised {
         self.layers.iter().map(of_layer).collect()
     }
 
-    fn emit(&self, told: &Told) -> String {
-        emit::emit(self, told)
+    fn emit(&self, remarks: &Remarks) -> String {
+        emit::emit(self, remarks)
     }
 
     fn bytes(&self) -> Result<Vec<u8>> {

@@ -1,12 +1,12 @@
 //! Writes the network as Rust: constant data for `spikewire_chips`.
 
-use super::super::super::chip::{Told, lines, list};
+use super::super::super::chip::{Remarks, lines, list};
 use super::Gated;
 use spikewire_chips::{Describe, Steps, StepsLayer, TinyOdinNeuron};
 
 /// Writes Rust source, which compiles without `std`.
-pub(super) fn emit(network: &Gated, told: &Told) -> String {
-    let (source, meaning) = (&told.source, &told.inputs);
+pub(super) fn emit(network: &Gated, remarks: &Remarks) -> String {
+    let (source, meaning) = (&remarks.source, &remarks.inputs);
     let (count, rows) = (network.neurons(), network.inputs());
     let layers = list(
         network.layers.iter().map(|layer| format!("{} ({})", layer.neurons.len(), layer.name)),
@@ -20,7 +20,7 @@ pub(super) fn emit(network: &Gated, told: &Told) -> String {
     let row =
         |row| format!("[{}]", list((0..count).map(|post| network.input_weight(row, post as u8))));
     let weights = lines((0..rows).map(row));
-    let (told, places) = (outputs.len(), list(outputs.iter()));
+    let (readable, places) = (outputs.len(), list(outputs.iter()));
     let steps = network.with_steps(steps);
     format!(
         "//! {source}, brought onto tinyODIN by `spikewire network`.
@@ -33,7 +33,7 @@ pub static STEPS: Steps = {steps};
 
 /// Layers of {layers}. Its inputs are the rows of the steps.
 #[rustfmt::skip]
-pub static NETWORK: TinyOdinNetwork<{rows}, {count}, {told}> = TinyOdinNetwork {{
+pub static NETWORK: TinyOdinNetwork<{rows}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [
 {neurons}    ],
     inputs: Inputs::Rows([

@@ -7,7 +7,7 @@ mod run;
 mod search;
 mod shape;
 
-use super::super::chip::{OnChip, Ran, Stepped, Told, written};
+use super::super::chip::{OnChip, Ran, Remarks, Stepped, written};
 use super::super::costs::Cost;
 use super::super::{Trained, Trains};
 use crate::network::fault::Result;
@@ -328,8 +328,8 @@ impl OnChip for Gated {
         self.layers.iter().map(of_layer).collect()
     }
 
-    fn emit(&self, told: &Told) -> String {
-        emit::emit(self, told)
+    fn emit(&self, remarks: &Remarks) -> String {
+        emit::emit(self, remarks)
     }
 
     fn bytes(&self) -> Result<Vec<u8>> {
