@@ -10,6 +10,9 @@ pub(crate) const LARGEST: i32 = 1 << 27;
 /// The integer that represents a decay of 1.
 pub(crate) const ONE: u32 = 1 << 16;
 
+/// Bits by which a decay is shifted left, so that the upper word of its product is the potential.
+pub(crate) const DECAY_SHIFT: u32 = if IS_SMALL { 0 } else { 14 };
+
 /// Largest shift of sums of weights.
 pub(crate) const MOST_SHIFT: u32 = 10;
 
@@ -43,15 +46,20 @@ impl<const OUT: usize> Packed<OUT> {
     }
 }
 
-/// Sums the bytes of two lists of rows, four bytes in each word. `odd` holds the sums of the second and fourth byte in
-/// 16 bits each; `all` holds 256 times these plus the sums of the other two. It is a separate function so that nothing
-/// else takes the registers of the sums.
+/// Sums the bytes of two lists of rows, four bytes in each word: one word holds the sums of the first and third in 16 bits
+/// each, another those of the second and fourth. It is a separate function so that nothing else takes the registers of the
+/// sums.
 #[inline(always)]
-fn lanes<const W: usize, const OUT: usize>(
+fn halves<const W: usize, const OUT: usize>(
     lists: [&[&Packed<OUT>]; 2],
     first: usize,
 ) -> ([u32; W], [u32; W]) {
-    let (mut all, mut odd) = ([0_u32; W], [0_u32; W]);
+    let [one, other] = lists.map(<[_]>::len);
+    let count = one.wrapping_add(other) as u32;
+    // Bytes are 128 above their weights; halves begin at 2^15 less that, so that none carries into the next.
+    let begin = 0x8000_u32.wrapping_sub(count << 7).wrapping_mul(0x0001_0001);
+    // `odd` sums the second and fourth bytes, and `all` these times 256 and the others.
+    let (mut all, mut odd) = ([begin.wrapping_mul(257); W], [begin; W]);
     for rows in lists {
         for row in rows {
             let Some(words) = block::<_, W>(&row.0, first) else { continue };
@@ -59,9 +67,13 @@ fn lanes<const W: usize, const OUT: usize>(
                 let word = u32::from_le_bytes(*bytes);
                 *all = all.wrapping_add(word);
                 *odd = odd.wrapping_add((word >> 8) & 0x00ff_00ff);
-                black_box(()); // one word after the other, as there are registers for two only
             }
+            black_box(()); // keeps the compiler from unrolling the loop
         }
+    }
+    for (all, odd) in all.iter_mut().zip(&mut odd) {
+        *all = all.wrapping_sub(*odd << 8) ^ 0x8000_8000;
+        *odd ^= 0x8000_8000;
     }
     (all, odd)
 }
@@ -72,10 +84,10 @@ impl Number for i32 {
     type Factor = u32;
     type Value = i16;
     type Row<const OUT: usize> = Packed<OUT>;
-    type Scale = i32;
+    type Scale = i16;
     const BLOCK: usize = if IS_SMALL { 1 } else { 2 };
-    /// Largest number of weights, as unsigned bytes, whose sum fits in 16 bits.
-    const MOST_ROWS: usize = 257;
+    /// Largest number of weights, as unsigned bytes, whose sum fits in 16 bits beside the other half of its word.
+    const MOST_ROWS: usize = 256;
     const MOST_SPIKES: usize = 4096;
 
     /// Returns the product divided by 65 536 and rounded down, exactly; without a 64-bit product on cores that have
@@ -83,7 +95,9 @@ impl Number for i32 {
     #[inline(always)]
     fn scaled(self, factor: u32) -> Self {
         if !IS_SMALL {
-            return (i64::from(self).wrapping_mul(factor.cast_signed().into()) >> 16) as Self;
+            let product =
+                i64::from(self << (16 - DECAY_SHIFT)).wrapping_mul(factor.cast_signed().into());
+            return (product >> 32) as Self;
         }
         let low = (self.cast_unsigned() & 0xffff).wrapping_mul(factor) >> 16;
         (self >> 16).wrapping_mul(factor.cast_signed()).wrapping_add(low.cast_signed())
@@ -118,19 +132,15 @@ impl Number for i32 {
     fn sums<const W: usize, const OUT: usize>(
         start: impl FnOnce() -> [[Self; 4]; W],
         lists: [&[&Packed<OUT>]; 2],
-        scale: i32,
+        scale: i16,
         first: usize,
     ) -> [[Self; 4]; W] {
-        let (all, odd) = lanes::<W, OUT>(lists, first);
-        let [one, other] = lists.map(<[_]>::len);
-        let offset = (one.wrapping_add(other) as i32).wrapping_mul(scale << 7);
+        let (even, odd) = halves::<W, OUT>(lists, first);
         let mut sums = start();
-        for ((all, odd), sums) in all.iter().zip(&odd).zip(&mut sums) {
-            let even = all.wrapping_sub(odd << 8);
-            let each = [even & 0xffff, odd & 0xffff, even >> 16, odd >> 16];
+        for ((even, odd), sums) in even.iter().zip(&odd).zip(&mut sums) {
+            let each = [*even as i16, *odd as i16, (even >> 16) as i16, (odd >> 16) as i16];
             for (sum, each) in sums.iter_mut().zip(each) {
-                let added = each.cast_signed().wrapping_mul(scale);
-                *sum = sum.wrapping_sub(offset).wrapping_add(added);
+                *sum = sum.wrapping_add(i32::from(each).wrapping_mul(scale.into()));
             }
         }
         sums
@@ -139,19 +149,19 @@ impl Number for i32 {
     #[inline(always)]
     fn add_rows_to_one<const OUT: usize>(
         rows: &[&Packed<OUT>],
-        scale: i32,
+        scale: i16,
         neuron: usize,
         sum: &mut Self,
     ) {
         for row in rows {
-            *sum = sum.wrapping_add(row.one(neuron).wrapping_mul(scale));
+            *sum = sum.wrapping_add(row.one(neuron).wrapping_mul(scale.into()));
         }
     }
 
     #[inline(always)]
     fn add_values<const OUT: usize>(
         rows: &[Packed<OUT>],
-        scale: i32,
+        scale: i16,
         values: &[i16],
         first: usize,
         sums: &mut [Self],

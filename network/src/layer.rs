@@ -200,13 +200,13 @@ where
                     }
                 }
             }
-            while fired != 0 {
-                append(fired.trailing_zeros());
-                fired &= fired.wrapping_sub(1);
-            }
             if outside > OUTSIDE {
                 let count = clamp::<N>(potentials.as_flattened_mut(), currents.as_flattened_mut());
                 *self.saturated = self.saturated.saturating_add(count);
+            }
+            while fired != 0 {
+                append(fired.trailing_zeros());
+                fired &= fired.wrapping_sub(1);
             }
             self.done = first.wrapping_add(W);
         }

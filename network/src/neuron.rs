@@ -195,10 +195,10 @@ const fn whole(parameter: &'static str, value: i32) -> Result<i32, ParameterErro
     }
 }
 
-/// Checks a decay, in units of 1/65 536.
+/// Checks a decay, in units of 1/65 536, and returns it as products take it.
 const fn part(value: u32) -> Result<u32, ParameterError> {
     if value <= integer::ONE {
-        Ok(value)
+        Ok(value << integer::DECAY_SHIFT)
     } else {
         let (value, max) = (value as f32, integer::ONE as f32);
         Err(ParameterError { parameter: "decay", place: (0, 0), value, min: 0.0, max })
@@ -250,7 +250,7 @@ macro_rules! constructors {
                 let reset = if R::SUBTRACTS { threshold } else { $zero };
                 match ($share(decay), $check("threshold", threshold)) {
                     (Err(error), _) | (_, Err(error)) => Err(error),
-                    _ => Ok(Self { decay, bias: $zero, threshold, reset, rule: PhantomData }),
+                    (Ok(decay), _) => Ok(Self { decay, bias: $zero, threshold, reset, rule: PhantomData }),
                 }
             }
 

@@ -24,6 +24,7 @@ mod critical;
 mod define;
 mod describe;
 pub mod event;
+pub mod flight;
 mod kept;
 mod link;
 #[cfg(target_os = "none")]
@@ -36,6 +37,7 @@ mod status;
 
 pub use describe::{Constructor, Description, Layout};
 pub use event::Stamp;
+pub use flight::Flight;
 pub use kept::Kept;
 pub use queue::Queue;
 pub use status::{Error, Status};

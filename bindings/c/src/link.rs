@@ -123,7 +123,7 @@ unsafe extern "C" fn sw_reader_take(
 /// What a reader has seen.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(crate) struct ReaderCounts {
+pub struct ReaderCounts {
     /// Frames.
     pub frames: u32,
     /// Frames that are missing.
@@ -138,6 +138,19 @@ pub(crate) struct ReaderCounts {
     pub skipped: u32,
 }
 
+impl ReaderCounts {
+    pub(crate) fn of(reader: &CReader) -> Self {
+        Self {
+            frames: reader.frames(),
+            lost_frames: reader.lost_frames(),
+            bad_checksums: reader.bad_checksums(),
+            repeated: reader.repeated(),
+            late: reader.late(),
+            skipped: reader.skipped(),
+        }
+    }
+}
+
 /// What a reader has seen.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sw_reader_counts_of(
@@ -147,14 +160,7 @@ unsafe extern "C" fn sw_reader_counts_of(
     let count = || {
         // SAFETY: C's promise.
         let (reader, counts) = unsafe { (Kept::shared(reader)?, pointer::place(counts)?) };
-        counts.write(ReaderCounts {
-            frames: reader.frames(),
-            lost_frames: reader.lost_frames(),
-            bad_checksums: reader.bad_checksums(),
-            repeated: reader.repeated(),
-            late: reader.late(),
-            skipped: reader.skipped(),
-        });
+        counts.write(ReaderCounts::of(reader));
         Ok(Status::OK)
     };
     count().into()

@@ -37,6 +37,26 @@ statuses! {
     WAITING = 1, c"the encoder waits for later samples";
     /// There is no keyframe, no item, no frame, no code now.
     NOTHING = 2, c"there is nothing now";
+    /// See [`Withheld::Keyframe`](spikewire::link::Withheld::Keyframe).
+    NO_KEYFRAME = 10, c"not exact: no keyframe since the start or the last loss";
+    /// See [`Withheld::Samples`](spikewire::link::Withheld::Samples).
+    NO_SAMPLES = 11, c"not exact: too few samples since the start or the last loss";
+    /// See [`Withheld::Spike`](spikewire::link::Withheld::Spike).
+    NO_SPIKE = 12, c"not exact: no spike in a whole sample since the start or the last loss";
+    /// See [`Withheld::Heartbeat`](spikewire::link::Withheld::Heartbeat).
+    NO_HEARTBEAT = 13, c"not exact: no heartbeat since the start or the last loss";
+    /// See [`Withheld::Clock`](spikewire::link::Withheld::Clock).
+    NO_CLOCK = 14, c"not exact: heartbeats are too far apart for sub-timesteps this short, with a clock known this well";
+    /// See [`Withheld::Always`](spikewire::link::Withheld::Always).
+    FADING = 15, c"not exact: the error of this code fades, and is never 0";
+    /// See [`Withheld::Unknown`](spikewire::link::Withheld::Unknown).
+    NO_FINGERPRINT = 16, c"not exact: no fingerprint of the sender's flight yet";
+    /// See [`Withheld::Description`](spikewire::link::Withheld::Description).
+    OTHER_FLIGHT = 17, c"not exact: the sender has another flight: other code, parameters, samples, filter, order or label";
+    /// See [`Withheld::Contradicted`](spikewire::link::Withheld::Contradicted).
+    CONTRADICTED = 18, c"not exact: a keyframe contradicts the value before it";
+    /// Any other reason to call no value exact.
+    WITHHELD = 19, c"not exact";
     /// A pointer is null.
     NULL = -1, c"a pointer is null";
     /// A pointer is misaligned.

@@ -25,8 +25,8 @@ use spikewire_cameras::format::{
 };
 use spikewire_chips::{
     AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes, Odin,
-    OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes, TinyOdin,
-    TinyOdinInput, Xylo, XyloMap,
+    OdinChip, OdinInput, OdinRegisters, OdinSynapse, Registers, Running, Spikes, Steps, StepsLayer,
+    StepsState, TinyOdin, TinyOdinInput, Xylo, XyloMap,
 };
 
 use crate::exercise::{EVENTS, event, hide, tick};
@@ -236,6 +236,7 @@ fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synap
         hide([
             running.send(black_box(I::LEAK_ALL), &mut out).is_ok(),
             feed(&mut running),
+            step(&mut running),
             running.advance(tick(), &mut out).is_ok(),
             running.poll(&mut out).is_ok(),
             running.open_loop().and_then(|running| running.gate(&mut out)).is_ok(),
@@ -252,6 +253,26 @@ fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synap
 fn feed<I: Input>(chip: &mut Running<'_, I, Bus, Bus>) -> bool {
     let Some(mut events) = EVENTS.consumer() else { return false };
     chip.feed(events.waiting(), |_| black_box(I::LEAK_ALL), hide).is_ok()
+}
+
+/// A step in which neurons compare once.
+fn step<I: Input>(chip: &mut Running<'_, I, Bus, Bus>) -> bool {
+    let layer = black_box(StepsLayer { neurons: 3, loops: true });
+    let (layers, leaks) = (black_box([layer; 2]), black_box([&[0, 2][..], &[1]]));
+    let own_leaks = black_box([3; 6]);
+    let steps = black_box(Steps {
+        inputs: 2,
+        has_bias: true,
+        rows: 2,
+        layers: &layers,
+        rungs: 3,
+        leaks: &leaks,
+        lift: 2,
+        own_leaks: &own_leaks,
+    });
+    hide((steps.first_rise(), steps.all_rows()));
+    let mut state = black_box(StepsState::REST);
+    chip.step(&steps, &mut state, black_box([1, 9]), hide).is_ok()
 }
 
 fn memory() {

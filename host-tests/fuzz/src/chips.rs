@@ -7,11 +7,14 @@ use std::rc::Rc;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
+use silicon::Board;
+use silicon::board::CallFault;
 use spikewire::Tick;
 use spikewire_chips::{
     AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, NetworkBytes, Odin, OdinChip,
     OdinInput, OdinRegisters, OdinSynapse, OutputSource, ReckOn, ReckOnPort, ReckOnSettings,
-    ReckOnStep, ReckOnTarget, Registers, TinyOdin, TinyOdinInput, TinyOdinRegisters, Xylo, XyloMap,
+    ReckOnStep, ReckOnTarget, Registers, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput,
+    TinyOdinRegisters, Xylo, XyloMap,
 };
 
 use crate::script::Script;
@@ -172,7 +175,7 @@ impl Registers for Junk {
 /// A driver, of which the first byte chooses one, on a bus that answers with the rest.
 pub fn junk(bytes: &[u8]) {
     let mut script = Script::new(bytes);
-    match script.below(7) {
+    match script.below(8) {
         0 => {
             let registers = TinyOdinRegisters {
                 is_open_loop: script.below(2) == 0,
@@ -227,6 +230,7 @@ pub fn junk(bytes: &[u8]) {
             }
             let _ = NetworkBytes::<OdinInput>::new(network);
         }
+        6 => stepped(&mut script),
         _ => {
             let words = [script.word(), script.word()];
             let event = ConvolutionEvent::from_words(words);
@@ -270,6 +274,58 @@ fn family<I: Input>(
         if let Ok(mut running) = chip.running() {
             let _ = running.send(I::LEAK_ALL, |_| fired += 1);
             let _ = running.open_loop().is_ok();
+        }
+    }
+}
+
+/// Steps of any description, of a network or of none, on the chip's model, whose port fails now and then: junk never brings a
+/// chip to where it runs. A neuron fires once a step.
+fn stepped(script: &mut Script) {
+    let few = |script: &mut Script| -> Vec<u16> {
+        let count = script.below(6);
+        (0..count).map(|_| script.byte().into()).collect()
+    };
+    let layers: Vec<StepsLayer> = few(script)
+        .into_iter()
+        .map(|neurons| StepsLayer { neurons: neurons << script.below(9), loops: neurons & 1 == 1 })
+        .collect();
+    let leaks: Vec<Vec<u16>> = (0..script.below(4)).map(|_| few(script)).collect();
+    let leaks: Vec<&[u16]> = leaks.iter().map(Vec::as_slice).collect();
+    let steps = Steps {
+        inputs: script.byte().into(),
+        has_bias: script.below(2) == 0,
+        rows: (script.byte() & 15).into(),
+        layers: &layers,
+        rungs: script.byte().into(),
+        leaks: &leaks,
+        lift: script.byte().into(),
+        own_leaks: &few(script),
+    };
+    assert!(steps.first_rise() <= steps.all_rows(), "rows behind those of the sources");
+    let registers = TinyOdinRegisters {
+        is_open_loop: true,
+        output_source: OutputSource::Neurons,
+        last_neuron: script.byte() & 31,
+    };
+    let recording = [few(script), few(script), few(script)];
+
+    let board = Board::<silicon::TinyOdin>::new(4, 1);
+    let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
+    let gated = chip.reset(&mut board.clone()).expect("a chip that is reset");
+    let mut running = gated.run(&registers).expect("a chip that runs");
+    let now = board.pins().calls;
+    let fault = if script.below(2) == 0 { CallFault::Before } else { CallFault::After };
+    let after = u64::from(script.word() >> (script.byte() & 31));
+    board.pins().call_faults.push_back((now + after, fault));
+    let mut state = StepsState::REST;
+    for inputs in recording {
+        let mut told = [false; 256];
+        let on_output = |neuron: u8| {
+            let seen = std::mem::replace(&mut told[usize::from(neuron)], true);
+            assert!(!seen, "a neuron fires once a step");
+        };
+        if running.step(&steps, &mut state, inputs, on_output).is_err() {
+            return;
         }
     }
 }

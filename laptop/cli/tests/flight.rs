@@ -183,23 +183,21 @@ fn tuned_channels_make_a_flight() {
 }
 
 #[test]
-fn a_crate_for_c_has_the_flight_s_bank() {
+fn a_crate_for_c_has_both_ends_of_each_flight() {
     let directory = tempfile::tempdir().unwrap();
     let output = directory.path().join("mine");
-    ran!("emit c --flight ../flight/tests/flights/sod.toml -o {}", output.display());
-    let codecs = fs::read_to_string(output.join("src/codecs.rs")).unwrap();
-    assert_eq!(
-        codecs.matches("constant spikewire::temporal::SendOnDelta::new(").count(),
-        2,
-        "{codecs}"
+    let flights = "../flight/tests/flights/sod.toml ../flight/tests/flights/grf_slots.toml";
+    ran!("emit c --flight {flights} -o {}", output.display());
+    let read = |path: &str| fs::read_to_string(output.join(path)).unwrap();
+    let module = fs::read_to_string("../flight/tests/flights/sod.rs").unwrap();
+    let ends = read("src/flights/sod.rs");
+    assert_eq!(ends.strip_prefix(&module), Some("\nspikewire_c::flight!(sod, flight);\n"));
+    let all = read("src/flights/mod.rs");
+    assert!(all.contains("= &[sod::description, grf_slots::description];"), "{all}");
+    assert!(read("src/lib.rs").contains("\nmod flights;\n"));
+    refused(
+        &format!("emit c --flight {FILE} {FILE} -o {}-twice", output.display()),
+        "",
+        &["`grf_slots`"],
     );
-    let header = fs::read_to_string(output.join("include/flight_bank.h")).unwrap();
-    for line in [
-        "#include \"mine.h\"",
-        "#define FLIGHT_CHANNELS 6u",
-        "    sw_flight_0_encoder run_0[3];",
-        "        status = sw_flight_1_bank(bank->run_1, samples + 3, codes_1, 3u, &stamp, queue);",
-    ] {
-        assert!(header.lines().any(|own| own == line), "{line}\n{header}");
-    }
 }

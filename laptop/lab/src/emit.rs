@@ -1,9 +1,8 @@
 //! Writes source code for firmware: a constant in Rust, a file of parameters, or a crate that builds the C library.
 
-use crate::c_bank::CBank;
 use crate::coding::Coding;
 use crate::error::At;
-use crate::flight::Flight;
+use crate::flight::{self, Flight};
 use crate::output::OutputKind;
 use crate::scheme::Scheme;
 use crate::tune::RequestKind;
@@ -66,25 +65,40 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
         all.push(declared(codec).at(part)?);
     }
     let unwritten = |error| OutputKind::Unwritten { error }.at(directory);
-    write(directory, &all, spikewire).map_err(unwritten)
+    let files = [
+        ("src/codecs.rs".to_owned(), CODECS.replace("@CODECS@", &all.concat())),
+        ("src/bin/header.rs".to_owned(), HEADER.to_owned()),
+    ];
+    write(directory, "codecs", &files, spikewire).map_err(unwritten)
 }
 
-/// Writes a crate that builds a C library of a flight's codecs, as [`c_crate`] does, and `flight_bank.h` with its bank
-/// and its writer.
+/// Writes a crate that builds a C library of both ends of these flights, each under its name, into a new directory.
 ///
 /// # Errors
-/// Returns an error if the library has no such scheme or sample type, or if the directory exists.
-pub fn c_flight(flight: &Flight, directory: &Path, spikewire: Option<&Path>) -> Result<()> {
-    let bank = CBank::new(flight)?;
-    let scheme = Scheme::from(flight.run_time());
-    let declared = bank.codecs().iter();
-    let declared: Vec<String> =
-        declared.map(|(name, own, constant)| declaration(name, scheme, own, constant)).collect();
-    let written = write(directory, &declared, spikewire).and_then(|()| {
-        fs::create_dir_all(directory.join("include"))?;
-        fs::write(directory.join("include/flight_bank.h"), bank.header(directory))
-    });
-    written.map_err(|error| OutputKind::Unwritten { error }.at(directory))
+/// Returns an error if a scheme has no constant, if two flights share a name, or if the directory exists.
+pub fn c_flights(
+    flights: &[(String, Flight)],
+    directory: &Path,
+    spikewire: Option<&Path>,
+) -> Result<()> {
+    let mut files = Vec::new();
+    for (place, (name, flight)) in flights.iter().enumerate() {
+        if flights[..place].iter().any(|(other, _)| other == name) {
+            return Err(RequestKind::TwoCodecs { name: name.clone() }.into());
+        }
+        let module = flight::rust(flight)?;
+        let text = format!("{module}\nspikewire_c::flight!({name}, flight);\n");
+        files.push((format!("src/flights/{name}.rs"), text));
+    }
+    let names = || flights.iter().map(|(name, _)| name.as_str());
+    let modules: Vec<String> = names().map(|name| format!("pub mod {name};\n")).collect();
+    let described: Vec<String> = names().map(|name| format!("{name}::description")).collect();
+    let all =
+        FLIGHTS.replace("@MODULES@", &modules.concat()).replace("@ALL@", &described.join(", "));
+    files.push(("src/flights/mod.rs".to_owned(), all));
+    files.push(("src/bin/header.rs".to_owned(), FLIGHT_HEADER.to_owned()));
+    let unwritten = |error| OutputKind::Unwritten { error }.at(directory);
+    write(directory, "flights", &files, spikewire).map_err(unwritten)
 }
 
 /// Returns the declaration of a codec.
@@ -118,9 +132,14 @@ fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Const
     )
 }
 
-fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> io::Result<()> {
+/// Writes a crate around a module and these files.
+fn write(
+    directory: &Path,
+    module: &str,
+    files: &[(String, String)],
+    spikewire: Option<&Path>,
+) -> io::Result<()> {
     fs::create_dir(directory)?;
-    fs::create_dir_all(directory.join("src/bin"))?;
     let name = directory.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let name: String = name
         .chars()
@@ -139,15 +158,17 @@ fn write(directory: &Path, declared: &[String], spikewire: Option<&Path>) -> io:
         .replace("@NAME@", &name)
         .replace("@SPIKEWIRE@", &place("")?)
         .replace("@C@", &place("bindings/c")?);
-    let codecs = CODECS.replace("@CODECS@", &declared.concat());
-    for (path, text) in [
+    let library = LIBRARY.replace("@MODULE@", module);
+    let own = [
         ("Cargo.toml", manifest.as_str()),
-        ("src/lib.rs", LIBRARY),
-        ("src/codecs.rs", &codecs),
+        ("src/lib.rs", &library),
         ("src/sizes.rs", "// The header brings it.\n"),
-        ("src/bin/header.rs", HEADER),
-    ] {
-        fs::write(directory.join(path), text)?;
+    ];
+    let files = files.iter().map(|(path, text)| (path.as_str(), text.as_str()));
+    for (path, text) in own.into_iter().chain(files) {
+        let path = directory.join(path);
+        fs::create_dir_all(path.parent().unwrap_or(directory))?;
+        fs::write(path, text)?;
     }
     Ok(())
 }
@@ -172,7 +193,7 @@ required-features = [\"header\"]
 header = [\"spikewire-c/header\"]
 
 [dependencies]
-spikewire = { @SPIKEWIRE@, features = [\"fixed\"] }
+spikewire = { @SPIKEWIRE@, features = [\"fixed\", \"link\"] }
 spikewire-c = { @C@, default-features = false }
 fixed = { version = \"1.30\", default-features = false }
 
@@ -187,12 +208,12 @@ panic = \"abort\"
 ";
 
 const LIBRARY: &str = "\
-//! The codecs that fly, for firmware in C.
+//! What flies, for firmware in C.
 
 #![cfg_attr(target_os = \"none\", no_std)]
 #![allow(improper_ctypes_definitions)] // C sees storage of a size
 
-mod codecs;
+mod @MODULE@;
 #[cfg(target_os = \"none\")]
 mod sizes;
 ";
@@ -219,5 +240,34 @@ fn main() -> std::io::Result<()> {
     std::fs::write(\"src/sizes.rs\", header::sizes(\"spikewire_c\", codecs.chunks(1)))?;
     std::fs::write(format!(\"{directory}/spikewire.h\"), header::core())?;
     std::fs::write(format!(\"{directory}/{name}.h\"), header::file(&name, &codecs))
+}
+";
+
+const FLIGHTS: &str = "\
+@MODULES@
+/// What the headers tell of them.
+#[allow(dead_code)] // the library itself does not ask
+pub static FLIGHTS: &[fn() -> spikewire_c::Flight] = &[@ALL@];
+";
+
+const FLIGHT_HEADER: &str = "\
+//! Writes the headers: `cargo run --features header --bin header DIRECTORY`.
+
+#[allow(improper_ctypes_definitions)]
+#[path = \"../flights/mod.rs\"]
+mod flights;
+
+use spikewire_c::header;
+
+fn main() -> std::io::Result<()> {
+    let directory = std::env::args().nth(1).unwrap_or_else(|| \"include\".to_owned());
+    let flights: Vec<_> = flights::FLIGHTS.iter().map(|own| own()).collect();
+    std::fs::create_dir_all(&directory)?;
+    std::fs::write(\"src/sizes.rs\", header::flight_sizes(&flights))?;
+    std::fs::write(format!(\"{directory}/spikewire.h\"), header::core())?;
+    for flight in &flights {
+        std::fs::write(format!(\"{directory}/{}.h\", flight.name), header::flight(flight))?;
+    }
+    Ok(())
 }
 ";

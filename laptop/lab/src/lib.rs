@@ -7,7 +7,6 @@ pub mod advise;
 pub mod bank;
 pub mod bench;
 pub mod brief;
-mod c_bank;
 pub mod coding;
 pub mod emit;
 pub mod encode;

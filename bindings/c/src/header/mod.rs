@@ -9,7 +9,7 @@ use crate::argument::{CSample, Declared, Number};
 use crate::calibration::Calibrating;
 use crate::describe::{Constructor, Description, Layout};
 use crate::link::CReader;
-use crate::{Kept, Queue, Status};
+use crate::{Flight, Kept, Queue, Status};
 
 /// Bytes of a reader's storage on any machine.
 const READER: usize = 448;
@@ -86,6 +86,44 @@ pub fn file(name: &str, codecs: &[Description]) -> String {
          {declared}\
          #if defined(__cplusplus)\n}}\n#endif\n\n#endif\n"
     )
+}
+
+/// The header of a flight.
+pub fn flight(flight: &Flight) -> String {
+    let Flight { name, sample, names, counts, period, keyframe_every, bank, receiver } = flight;
+    let list = |items: Vec<String>| items.join(", ");
+    let (names, counts) = (
+        list(names.iter().map(|own| format!("{own:?}")).collect()),
+        list(counts.iter().map(|own| format!("{own:?}")).collect()),
+    );
+    let words = |layout: &Layout| layout.size.div_ceil(8).to_string();
+    include_str!("flight.h")
+        .replace("@NAME@", name)
+        .replace("@UPPER@", &name.to_uppercase())
+        .replace("@SAMPLE@", sample)
+        .replace("@CHANNELS@", &flight.names.len().to_string())
+        .replace("@PERIOD@", &period.to_string())
+        .replace("@KEYFRAME_EVERY@", &keyframe_every.to_string())
+        .replace("@BANK@", &words(bank))
+        .replace("@RECEIVER@", &words(receiver))
+        .replace("@NAMES@", &names)
+        .replace("@COUNTS@", &counts)
+}
+
+/// Rust that fails to compile for a target on which an end of a flight needs more storage than its header gives.
+pub fn flight_sizes(flights: &[Flight]) -> String {
+    let mut text = "//! The header's sizes, checked on each target as it is compiled. Written with the header.\n".to_owned();
+    for Flight { name, bank, receiver, .. } in flights {
+        for (end, layout) in [("Near", bank), ("Far", receiver)] {
+            let _ = write!(
+                text,
+                "\nconst _: () = assert!(size_of::<crate::flights::{name}::{end}>() <= {});\n\
+                 const _: () = assert!(align_of::<crate::flights::{name}::{end}>() <= 8);\n",
+                8 * layout.size.div_ceil(8)
+            );
+        }
+    }
+    text
 }
 
 /// A header that includes others of its directory.

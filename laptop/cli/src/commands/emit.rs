@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
 use lab::coding::Coding;
-use lab::emit::{Codec, c_crate, c_flight};
+use lab::emit::{Codec, c_crate, c_flights};
 use lab::flight::{Flight, rust};
 use lab::output::Output;
 use std::io::Write;
@@ -37,7 +37,8 @@ struct Rust {
     output: Option<PathBuf>,
 }
 
-/// Write a crate that builds a C library of exactly these codecs, with their parameters in flash.
+/// Write a crate that builds a C library of exactly these codecs, with their parameters in flash; or of both ends of
+/// flights.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -47,15 +48,14 @@ Example:
   cargo run --features header --bin header include
   cargo build --release --target thumbv7em-none-eabihf
 
-The codec has the name of its file: sw_roll_encode, of sw_roll_codec.")]
+The codec has the name of its file: sw_roll_encode, of sw_roll_codec. So has a flight: sw_flight_bank_encode, in flight.h.")]
 struct C {
     /// Files of parameters (TOML), as `tune --emit toml` writes them
     #[arg(required_unless_present = "flight", value_name = "FILE")]
     params: Vec<PathBuf>,
-    /// Flight's file (TOML), in place of files of parameters: makes its codecs, and `flight.h` with its bank and its
-    /// writer
-    #[arg(long, value_name = "FILE", conflicts_with = "params")]
-    flight: Option<PathBuf>,
+    /// Flights' files (TOML), in place of files of parameters: makes the bank, writer and receiver of each
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "params")]
+    flight: Vec<PathBuf>,
     /// Directory to create for the crate; must not exist yet
     #[arg(short, long, value_name = "DIRECTORY")]
     output: PathBuf,
@@ -78,8 +78,10 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
         }
         What::C(c) => c,
     };
-    if let Some(flight) = flight {
-        return Ok(c_flight(&Flight::read(flight)?, output, spikewire.as_deref())?);
+    if !flight.is_empty() {
+        let flights = flight.iter().map(|path| Ok((codec_name(path)?, Flight::read(path)?)));
+        let flights = flights.collect::<Result<Vec<_>>>()?;
+        return Ok(c_flights(&flights, output, spikewire.as_deref())?);
     }
     let codecs = params.iter().map(|path| {
         Ok(Codec { name: codec_name(path)?, coding: Coding::read(&path.to_string_lossy())? })
@@ -87,7 +89,7 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
     Ok(c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())?)
 }
 
-/// Returns the codec's name in C, made from the file's name without its ending: `gyro-x.toml` gives `gyro_x`.
+/// Returns the name in C, made from the file's name without its ending: `gyro-x.toml` gives `gyro_x`.
 fn codec_name(path: &Path) -> Result<String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let is_word = |letter: char| letter.is_ascii_alphanumeric();

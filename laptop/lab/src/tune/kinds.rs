@@ -2,7 +2,7 @@
 
 use crate::error::room;
 use catalogue::kinds;
-use catalogue::run::{Needs, SampleType, Worded};
+use catalogue::run::{Needs, Worded};
 
 kinds! {
     /// The reason that a request cannot be met.
@@ -21,7 +21,6 @@ kinds! {
         NoPeriod => ("{subject} has no period of 1 µs to 65 535 µs"),
         BankNeedsRate => ("a bank needs the rate of its channels"),
         SeveralSchemes => ("a flight has one scheme for all channels: {} names it", spell("scheme")),
-        NotInC { sample: SampleType } => ("the library for C has f32, i16, q8.8 and q16.16, not {sample}"),
         NeedsRate { recording: String } => ("{subject} needs the rate of {recording}"),
         LeavesNone { blocks: usize } =>
             ("{subject} of {blocks} blocks leaves none to tune on or none to check on"),
@@ -62,7 +61,7 @@ kinds! {
         NoChannel => ("a receiver has at least one channel"),
         // Sources for firmware, and files of settings.
         TwoCodecs { name: String } =>
-            ("there are two codecs `{name}`; a codec has the name of its file"),
+            ("there are two called `{name}`: a codec and a flight have the name of their file"),
         Draws { scheme: &'static str } =>
             ("{scheme} draws from a generator, which the library for C has not"),
         NotToml { error: toml::de::Error } => ("no TOML: {error}"),
