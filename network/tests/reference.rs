@@ -417,3 +417,18 @@ fn bad_parameters_are_refused() {
     let error = Lif::<i32, ToValue>::try_integer(65_537, 1).unwrap_err();
     assert_eq!(error.to_string(), "decay 65537 at row 0, column 0 must lie in 0..=65536");
 }
+
+/// Sums of 16 bits hold the weights of 256 rows, and one more goes into another sum.
+#[test]
+fn sums_of_many_rows_are_exact() {
+    for weight in [-128, 127] {
+        let weights = Weights::<i32, 257, 9>::packed(&[[weight; 9]; 257], 0);
+        let neurons = [Li::<i32>::integer(0); 9];
+        let layer = Layer::new(&weights, &neurons);
+        for count in 255..=257 {
+            let mut state = layer.state();
+            layer.step(&mut state, &(0..count).collect::<Vec<_>>());
+            assert_eq!(*state.values(), [i32::from(weight) * i32::from(count); 9]);
+        }
+    }
+}
