@@ -90,14 +90,15 @@ def telemetry(path, known):
     """Packets of both versions, from two systems, and some that `flight-logs` does not know."""
     draw = random.Random(1)
     kinds = [own for own in dialect.mavlink_map.values() if own.msgname in known | {"STATUSTEXT", "REQUEST_DATA_STREAM"}]
-    ranges = {f"{sign}int{bits}_t": sign and code.upper() or code for code, bits in (("b", 8), ("h", 16), ("i", 32), ("q", 64)) for sign in ("u", "")}
+    codes = {f"int{bits}_t": code for code, bits in (("b", 8), ("h", 16), ("i", 32), ("q", 64))}
+    codes |= {f"u{name}": code.upper() for name, code in codes.items()}
     with open(path, "wb") as file:
         for place in range(4000):
             kind = draw.choice(kinds)
             counts = dict(zip(kind.ordered_fieldnames, kind.array_lengths))
             values = []
             for field, of in zip(kind.fieldnames, kind.fieldtypes):
-                code = "f" if of == "float" else ranges.get(of)
+                code = "f" if of == "float" else codes.get(of)
                 several = [drawn(draw, code) if code and draw.random() < 0.7 else 0 for _ in range(counts[field] or 1)]
                 values.append(b"words" if of == "char" else several if counts[field] else several[0])
             sender = dialect.MAVLink(None, srcSystem=draw.choice([1, 1, 1, 255]), srcComponent=1)
@@ -147,7 +148,8 @@ def compare(numbers, log, known=None):
         if known is None or topic.split(":")[0] in known:
             own = next(read)
             # All numbers in words, so that one that is none equals itself.
-            assert own[:2] == (topic, time) and repr(sorted(own[2].items())) == repr(sorted(fields.items())), (log, own, topic, time, fields)
+            told = repr((topic, time, sorted(fields.items())))
+            assert repr((*own[:2], sorted(own[2].items()))) == told, (log, own, told)
             messages, values = messages + 1, values + len(fields)
     assert next(read, None) is None and values, log
     print(f"{log.name}: {messages} messages, {values} values, every value and time agrees")
