@@ -291,7 +291,7 @@ fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let [_, _, share, active, ..] = figures(held_out, "outputs agree in ")[..] else {
         panic!("{}", ran.told)
     };
-    assert!(share >= 90.0 && active > 50.0, "{}", ran.told);
+    assert!(share >= 99.0 && active > 50.0, "{}", ran.told);
 }
 
 /// How `turns.py` trains: of the roll rates every third stretch of 250 is held out.
