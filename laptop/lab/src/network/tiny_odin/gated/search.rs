@@ -68,16 +68,22 @@ pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64
     (least, made(layer, at, aim.shape, best))
 }
 
+/// The first choices, those that change the neuron least before others: of choices with the same spikes the search takes
+/// the first, and what changes least holds best where it was not searched.
 fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
-    let largest = weights.fold(0.0_f64, |most, weight| most.max(weight.abs()));
+    let weights: Vec<f64> = weights.copied().collect();
+    let largest = weights.iter().fold(0.0_f64, |most, weight| most.max(weight.abs()));
     let Neuron { keep, threshold, leak: amount } = layer.neurons[at];
-    let mut choices: Vec<Choice> = Vec::new();
+    let mut choices: Vec<(f64, Choice)> = Vec::new();
     for most in LARGEST {
         let most = most * f64::from(shape.rows);
         let unit = if largest > 0.0 { largest / most } else { threshold / LARGEST_RUNG };
         let threshold = fires_at(threshold / unit, layer.fires);
+        let rounded =
+            weights.iter().map(|weight| ((weight / unit).round() * unit - weight).powi(2));
+        let rounded: f64 = rounded.sum();
         for rung in RUNGS {
             let room = MAX_POTENTIAL - shape.above * u16::from(rung);
             let threshold = threshold.min(room.into()) as u16;
@@ -97,13 +103,15 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
             };
             for leak in leaks.map(|leak| leak as u8) {
                 let choice = Choice { unit, threshold, leak, rung, more: 0 };
-                if !choices.contains(&choice) {
-                    choices.push(choice);
+                if choices.iter().all(|(_, other)| *other != choice) {
+                    let change = rounded + ((f64::from(leak) - lost) * unit).powi(2);
+                    choices.push((change, choice));
                 }
             }
         }
     }
-    choices
+    choices.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+    choices.into_iter().map(|(_, choice)| choice).collect()
 }
 
 impl Choice {
