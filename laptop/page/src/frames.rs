@@ -5,8 +5,8 @@ use anyhow::Result;
 use flight_logs::files::Bytes;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use spikewire::{Polarity, Tick};
+use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use std::cell::RefCell;
 
 /// A frame, row-major in a lent file, and how it is encoded.
