@@ -19,6 +19,8 @@ const EVENTS: usize = 256;
 const PERIOD: u16 = 2_500;
 const SAMPLES: usize = 120;
 const BEAT: usize = 8;
+/// Equal channels in their order, and in the other one.
+const LABELS: [&str; 2] = ["2500 us; gyro_x; gyro_y", "2500 us; gyro_y; gyro_x"];
 
 #[derive(Default)]
 struct Items(Vec<Item>);
@@ -108,18 +110,21 @@ impl<S: Sample> Flight for Pairs<'_, S> {
         let mut bank = Bank::per_channel_with_states(states).with_slot_ticks(slot_ticks);
         if self.is_sending {
             let link = Transmitter::for_bank(&bank, PERIOD, Session::counted(7));
-            let fingerprint = bank.fingerprint();
+            let link = link.with_label(LABELS[0]);
+            let fingerprint = bank.fingerprint().labelled(LABELS[0]);
             let frames = frames(&mut bank, link, self.samples);
             self.sent.push(Sent { what: format!("{name} {:?}", S::KIND), fingerprint, frames });
             return Ok(());
         }
-        let receiver = || {
+        let labelled = |label| {
             Receiver::per_channel([scheme; CHANNELS])
                 .with_slot_ticks(slot_ticks)
                 .with_clock_tolerance(0)
+                .with_label(label)
         };
+        let receiver = || labelled(LABELS[0]);
         let own = receiver().fingerprint();
-        assert_eq!(own, bank.fingerprint(), "{name}");
+        assert_eq!(own, bank.fingerprint().labelled(LABELS[0]), "{name}");
         for (number, sent) in self.sent.iter().enumerate() {
             // From the first frame, or from one within the flight on.
             let frames = if sent.fingerprint == own { usize::MAX } else { 12 };
@@ -131,6 +136,8 @@ impl<S: Sample> Flight for Pairs<'_, S> {
                 };
                 let is_exact = exact > 0 || needs_more;
                 assert!(is_exact, "{name} and its own {}: {why:?}", sent.what);
+                let (swapped, _) = heard(labelled(LABELS[1]), &sent.frames);
+                assert_eq!(swapped, 0, "{name} and its own {}, swapped", sent.what);
                 self.own += 1;
             } else {
                 assert_eq!(exact, 0, "{name} {:?} and {}", S::KIND, sent.what);

@@ -114,6 +114,11 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
         // The keyframes of that bank, at 500 samples a second.
         assert_eq!(bank["keyframe_every"], own["keyframe_ms"].as_u64().unwrap() / 2, "{scheme}");
     }
+    // What did not fly is said once, however many channels there are.
+    let page = ran!("{asked}").output;
+    for words in ["tbr lost ", "bernoulli was not flown"] {
+        assert_eq!(page.matches(words).count(), 1, "{words}: {page}");
+    }
     let unknown = told["bank"]["unknown"].to_string();
     assert!(unknown.contains("in a simulator"), "{unknown}");
 

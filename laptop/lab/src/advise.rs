@@ -104,6 +104,9 @@ pub struct Advice {
     reaching: Vec<Candidate>,
     /// The schemes that miss it, each with the reason.
     others: Vec<String>,
+    /// Those of them that did not fly, on any channel.
+    #[serde(skip)]
+    unflown: Vec<String>,
     /// Whether a search stopped before it had scored all its settings.
     is_cut_short: bool,
     /// Largest latency in samples that the control loop tolerates, if its bandwidth is known.
@@ -245,6 +248,7 @@ impl Advice {
             max_rmse: request.max_rmse.unwrap_or(PART * look.deviation),
             reaching: Vec::new(),
             others: Vec::new(),
+            unflown: Vec::new(),
             is_cut_short: false,
             raw_bytes_per_second: recording.rate.map(|rate| rate * bytes),
             is_one_of_many: request.recordings.len() > 1,
@@ -266,11 +270,12 @@ impl Advice {
             Some(_) => flown::objection(scheme.name(), request.frame_loss),
             None => None,
         };
-        let tuning = match objection {
-            Some(words) => Tuning::Missed(words),
-            None => self.tuned(request, scheme, recording, &Asked::default(), budget)?,
-        };
-        match tuning {
+        if let Some(words) = objection {
+            self.unflown.push(format!("{} {words}", scheme.name()));
+            self.others.extend(self.unflown.last().cloned());
+            return Ok(());
+        }
+        match self.tuned(request, scheme, recording, &Asked::default(), budget)? {
             Tuning::Reached(candidate) => {
                 self.is_cut_short |= candidate.row.is_cut_short;
                 self.reaching.push(*candidate);
@@ -420,8 +425,11 @@ impl Advice {
         } else if self.objection.is_none() {
             lines.push(format!("  no scheme comes within an RMSE of {}", short(self.max_rmse)));
         }
-        if !self.others.is_empty() {
-            lines.push(format!("  not: {}", self.others.join("; ")));
+        // What did not fly is said once, on the page of the bank.
+        let is_told = |own: &&String| !self.is_one_of_many || !self.unflown.contains(own);
+        let others: Vec<&str> = self.others.iter().filter(is_told).map(String::as_str).collect();
+        if !others.is_empty() {
+            lines.push(format!("  not: {}", others.join("; ")));
         }
         if self.is_cut_short {
             lines.push(

@@ -83,7 +83,8 @@ impl BankAdvice {
             unknown: Vec::new(),
             frame_loss: request.frame_loss,
         };
-        let Some((_, first)) = heard.first() else { return Ok(all) };
+        let Some((advised, first)) = heard.first() else { return Ok(all) };
+        all.others.clone_from(&advised.unflown);
         let rate = first.rate.ok_or(RequestKind::BankNeedsRate)?;
         all.unknown = unknown(request, rate);
         let schemes: Vec<Scheme> = Scheme::all().collect();
@@ -334,7 +335,8 @@ fn sent(
     }
     events.sort_by_key(|own| (own.sample, own.slot, own.neuron));
     let mut rest = &events[..];
-    let mut transmitter = Transmitter::new(flight.coding(), Session::counted(0));
+    let mut transmitter = Transmitter::new(flight.coding(), Session::counted(0))
+        .with_fingerprint(flight.fingerprint());
     let (mut items, mut bytes, mut buffer) = (Vec::new(), 0, [0; MAX_FRAME]);
     let samples = heard.iter().map(|(_, own)| own.values.len()).min().unwrap_or_default() as u64;
     for sample in 0..samples {
