@@ -371,7 +371,8 @@ fn running(
     }
 }
 
-/// Updates what the caller knows when the chip has been gated; from then on spikes of a closed loop no longer count.
+/// Updates what the caller knows once the chip is gated. In a closed loop it does not know which neurons fired, nor the
+/// potentials; the registers have changed.
 fn finish(told: &mut Told) {
     if !told.is_open_loop() {
         told.fired.clear();
