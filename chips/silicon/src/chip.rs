@@ -47,7 +47,7 @@ pub enum Input {
     Bistability(Option<u8>),
     /// A spike on one synapse: presynaptic and postsynaptic neuron.
     Synapse(u8, u8),
-    /// An event for the queue: the neuron, and the bits of a virtual event, or 0 for a spike.
+    /// An event for the queue: the bits of a virtual event, or 0 for a spike; and the neuron.
     Queued(u8, u8),
 }
 
