@@ -85,7 +85,7 @@ class Coded:
         self.period = 1_000_000 // rate
         before = low_pass and sw.Filter.low_pass(low_pass, rate)
         self.sender = sw.Sender(schemes, self.period, keyframe_every, filter=before)
-        self.receiver = sw.Receiver(schemes, self.period, clock_tolerance=0)
+        self.receiver = sw.Receiver(schemes, self.period, clock_tolerance=0, filter=before)
         self.samples = self.spikes = self.bytes = self.whole = 0
         self.fired: list[tuple[int, bool]] = []
 

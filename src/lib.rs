@@ -87,7 +87,6 @@ extern crate std;
 mod error;
 mod event;
 pub mod filter;
-pub mod frame;
 mod num;
 pub mod out;
 mod scheme;
@@ -115,7 +114,6 @@ pub use scheme::{
     Histogram, Moments, NeuronSpike, Output, Polarity, Recovery, Scheme, Spike, Start, Survey,
     Unfit, population, rate, temporal, timing,
 };
-pub use wire::format;
 #[cfg(feature = "link")]
 pub use wire::link;
 
@@ -126,6 +124,4 @@ pub mod pages {
     pub struct Readme;
     #[doc = include_str!("../docs/usage.md")]
     pub struct Usage;
-    #[doc = include_str!("../docs/frames.md")]
-    pub struct Frames;
 }

@@ -1,6 +1,6 @@
 //! Event formats: any bytes are read or skipped, cut anywhere; what was read is written and read again.
 
-use spikewire::format::{
+use spikewire_cameras::format::{
     Dvs, Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, Evt2Pixels, FormatError,
     eieio,
 };

@@ -1,20 +1,10 @@
 //! What is built at run time is what a constant is, and can be asked for what it was built from.
 
 use rand_pcg::Pcg32;
-use spikewire::frame::{FrameDecoder, FrameEncoder, Intensity};
 use spikewire::population::{NonLinearSlots, Probabilistic, Slots};
 use spikewire::rate::{Average, Bernoulli, BsaToolbox, IntegrateAndFire, Shape, Taps};
 use spikewire::temporal::{AdaptiveStepForward, SendOnDelta, Steps};
-use spikewire::{Conditions, Event, Item, Polarity, Put, Scheme, Spike, Tick, dynamic};
-
-#[derive(Debug, Default)]
-struct Items(Vec<Item>);
-
-impl Put for &mut Items {
-    fn put(&mut self, item: Item) {
-        self.0.push(item);
-    }
-}
+use spikewire::{Conditions, Polarity, Scheme, Spike, dynamic};
 
 #[test]
 fn options_at_run_time_are_those_of_constants() {
@@ -38,7 +28,6 @@ fn options_at_run_time_are_those_of_constants() {
 
 #[test]
 fn parameters_can_be_asked_for() {
-    assert_eq!(Intensity::new(7).threshold(), 7);
     assert_eq!(BsaToolbox::<f32, 5>::new(Taps::triangular(1.0), 1.25).threshold(), 1.25);
     let window = dynamic::MovingWindow::try_new(0.75_f32, 6).unwrap();
     assert_eq!((window.threshold(), window.count()), (0.75, 6));
@@ -78,19 +67,4 @@ fn codes_say_whether_they_are_empty() {
     assert!(!encoder.encode(0.5).is_empty());
     assert!(encoder.encode(900.0).is_empty());
     assert_eq!([Polarity::Up, Polarity::Down].map(Spike::from), [Spike::Up, Spike::Down]);
-}
-
-#[test]
-fn a_camera_takes_addresses_of_its_own_at_run_time() {
-    let code = Intensity::new(10);
-    let mut camera = FrameEncoder::<_, 2, 1>::new(code).try_with_first_address(100).unwrap();
-    let mut decoder = FrameDecoder::<_, 2, 1>::new(code).try_with_first_address(100).unwrap();
-    let mut items = Items::default();
-    camera.encode_frame_into(Tick::from(1), &[[50, 50]], &mut items);
-    camera.encode_frame_into(Tick::from(2), &[[50, 61]], &mut items);
-    let [Item::Event(event)] = items.0[..] else { panic!("not one event, but {items:?}") };
-    assert_eq!(event, Event { tick: Tick::from(2), address: 101, polarity: Polarity::Up });
-    decoder.start(&[[50, 50]]);
-    decoder.event(event);
-    assert_eq!(decoder.base(1, 0), Some(60));
 }

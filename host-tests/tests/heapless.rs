@@ -5,12 +5,12 @@ use std::thread;
 
 use heapless::{Deque, Vec as Short, mpmc, spsc};
 use proptest::prelude::*;
-use spikewire::format::{Edvs, EdvsTime};
-use spikewire::out::{Batch, Formatted};
+use spikewire::out::Batch;
 use spikewire::{
     Bank, Container, Counted, Element, Event, FromItems, Item, Keyframe, Polarity, Put, Source,
     Taken, Tick, temporal::TemporalContrast,
 };
+use spikewire_cameras::format::{Edvs, EdvsTime, Formatted};
 
 const ROOM: usize = 4;
 

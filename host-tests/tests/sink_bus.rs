@@ -13,10 +13,10 @@ use embedded_hal::spi::ErrorKind;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use embedded_io::WriteReady;
-use spikewire::format::{Edvs, EdvsEncoder, EdvsTime};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Session, Transmitter};
-use spikewire::out::{AlwaysReady, AsyncSpiSink, Formatted, SerialSink, SinkError, SpiSink};
+use spikewire::out::{AlwaysReady, AsyncSpiSink, SerialSink, SinkError, SpiSink};
 use spikewire::{Event, EventQueue, FromEvents, Item, Overflow, Polarity, Put, Source, Tick};
+use spikewire_cameras::format::{Edvs, EdvsEncoder, EdvsTime, Formatted};
 
 const FORMAT: Edvs = Edvs::new(EdvsTime::None);
 

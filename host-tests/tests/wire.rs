@@ -1,12 +1,9 @@
-//! Queues, links, formats and sinks, as one program: what its files share is compiled and linked once.
+//! Queues, links and sinks, as one program: what its files share is compiled and linked once.
 
 mod bus;
 mod common;
 mod interleaving_world;
 
-mod formats_bytes;
-mod formats_peers;
-mod formats_pixels;
 mod heapless;
 mod interleaving;
 mod link_description;

@@ -2,6 +2,7 @@
 // usage: node build.mjs MODULE.wasm OUTPUT.html, with NODE_PATH where npm installed
 
 import { build } from "esbuild";
+import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
@@ -16,10 +17,12 @@ async function bundle(entry, define = {}) {
 }
 
 const worker = await bundle("js/worker.js");
-const script = await bundle("js/app.js", { WASM: JSON.stringify(library), WORKER: JSON.stringify(worker) });
+const script = (await bundle("js/app.js", { WASM: JSON.stringify(library), WORKER: JSON.stringify(worker) })).replaceAll("</script", "<\\/script");
 const style = await bundle("style.css");
+// The browser runs this script and takes this style, and no others that find their way into the page.
+const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 const html = readFileSync(own("index.html"), "utf8")
-  .replace("/*STYLE*/", () => style)
-  .replace("/*SCRIPT*/", () => script.replaceAll("</script", "<\\/script"));
+  .replace("STYLE-HASH", hash(style)).replace("SCRIPT-HASH", hash(script))
+  .replace("/*STYLE*/", () => style).replace("/*SCRIPT*/", () => script);
 writeFileSync(output, html);
 console.log(`${output}: ${html.length} bytes, ${gzipSync(html).length} packed by gzip; the library ${readFileSync(module).length}, packed ${Math.floor(library.length * 0.75)}`);

@@ -8,6 +8,8 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
+import { wanted } from "./js/channels.js";
+import { amplitudes } from "./js/spectrum.js";
 
 const { PAGE, LOGS, SPIKEWIRE, BROWSER, DATA, PICTURES } = process.env;
 const work = mkdtempSync(join(tmpdir(), "page-"));
@@ -86,16 +88,15 @@ async function pictured(page) {
     await page.click("#remove");
     await settled(page);
   }
-  await page.setViewportSize({ width: 960, height: 800 });
+  await page.setViewportSize({ width: 1280, height: 900 });
   await page.click("#tab-0");
   await page.fill("#parameter-threshold", "0.35");
   await settled(page);
   await page.evaluate(() => globalThis.spikewire.plots.show(11.6, 12.9));
   await page.mouse.move(0, 0);
-  await page.waitForTimeout(300);
-  const [first, last] = [await page.locator("#settings").boundingBox(), await page.locator("#plots").boundingBox()];
-  const clip = { x: 0, y: first.y, width: 960, height: last.y + last.height - first.y };
-  await page.screenshot({ path: join(PICTURES, "page.png"), clip, fullPage: true });
+  await page.evaluate(() => document.activeElement.blur());
+  await page.waitForTimeout(1500);
+  await page.screenshot({ path: join(PICTURES, "page.png") });
 }
 
 /** No finding of weight. */
@@ -112,6 +113,116 @@ const steps = {
     const ready = await page.evaluate(() => Number(document.body.dataset.ready));
     console.log(`  ready after ${ready} ms; ${statSync(PAGE).size} bytes`);
     assert.match(await page.textContent("#about"), /gyro_x, 3,627 samples/);
+    await page.context().close();
+  },
+
+  async "opens a log on the turn rates, by the names that each kind of log has"() {
+    const three = (name) => [0, 1, 2].map((axis) => `${name}[${axis}]`);
+    const xyz = (name) => ["x", "y", "z"].map((axis) => `${name}${axis}`);
+    for (const [topics, topic, fields] of [
+      [[{ name: "actuator_outputs", count: 9, fields: three("output") },
+        { name: "sensor_combined", count: 30, fields: [...three("gyro_rad"), "gyro_integral_dt", ...three("accelerometer_m_s2"), "accelerometer_clipping"] },
+        { name: "sensor_gyro", count: 90, fields: ["timestamp_sample", "device_id", ...xyz(""), "temperature"] }], "sensor_combined", [...three("gyro_rad"), ...three("accelerometer_m_s2")]],
+      [[{ name: "sensor_accel", count: 90, fields: xyz("") }, { name: "sensor_gyro", count: 90, fields: ["device_id", ...xyz("")] },
+        { name: "vehicle_rates_setpoint", count: 90, fields: ["roll", "pitch", "yaw"] }], "sensor_gyro", xyz("")],
+      [[{ name: "/clock", count: 9, fields: ["clock"] }, { name: "/imu", count: 90, fields: ["header.seq", ...xyz("orientation."), ...xyz("angular_velocity."), ...xyz("linear_acceleration.")] }],
+        "/imu", [...xyz("angular_velocity."), ...xyz("linear_acceleration.")]],
+      [[{ name: "", fields: ["loopIteration", "time", ...three("axisP"), ...three("gyroADC"), ...three("gyroUnfilt"), ...three("accSmooth")] }], "", [...three("gyroADC"), ...three("accSmooth")]],
+      [[{ name: "ATT", count: 9, fields: ["DesRoll", "Roll"] }, { name: "IMU", count: 90, fields: ["TimeUS", ...["X", "Y", "Z"].map((axis) => `Gyr${axis}`), ...["X", "Y", "Z"].map((axis) => `Acc${axis}`), "T"] }],
+        "IMU", ["GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"]],
+      [[{ name: "", fields: ["#timestamp [ns]", ...["x", "y", "z"].map((axis) => `w_RS_S_${axis} [rad s^-1]`), ...["x", "y", "z"].map((axis) => `a_RS_S_${axis} [m s^-2]`)] }],
+        "", [...["x", "y", "z"].map((axis) => `w_RS_S_${axis} [rad s^-1]`), ...["x", "y", "z"].map((axis) => `a_RS_S_${axis} [m s^-2]`)]],
+      [[{ name: "", fields: ["timestamp", "alpha"] }], "", ["alpha"]],
+    ]) assert.deepEqual(wanted(topics), { topic, fields }, JSON.stringify(topics));
+  },
+
+  async "shows all of it in one window, six axes, and values under the pointer"() {
+    for (const viewport of [{ width: 1440, height: 900 }, { width: 1024, height: 768 }]) {
+      const page = await opened({ viewport });
+      await page.waitForFunction(() => document.querySelectorAll(".axis span").length === 6 && [...document.querySelectorAll(".axis span")].every((words) => /spikes a second/.test(words.textContent)));
+      for (const id of ["parameter-threshold", "figures", "plots", "under"]) {
+        const { y, height } = await page.locator(`#${id}`).boundingBox();
+        assert(y >= 0 && y + height <= viewport.height, `${id} from ${y} to ${y + height} in a window of ${viewport.width} x ${viewport.height}`);
+      }
+      if (PICTURES) await page.screenshot({ path: join(PICTURES, `page-${viewport.width}.png`) });
+      await page.context().close();
+    }
+    const page = await opened({ viewport: { width: 1440, height: 900 } });
+    const flight = join(DATA, "hexarotor.csv");
+    const plot = await page.locator("#plots .u-over").first().boundingBox();
+    await page.mouse.move(plot.x + plot.width / 2, plot.y + 20);
+    await page.mouse.down();
+    await page.mouse.up();
+    await page.mouse.move(plot.x + plot.width / 2 + 100, plot.y + 20);
+    const { sample, value, decoded } = await page.evaluate(() => {
+      const { pointed, recording, runs } = globalThis.spikewire.plots;
+      return { sample: pointed, value: recording.arrays.values[pointed], decoded: runs[0].arrays.decoded[pointed] };
+    });
+    const written = Number(readFileSync(flight, "utf8").trim().split("\n").slice(1)[sample].split(",")[1]);
+    assert.equal(value, written);
+    const short = (number) => String(Number(number.toPrecision(4)));
+    const under = await page.textContent("#under");
+    assert(under.includes(`gyro_x ${short(value)}`) && under.includes(` ${short(decoded)}`) && /from the mark [\d.]+ s/.test(under), under);
+    // Another axis is opened from its strip.
+    await page.locator(".axis").nth(4).click();
+    await page.waitForTimeout(50);
+    await settled(page);
+    assert.match(await page.textContent("#about"), /accel_y, 3,627 samples/);
+    assert.equal(await page.locator(".axis").nth(4).getAttribute("aria-pressed"), "true");
+    const count = Number((await figure(page, "Spikes a second")).replaceAll(",", ""));
+    await page.waitForFunction((own) => document.querySelectorAll(".axis span")[4].textContent.includes(`: ${own.toLocaleString("en")} spikes a second`), count);
+    // Power at a frequency where there is some, and an error whose shares are a whole.
+    await page.click("#spectrum-box summary");
+    await page.waitForSelector("#spectrum canvas");
+    assert.equal(await page.locator("#spectrum canvas").count(), 2);
+    await accessible(page, "six axes and a spectrum");
+    await page.context().close();
+    const sine = Float64Array.from({ length: 4096 }, (_, sample) => 3 * Math.sin((2 * Math.PI * sample) / 16));
+    const heights = amplitudes(sine, 0, sine.length);
+    const peak = heights.indexOf(Math.max(...heights));
+    assert.equal((peak + 1) / (2 * (heights.length + 1)), 1 / 16);
+    assert(Math.abs(heights[peak] - 3) < 0.02, `a sine of 3 has the height ${heights[peak]}`);
+  },
+
+  async "takes steps back and forth, and a flight's file both ways"() {
+    const page = await opened();
+    const first = await page.innerText("#figures");
+    await page.selectOption("#scheme", "sod");
+    await settled(page);
+    await page.fill("#parameter-threshold", "0.25");
+    await settled(page);
+    const changed = await page.innerText("#figures");
+    await page.click("#undo");
+    await settled(page);
+    await page.click("#undo");
+    await settled(page);
+    assert.equal(await page.innerText("#figures"), first);
+    assert.equal(await page.isDisabled("#undo"), true);
+    await page.keyboard.press("Control+y");
+    await settled(page);
+    await page.click("#redo");
+    await settled(page);
+    assert.equal(await page.innerText("#figures"), changed);
+    assert.equal(await page.isDisabled("#redo"), true);
+    await page.waitForFunction(() => [...document.querySelectorAll(".axis span")].every((words) => /spikes a second/.test(words.textContent)));
+    const toml = await text(page, "flight");
+    assert.equal(toml.match(/\[\[channel\]\]/g).length, 6, toml);
+    assert.match(toml, /scheme = "sod"/);
+    // The program takes it, and codes the six as the page does.
+    const file = join(work, "flight.toml");
+    writeFileSync(file, toml);
+    const lines = spikewire("encode", "--flight", file, join(DATA, "hexarotor.csv")).toString().split("\n").filter((line) => /^\d/.test(line));
+    assert.equal(String(lines.filter((line) => line.split(",")[1] === "0").length), (await figure(page, "Spikes")).replaceAll(",", ""));
+    // And the page takes one.
+    await page.selectOption("#scheme", "hsa");
+    await settled(page);
+    writeFileSync(file, toml.replaceAll("0.25", "0.5"));
+    await choose(page, file);
+    assert.equal(await page.textContent("#file-error"), "");
+    assert.equal(await page.inputValue("#scheme"), "sod");
+    assert.equal(await page.inputValue("#parameter-threshold"), "0.5");
+    await choose(page, { name: "flight.toml", mimeType: "application/toml", buffer: Buffer.from("version = 1\nscheme = 5\n") });
+    assert.match(await page.textContent("#file-error"), /flight\.toml: /);
     await page.context().close();
   },
 
@@ -179,6 +290,8 @@ const steps = {
       await choose(page, log(name));
       assert.equal(await page.textContent("#file-error"), "", name);
       const found = await page.locator("#topic").inputValue();
+      // It opens on a turn rate, and not on a counter or a time.
+      assert.equal(await page.inputValue("#field"), field, name);
       await page.selectOption("#field", field);
       await page.waitForTimeout(50);
       await settled(page);
@@ -228,8 +341,10 @@ const steps = {
       await choose(page, { name, mimeType: "application/octet-stream", buffer });
       assert.match(await page.textContent("#file-error"), words, name);
       assert(await page.isVisible("#file-error"));
-      // Nothing of the recording before stands under the name of this one.
-      for (const id of ["about", "channel", "file-notes", "settings", "picture", "take", "search"]) assert.equal(await page.isVisible(`#${id}`) && await page.innerText(`#${id}`) !== "", false, `${name}: ${id}`);
+      // Nothing of the recording before stands under the name of this one; a table of words shows its own channels, to choose another.
+      const isTable = name === "words.csv";
+      if (isTable) assert.deepEqual(await page.locator("#field option").allTextContents(), ["a", "b"]);
+      for (const id of ["about", ...(isTable ? [] : ["channel"]), "file-notes", "settings", "picture", "take", "search"]) assert.equal(await page.isVisible(`#${id}`) && await page.innerText(`#${id}`) !== "", false, `${name}: ${id}`);
     }
     await page.check("#accept-cut");
     await page.waitForFunction(() => /cut\.ulg/.test(document.getElementById("about").textContent));

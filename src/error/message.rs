@@ -11,14 +11,21 @@ use super::ConfigError;
 pub(crate) const fn unwrap<T: Copy>(result: Result<T, ConfigError>) -> T {
     match result {
         Ok(value) => value,
-        Err(error) => fail(error),
+        Err(error) => error.panic(),
     }
 }
 
-#[cold]
-#[track_caller]
-const fn fail(error: ConfigError) -> ! {
-    panic!("{}", Message::of(error).as_str())
+impl ConfigError {
+    /// Panics with a message that names the parameter and what it may be. In a constant that fails the build, as the
+    /// constructors of this crate do: it is for those of schemes and codes of your own.
+    ///
+    /// # Panics
+    /// Always.
+    #[cold]
+    #[track_caller]
+    pub const fn panic(self) -> ! {
+        panic!("{}", Message::of(self).as_str())
+    }
 }
 
 /// A text of up to 96 bytes. Longer texts are cut.

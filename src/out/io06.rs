@@ -8,8 +8,8 @@ use embedded_io::{Error, ErrorKind, ErrorType, Write, WriteReady};
 ///
 /// ```
 /// use embedded_io_06::{ErrorKind, ErrorType, Write};
-/// use spikewire::out::{Formatted, Io06, SerialSink};
-/// use spikewire::{Event, FromEvents, Polarity, Tick, format::{Edvs, EdvsTime}};
+/// use spikewire::{Event, FromEvents, Polarity, Tick, out::{Io06, SerialSink}};
+/// use spikewire::link::{Coding, Session, Transmitter};
 ///
 /// /// As a HAL has it.
 /// struct Uart(u32);
@@ -29,12 +29,12 @@ use embedded_io::{Error, ErrorKind, ErrorType, Write, WriteReady};
 ///     }
 /// }
 ///
-/// let format = Edvs::new(EdvsTime::None).encoder();
-/// let mut sink = SerialSink::<_, _, 64>::new(Io06(Uart(0)), Formatted::new(format));
+/// let link = Transmitter::new(Coding::for_channels(6, 1_000), Session::counted(1));
+/// let mut sink = SerialSink::<_, _, 512>::new(Io06(Uart(0)), link);
 /// let event = Event { tick: Tick::from_micros(0), address: 5, polarity: Polarity::Up };
-/// assert_eq!(sink.send(FromEvents([event].into_iter())), Ok(2));
+/// let sent = sink.send(FromEvents([event].into_iter())).expect("a port that takes all");
 /// let Io06(uart) = sink.release();
-/// assert_eq!(uart.0, 2);
+/// assert_eq!(uart.0 as usize, sent);
 /// ```
 #[derive(Debug)]
 pub struct Io06<W>(pub W);

@@ -11,7 +11,7 @@ mod serial;
 #[cfg(feature = "embedded-hal")]
 mod spi;
 
-pub use crate::wire::{Batch, Formatted};
+pub use crate::wire::Batch;
 pub use error::SinkError;
 #[cfg(feature = "embedded-io-06")]
 pub use io06::{Io06, Io06Error};

@@ -17,25 +17,28 @@ use crate::event::Source;
 /// - **Memory:** `N` bytes, the port and the batch.
 ///
 /// ```
-/// use spikewire::{Event, FromEvents, Polarity, Tick};
-/// use spikewire::{format::{Edvs, EdvsTime}, out::{Formatted, SerialSink}};
+/// use spikewire::{Event, FromEvents, Polarity, Tick, out::SerialSink};
+/// use spikewire::link::{Coding, FrameView, Session, Transmitter};
 ///
-/// let mut port = [0; 4];
-/// let format = Edvs::new(EdvsTime::None).encoder();
-/// let mut sink = SerialSink::<_, _, 64>::new(&mut port[..], Formatted::new(format));
+/// let mut port = [0; 64];
+/// let link = Transmitter::new(Coding::for_channels(6, 1_000), Session::counted(1));
+/// let mut sink = SerialSink::<_, _, 512>::new(&mut port[..], link);
 ///
 /// let event = Event { tick: Tick::from_micros(0), address: 5, polarity: Polarity::Up };
-/// assert_eq!(sink.send(FromEvents([event, event].into_iter())), Ok(4));
-/// assert_eq!(port, [0x80, 0x85, 0x80, 0x85]);
+/// let sent = sink.send(FromEvents([event].into_iter()));
+/// let (frame, length) = FrameView::new(&port)?;
+/// assert!(frame.events().eq([event]));
+/// assert_eq!(sent, Ok(length));
+/// # Ok::<(), spikewire::link::LinkError>(())
 /// ```
 ///
-/// Batches too short for an event do not compile:
+/// Batches too short for a frame do not compile:
 ///
 /// ```compile_fail
-/// # use spikewire::{format::{Edvs, EdvsTime}, out::{Formatted, SerialSink}};
-/// # let mut port = [0; 4];
-/// let format = Edvs::new(EdvsTime::None).encoder();
-/// let sink = SerialSink::<_, _, 5>::new(&mut port[..], Formatted::new(format));
+/// # use spikewire::{link::{Coding, Session, Transmitter}, out::SerialSink};
+/// # let mut port = [0; 64];
+/// # let link = Transmitter::new(Coding::for_channels(6, 1_000), Session::counted(1));
+/// let sink = SerialSink::<_, _, 5>::new(&mut port[..], link);
 /// ```
 #[derive(Debug)]
 pub struct SerialSink<W, B, const N: usize> {

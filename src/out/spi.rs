@@ -107,30 +107,40 @@ macro_rules! spi_sink {
 spi_sink! {
     /// Sends items over an `embedded-hal` SPI device.
     ///
+    /// With the batch of the example of [`Batch`], a byte an event:
+    ///
     /// ```
     /// use embedded_hal_mock::eh1::spi::{Mock, Transaction};
-    /// use spikewire::{Event, FromEvents, Polarity, Tick};
-    /// use spikewire::{format::Evt2, out::{Formatted, SpiSink}};
+    /// use spikewire::{Event, FromEvents, Polarity, Source, Tick, out::{Batch, SpiSink}};
+    /// # struct Addresses;
+    /// # impl Batch for Addresses {
+    /// #     const SHORTEST: usize = 1;
+    /// #     fn fill(&mut self, events: &mut impl Source, bytes: &mut [u8]) -> usize {
+    /// #         let pairs = bytes.iter_mut().zip(core::iter::from_fn(|| events.take_event()));
+    /// #         pairs.map(|(byte, event)| *byte = event.address as u8).count()
+    /// #     }
+    /// # }
     ///
     /// let spi = Mock::new(&[
     ///     Transaction::transaction_start(),
-    ///     Transaction::write_vec(vec![0, 0, 0, 0x80, 0, 0x28, 0, 0x10]),
+    ///     Transaction::write_vec(vec![5, 5]),
     ///     Transaction::transaction_end(),
     /// ]);
-    /// let mut sink = SpiSink::<_, _, 64>::new(spi, Formatted::new(Evt2::encoder()));
+    /// let mut sink = SpiSink::<_, _, 64>::new(spi, Addresses);
     ///
     /// let event = Event { tick: Tick::from_micros(0), address: 5, polarity: Polarity::Up };
-    /// assert_eq!(sink.send(FromEvents([event].into_iter())), Ok(8));
+    /// assert_eq!(sink.send(FromEvents([event; 2].into_iter())), Ok(2));
     /// # sink.release().0.done();
     /// ```
     ///
-    /// Batches too short for a word do not compile:
+    /// Batches too short for a frame of a link do not compile:
     ///
     /// ```compile_fail
     /// # use embedded_hal_mock::eh1::spi::Mock;
-    /// # use spikewire::{format::Evt2, out::{Formatted, SpiSink}};
+    /// # use spikewire::{link::{Coding, Session, Transmitter}, out::SpiSink};
+    /// # let link = Transmitter::new(Coding::for_channels(6, 1_000), Session::counted(1));
     /// let spi = Mock::<u8>::new(&[]);
-    /// let sink = SpiSink::<_, _, 3>::new(spi, Formatted::new(Evt2::encoder()));
+    /// let sink = SpiSink::<_, _, 5>::new(spi, link);
     /// ```
     SpiSink, embedded_hal::spi::SpiDevice, [], []
 }

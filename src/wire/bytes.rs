@@ -16,13 +16,11 @@ impl<'a> Cursor<'a> {
     }
 
     /// Keeps the buffer free from `limit` on.
-    #[cfg(feature = "link")]
     pub(crate) fn set_limit(&mut self, limit: usize) {
         self.limit = limit.min(self.bytes.len());
     }
 
     /// How many bytes there is room for.
-    #[cfg(feature = "link")]
     pub(crate) fn room(&self) -> usize {
         self.limit.saturating_sub(self.written)
     }
@@ -42,29 +40,17 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
-    /// Appends a byte so many times, or as often as it fits, and returns how often.
-    pub(crate) fn repeat(&mut self, byte: u8, times: usize) -> usize {
-        let room = self.limit.saturating_sub(self.written);
-        let (start, times) = (self.written, times.min(room));
-        self.written = start.wrapping_add(times);
-        self.bytes.get_mut(start..self.written).unwrap_or_default().fill(byte);
-        times
-    }
-
     /// The bytes written.
-    #[cfg(feature = "link")]
     pub(crate) fn as_slice(&self) -> &[u8] {
         self.bytes.get(..self.written).unwrap_or_default()
     }
 
     /// The bytes written, for the lifetime of the buffer.
-    #[cfg(feature = "link")]
     pub(crate) fn into_slice(self) -> &'a [u8] {
         self.bytes.get(..self.written).unwrap_or_default()
     }
 
     /// Replaces a byte already written.
-    #[cfg(feature = "link")]
     pub(crate) fn replace(&mut self, at: usize, byte: u8) {
         if let Some(target) = self.bytes.get_mut(at) {
             *target = byte;
@@ -72,7 +58,6 @@ impl<'a> Cursor<'a> {
     }
 
     /// Forgets what was written after the first `length` bytes.
-    #[cfg(feature = "link")]
     pub(crate) fn truncate(&mut self, length: usize) {
         self.written = self.written.min(length);
     }

@@ -1,9 +1,9 @@
-//! Items as bytes: the link, and the event formats of cameras, tools and boards.
+//! Items as bytes: what makes batches of them for a sink, and the link.
 
 mod batch;
+#[cfg(feature = "link")]
 mod bytes;
-pub mod format;
 #[cfg(feature = "link")]
 pub mod link;
 
-pub use batch::{Batch, Formatted};
+pub use batch::Batch;

@@ -65,7 +65,7 @@ fn the_least_rust_is_that_of_the_manifests() {
             .to_owned()
     };
     let named = least("Cargo.toml");
-    let family = ["chips", "network", "flight-logs", "laptop/cli"];
+    let family = ["cameras", "chips", "network", "flight-logs", "laptop/cli"];
     for member in family {
         assert_eq!(least(&format!("{member}/Cargo.toml")), named, "{member}");
     }

@@ -11,13 +11,12 @@ use std::{
 use syn::{Item, UseTree};
 
 /// The crate's modules from the lowest to the highest. Those on one line are equal, and none may name the other.
-const ORDER: [&[&str]; 9] = [
+const ORDER: [&[&str]; 8] = [
     &["serial"], // what serde does not derive
     &["error"],
     &["num"],
     &["scheme"],
     &["filter", "event"],
-    &["frame"],
     &["wire"],
     &["out"],
     &["lib"],

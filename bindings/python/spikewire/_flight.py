@@ -14,9 +14,9 @@ from ._link import Receiver, Sender
 class Flight:
     """A flight's file, ``flight.toml``, as ``spikewire advise -o`` writes it: what the vehicle codes and its far end decodes.
 
-    Both ends are made from it, so that they cannot disagree on a threshold; with a filter they hear only each other,
-    as their fingerprint leaves it out. Samples and values are in counts: :attr:`counts` times the unit. A bad file is
-    a :class:`ValueError` with its line.
+    Both ends are made from it, so that they cannot disagree on a threshold, and their frames carry :attr:`fingerprint`, as
+    those of a firmware from the same file do. Samples and values are in counts: :attr:`counts` times the unit. A bad file
+    is a :class:`ValueError` with its line.
 
     >>> import pathlib, tempfile, numpy as np, spikewire as sw
     >>> text = 'version = 1\\nscheme = "sf"\\nperiod = 2000\\nparameters = { threshold = 0.1 }\\n'
@@ -36,7 +36,8 @@ class Flight:
     def __init__(self, path: str | os.PathLike[str]):
         from ._schemes import schemes
 
-        scheme, sample, period, keyframe_every, filtered, channels = _native.flight(os.fspath(path))
+        told = _native.flight(os.fspath(path))
+        scheme, sample, period, keyframe_every, clock_ppm, label, fingerprint, filtered, channels = told
         #: The short name of the scheme of every channel.
         self.scheme: str = scheme
         #: Names of the channels, in the order of a sample.
@@ -53,16 +54,22 @@ class Flight:
         self.period: int = period
         #: Samples from one keyframe or heartbeat to the next.
         self.keyframe_every: int = keyframe_every
+        #: By how many millionths the time from sample to sample may differ from `period`.
+        self.clock_ppm: int = clock_ppm
+        #: Period, names, units and counts in a text that both ends compare.
+        self.label: str = label
+        #: The 32 bits of schemes, filter and label that the frames carry.
+        self.fingerprint: int = fingerprint
         #: The filter before every code; ``None`` without.
         self.filter: Filter | None = _filter(filtered, 1e6 / period)
 
     def sender(self, session: int = 0) -> Sender:
         """The bank and the frames of its events, for six channels; `session` differs at each start."""
-        return Sender(self.schemes, self.period, self.keyframe_every, session, self.filter)
+        return Sender(self.schemes, self.period, self.keyframe_every, session, self.filter, self.label)
 
     def receiver(self) -> Receiver:
         """The decoders, for six channels."""
-        return Receiver(self.schemes, self.period)
+        return Receiver(self.schemes, self.period, self.clock_ppm / 1e6, self.filter, self.label)
 
     def __repr__(self) -> str:
         return f"Flight of {self.scheme}: {', '.join(self.names)}, one sample in {self.period} µs"

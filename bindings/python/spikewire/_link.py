@@ -21,9 +21,9 @@ class Sender:
 
     `schemes` are one scheme for all channels, or one for each, of one kind and with as many neurons. A sample is taken
     every `period` µs. After the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
-    `filter` is one before the code of all channels, or one for each, or None. The bytes are those of a firmware with the
-    same schemes, `period` and `session`, and no filter; behind a filter the events are, but not the fingerprint, which
-    leaves the filter out.
+    `filter` is one before the code of all channels, or one for each, or None. `label` is a text that both ends must share,
+    such as names and units of the channels. The bytes are those of a firmware with the same schemes, filters, `period`,
+    `label` and `session`.
 
     >>> import spikewire as sw
     >>> scheme = sw.StepForward(threshold=0.1)
@@ -43,10 +43,10 @@ class Sender:
         keyframe_every: int = 25,
         session: int = 0,
         filter: Filter | Sequence[Filter | None] | None = None,
+        label: str | None = None,
     ):
-        filters = list(filter) if isinstance(filter, Sequence) else [filter] * 6
-        filters = [own and own._native for own in filters]
-        self._native = _native.Sender(_six(schemes), filters, period, keyframe_every, session)
+        filters = _filters(filter)
+        self._native = _native.Sender(_six(schemes), filters, period, keyframe_every, session, label)
         self._sample = schemes[0].sample if isinstance(schemes, Sequence) else schemes.sample
         #: The address of each event of the last sample, and whether it went up.
         self.fired: list[tuple[int, bool]] = []
@@ -62,14 +62,22 @@ class Sender:
 class Receiver:
     """The decoders of a :class:`Sender`, which know whether their values are exact.
 
-    `schemes` are those of the sender, whose frames carry their fingerprint: from other schemes no value is exact.
+    `schemes`, `filter` and `label` are those of the sender, whose frames carry their fingerprint: from others no value is
+    exact.
     `clock_tolerance` is by how much the time from sample to sample may differ from `period`, as a fraction. A bank whose
     samples are taken by a timer of the clock that its ticks come from has 0. Codes with sub-timesteps need to know it, or
     heartbeats less than half a period over the tolerance apart.
     """
 
-    def __init__(self, schemes: Scheme | Sequence[Scheme], period: int, clock_tolerance: float = 0.02):
-        self._native = _native.Hearer(_six(schemes), period, clock_tolerance)
+    def __init__(
+        self,
+        schemes: Scheme | Sequence[Scheme],
+        period: int,
+        clock_tolerance: float = 0.02,
+        filter: Filter | Sequence[Filter | None] | None = None,
+        label: str | None = None,
+    ):
+        self._native = _native.Hearer(_six(schemes), _filters(filter), period, clock_tolerance, label)
 
     def hear(self, data: bytes) -> None:
         """Takes the next bytes of the link, cut anywhere: frames that were lost are noticed."""
@@ -98,6 +106,11 @@ class Receiver:
     def lost(self) -> int:
         """How many frames were lost, as far as later ones tell."""
         return self._native.lost()
+
+
+def _filters(filter: Filter | Sequence[Filter | None] | None) -> list:
+    own = list(filter) if isinstance(filter, Sequence) else [filter] * 6
+    return [one and one._native for one in own]
 
 
 def _six(schemes: Scheme | Sequence[Scheme]) -> list:

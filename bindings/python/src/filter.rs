@@ -5,8 +5,8 @@ use catalogue::for_sample_type;
 use catalogue::run::SampleType;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use spikewire::Sample;
 use spikewire::filter::{Biquad, BiquadState, Filter as _, FirstOrder, FirstOrderState};
+use spikewire::{Fingerprint, Sample};
 
 use crate::error::value;
 
@@ -122,6 +122,15 @@ impl<S: Sample> Chain<S> {
         self.0.iter_mut().fold(sample, |sample, own| match own {
             Running::Biquad(filter, state) => filter.filter(state, sample),
             Running::FirstOrder(filter, state) => filter.filter(state, sample),
+        })
+    }
+
+    /// The fingerprint of a scheme behind these filters.
+    pub(crate) fn before(&self, scheme: Fingerprint) -> Fingerprint {
+        let stages = self.0.iter().rev();
+        stages.fold(scheme, |scheme, own| match own {
+            Running::Biquad(filter, _) => filter.fingerprint().and(scheme),
+            Running::FirstOrder(filter, _) => filter.fingerprint().and(scheme),
         })
     }
 

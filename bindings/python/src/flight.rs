@@ -12,8 +12,10 @@ type Heard = (String, String, String, f64, Vec<(&'static str, Given)>);
 /// A filter: its kind, its corner or centre in Hz, and a notch's `q`.
 type Filtering = (&'static str, f32, Option<f32>);
 
-/// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, filter, channels.
-type Told = (&'static str, String, u16, u32, Option<Filtering>, Vec<Heard>);
+/// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, error of the clock in millionths, label,
+/// fingerprint, filter, channels.
+type Told =
+    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>);
 
 /// Reads a flight's file.
 #[pyfunction]
@@ -28,6 +30,15 @@ pub(crate) fn flight(path: &str) -> PyResult<Told> {
         let Channel { name, source, unit, counts, .. } = own.clone();
         (name, source, unit, counts, keywords(&flight.asked(own)))
     });
-    let (period, sample) = (flight.period.get(), flight.sample.to_string());
-    Ok((flight.scheme.name, sample, period, flight.keyframe_every, filter, channels.collect()))
+    Ok((
+        flight.scheme.name,
+        flight.sample.to_string(),
+        flight.period.get(),
+        flight.keyframe_every,
+        flight.clock_ppm,
+        flight.label(),
+        flight.fingerprint().bits(),
+        filter,
+        channels.collect(),
+    ))
 }

@@ -9,9 +9,7 @@ use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use spikewire::link::{Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter};
-use spikewire::{
-    Bank, Fingerprint, FromItems, Item, Recovery, Sample, SampleKind, Scheme, Spike, Tick,
-};
+use spikewire::{Bank, Fingerprint, FromItems, Item, Recovery, Sample, Scheme, Spike, Tick};
 
 use crate::coder::Coder;
 use crate::error::value;
@@ -117,11 +115,17 @@ struct Ends {
 struct Build<'a> {
     scheme: &'static dyn RunTime,
     settings: &'a [Settings; CHANNELS],
-    filters: &'a [Option<Filter>],
     sample: SampleType,
-    period: u16,
+    link: &'a Link,
     /// In millionths.
     clock_tolerance: u32,
+}
+
+/// What both ends have in common beside the schemes.
+struct Link {
+    filters: Vec<Option<Filter>>,
+    period: u16,
+    label: Option<String>,
 }
 
 impl<S: Sample> Visit<S> for Build<'_> {
@@ -146,7 +150,8 @@ impl<S: Sample> Visit<S> for Build<'_> {
 
 impl Build<'_> {
     fn ends<S: Sample, P: Runs<S>, const EVENTS: usize>(self) -> Result<Ends> {
-        let Self { scheme, settings, filters, sample, period, clock_tolerance } = self;
+        let Self { scheme, settings, sample, link, clock_tolerance } = self;
+        let Link { filters, period, label } = link;
         let mut channels = Vec::new();
         for own in settings {
             let built = catalogue::visit::<S, _>(scheme.info().name, own, Boxed)?;
@@ -169,19 +174,23 @@ impl Build<'_> {
         }
         let slots = schemes.iter().map(|own| own.slots()).max().unwrap_or(1);
         let is_slotted = P::RECOVERY != Recovery::Keyframe && slots > 1;
-        let slot_ticks = if is_slotted { u32::from(period) / slots as u32 } else { 0 };
+        let slot_ticks = if is_slotted { u32::from(*period) / slots as u32 } else { 0 };
         if is_slotted && slot_ticks == 0 {
             bail!("{slots} sub-timesteps do not fit into {period} µs");
         }
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
-        let coding = Coding::for_channels((CHANNELS * neurons) as u16, period);
+        let coding = Coding::for_channels((CHANNELS * neurons) as u16, *period);
         let one = sample.one();
         let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
         let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;
-        let filters = filters.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
+        let filters: [Chain<S>; CHANNELS] = filters.try_into().map_err(|_| six())?;
+        let fingerprints: [Fingerprint; CHANNELS] =
+            std::array::from_fn(|own| filters[own].before(schemes[own].fingerprint()));
         let bank = Bank::per_channel_with_states(channels).with_slot_ticks(slot_ticks);
-        let fingerprints = schemes.map(Scheme::fingerprint);
-        let fingerprint = Fingerprint::of_bank(kind(sample), 0, slot_ticks, &fingerprints);
+        let mut fingerprint = Fingerprint::of_bank(sample.into(), 0, slot_ticks, &fingerprints);
+        if let Some(label) = label {
+            fingerprint = fingerprint.labelled(label);
+        }
         let receiver = Receiver::<_, CHANNELS, EVENTS>::per_channel(schemes)
             .with_slot_ticks(slot_ticks)
             .with_fingerprint(fingerprint)
@@ -192,15 +201,6 @@ impl Build<'_> {
             coding: coding.with_jitter_bits(jitter),
             fingerprint,
         })
-    }
-}
-
-/// The sample type on a link.
-fn kind(sample: SampleType) -> SampleKind {
-    match sample {
-        SampleType::F32 => SampleKind::F32,
-        SampleType::Fixed16 { fraction } => SampleKind::Fixed16 { fraction },
-        SampleType::Fixed32 { fraction } => SampleKind::Fixed32 { fraction },
     }
 }
 
@@ -219,13 +219,8 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// Both ends of a link whose channels have these schemes, which are of one kind, and filters before them.
-fn ends(
-    coders: &[Coder],
-    filters: &[Option<Filter>],
-    period: u16,
-    clock_tolerance: u32,
-) -> Result<Ends> {
+/// Both ends of a link whose channels have these schemes, which are of one kind.
+fn ends(coders: &[Coder], link: &Link, clock_tolerance: u32) -> Result<Ends> {
     let [first, ..] = coders else { bail!("a bank has {CHANNELS} channels, not 0") };
     if coders.len() != CHANNELS {
         bail!("a bank has {CHANNELS} channels, not {}", coders.len());
@@ -246,7 +241,7 @@ fn ends(
     }
     let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
     let (scheme, sample) = (first.scheme, first.sample);
-    let build = Build { scheme, settings, filters, sample, period, clock_tolerance };
+    let build = Build { scheme, settings, sample, link, clock_tolerance };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))?
 }
 
@@ -275,9 +270,10 @@ impl Sender {
         period: u16,
         keyframe_every: u64,
         session: u32,
+        label: Option<String>,
     ) -> PyResult<Self> {
-        let Ends { near, coding, fingerprint, .. } =
-            ends(&coders, &filters, period, 0).map_err(value)?;
+        let link = Link { filters, period, label };
+        let Ends { near, coding, fingerprint, .. } = ends(&coders, &link, 0).map_err(value)?;
         let session = Session::counted(session);
         let transmitter = Transmitter::new(coding, session).with_fingerprint(fingerprint);
         Ok(Self(Mutex::new(Sending {
@@ -332,13 +328,20 @@ struct Hearing {
 #[pymethods]
 impl Hearer {
     #[new]
-    fn new(coders: Vec<Coder>, period: u16, clock_tolerance: f64) -> PyResult<Self> {
+    fn new(
+        coders: Vec<Coder>,
+        filters: Vec<Option<Filter>>,
+        period: u16,
+        clock_tolerance: f64,
+        label: Option<String>,
+    ) -> PyResult<Self> {
         if !(0.0..=0.1).contains(&clock_tolerance) {
             return Err(value(anyhow!("clock_tolerance {clock_tolerance} must lie in 0..=0.1")));
         }
-        let millionths = (clock_tolerance * 1e6).ceil() as u32;
-        let unfiltered = vec![None; CHANNELS];
-        let Ends { far, .. } = ends(&coders, &unfiltered, period, millionths).map_err(value)?;
+        // A whole number of millionths stays what it is, though a double holds its fraction inexactly.
+        let millionths = (clock_tolerance * 1e6 - 1e-3).ceil() as u32;
+        let link = Link { filters, period, label };
+        let Ends { far, .. } = ends(&coders, &link, millionths).map_err(value)?;
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 

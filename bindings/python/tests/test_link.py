@@ -78,11 +78,45 @@ def test_a_filter_before_a_bank_is_the_filter_and_then_the_bank(sample):
     filters = [quiet] * 3 + [None, sw.Filter.first_order(20, rate=500), None]
     whole, apart = sw.Sender(scheme, PERIOD, filter=filters), sw.Sender(scheme, PERIOD)
     filtered = np.array([lane if own is None else own.filter(lane, sample) for lane, own in zip(x.T, filters)]).T
-    assert [whole.encode(own) for own in x] == [apart.encode(own) for own in filtered]
+    near, far = sw.Receiver(scheme, PERIOD), sw.Receiver(scheme, PERIOD, filter=filters)
+    for own, behind in zip(x, filtered):
+        for frame in whole.encode(own):
+            far.hear(frame)
+        for frame in apart.encode(behind):
+            near.hear(frame)
+        assert whole.fired == apart.fired
+        assert np.array_equal(far.values, near.values) and far.exact.all() and near.exact.all()
     with pytest.raises(ValueError, match="6 channels"):
         sw.Sender(scheme, PERIOD, filter=[quiet] * 3)
     with pytest.raises(ValueError, match="corner 300 must lie in"):
         sw.Filter.low_pass(300, rate=500)
+
+
+def test_other_filters_and_labels_are_other_descriptions():
+    scheme = sw.StepForward(threshold=0.1)
+    low, notch = sw.Filter.low_pass(40, rate=500), sw.Filter.notch(60, rate=500, q=2)
+    ends = [
+        {},
+        {"filter": low},
+        {"filter": sw.Filter.low_pass(41, rate=500)},
+        {"filter": sw.Filter.low_pass(40, rate=500, q=1)},
+        {"filter": sw.Filter.first_order(40, rate=500)},
+        {"filter": notch.then(low)},
+        {"filter": low.then(notch)},
+        {"filter": [low] * 5 + [None]},
+        {"label": "roll, pitch"},
+        {"label": "pitch, roll"},
+    ]
+    for near in ends:
+        sender = sw.Sender(scheme, PERIOD, **near)
+        receivers = [sw.Receiver(scheme, PERIOD, **far) for far in ends]
+        for sample in signal(40):
+            for frame in sender.encode(sample):
+                for receiver in receivers:
+                    receiver.hear(frame)
+        for far, receiver in zip(ends, receivers):
+            assert receiver.exact.all() == receiver.exact.any() == (near is far), (near, far)
+            assert near is far or "fingerprint" in receiver.withheld[0]
 
 
 def test_what_makes_no_bank_is_refused():

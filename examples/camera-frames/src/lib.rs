@@ -12,11 +12,9 @@
 
 use core::fmt::{self, Write};
 
-use spikewire::{
-    ConfigError, Polarity, Tick,
-    frame::{
-        FrameDecoder, FrameEncoder, Intensity, LogIntensity, PixelCode, PixelEvent, Refractory,
-    },
+use spikewire::{ConfigError, Polarity, Tick};
+use spikewire_cameras::frame::{
+    FrameDecoder, FrameEncoder, Intensity, LogIntensity, PixelCode, PixelEvent, Refractory,
 };
 
 /// The pixels of a usual optical-flow sensor.

@@ -2,8 +2,8 @@
 
 use core::hint::black_box;
 
-use spikewire::{
-    Event, Keyframe,
+use spikewire::{Event, Keyframe};
+use spikewire_cameras::{
     format::{Dvs, EventDecoder, EventFormat, Evt2Pixels},
     frame::{
         FrameDecoder, FrameEncoder, Intensity, LogIntensity, PixelCode, PixelEvent, Refractory,

@@ -16,10 +16,12 @@ use embedded_hal::{
 use spikewire::{
     Bank, Bins, Consumer, EventQueue, FromEvents, FromItems, Item, Keyframe, Overflow, Put,
     Readout, Sample, SampleKind, Source, SpscQueue, Tick,
-    format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, eieio},
     link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Session, Transmitter},
-    out::{AsyncSpiSink, Batch, Formatted, SerialSink, SpiSink},
+    out::{AsyncSpiSink, Batch, SerialSink, SpiSink},
     temporal::StepForward,
+};
+use spikewire_cameras::format::{
+    Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, Formatted, eieio,
 };
 use spikewire_chips::{
     AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes, Odin,

@@ -16,7 +16,6 @@ mod centres;
 mod contrast;
 mod filter;
 mod finite;
-mod frames;
 mod histogram;
 mod hough;
 mod line;
@@ -41,10 +40,6 @@ pub use centres::{even_centres, gaussian_centres, receptive_field_width};
 pub use contrast::temporal_contrast;
 pub use filter::{doubles, gaussian, hann, scaled_to_peak, scaled_to_sum, triangular};
 pub use finite::{Finite, split_finite};
-pub use frames::{
-    FrameLaw, FrameOutcome, frame_events, frame_intensity, frame_interpolated, frame_log,
-    frame_value, v2e_events,
-};
 pub use histogram::{even_cell, histogram, quantile_centres};
 pub use hough::hough;
 pub use line::{Exact, Line, edge, even, points};

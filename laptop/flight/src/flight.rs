@@ -1,9 +1,10 @@
 //! A flight: what the vehicle codes and the far end decodes, checked.
 
 use crate::{Filter, Filtering, FlightError, FlightErrorKind};
-use catalogue::run::{Asked, Known, RunTime, SampleType, Settings, Value};
-use catalogue::{Info, Kind, Parameter};
+use catalogue::run::{Asked, Error, Known, RunTime, SampleType, Settings, Value, Visit};
+use catalogue::{Info, Kind, Parameter, for_sample_type};
 use spikewire::link::Coding;
+use spikewire::{Fingerprint, Sample, Scheme};
 use std::collections::BTreeSet;
 use std::num::NonZeroU16;
 use std::ops::Deref;
@@ -81,6 +82,7 @@ pub struct Parts {
 pub struct Flight {
     parts: Parts,
     settings: Vec<Settings>,
+    fingerprint: Fingerprint,
 }
 
 impl Deref for Flight {
@@ -127,8 +129,9 @@ impl Flight {
             let own = settle(&parts, channel).map_err(|error| error.of_channel(place))?;
             settings.push(own.with_stream(place as u64));
         }
-        let flight = Self { parts, settings };
+        let mut flight = Self { parts, settings, fingerprint: Fingerprint::new("") };
         flight.check_bank()?;
+        flight.fingerprint = flight.described()?;
         Ok(flight)
     }
 
@@ -234,6 +237,25 @@ impl Flight {
         format!("{} us{channels}", self.period)
     }
 
+    /// The fingerprint that the flight's frames carry: that of its bank, filters included, with its [label](Self::label).
+    pub fn fingerprint(&self) -> Fingerprint {
+        self.fingerprint
+    }
+
+    fn described(&self) -> Result<Fingerprint, FlightError> {
+        let name = self.scheme.name;
+        let filter = self.filter.map(|own| own.fingerprint(self.sample, self.rate() as f32));
+        let filter = filter.transpose().map_err(|error| FlightError::refused("filter", error))?;
+        let scheme = |settings| {
+            let scheme = for_sample_type!(self.sample, S => catalogue::visit::<S, _>(name, settings, Described))?;
+            Ok(filter.map_or(scheme, |filter| filter.and(scheme)))
+        };
+        let schemes: Result<Vec<_>, _> = self.settings.iter().map(scheme).collect();
+        let schemes = schemes.map_err(|error: Error| FlightError::refused("", error))?;
+        let bank = Fingerprint::of_bank(self.sample.into(), 0, self.slot_ticks(), &schemes);
+        Ok(bank.labelled(&self.label()))
+    }
+
     /// The number of bits that the parts of an event take on the link, and the period.
     pub fn coding(&self) -> Coding {
         let addresses = self.channels.len() * self.neurons();
@@ -254,6 +276,21 @@ impl Flight {
         let fires_together = slots > 1 || scheme.parameter("seed").is_some();
         let most = if neurons > 1 && fires_together { neurons } else { slots };
         channels.len() * spikes.unwrap_or(most)
+    }
+}
+
+/// Takes the fingerprint of a scheme.
+struct Described;
+
+impl<S: Sample> Visit<S> for Described {
+    type Output = Fingerprint;
+
+    fn visit<P: Scheme<Sample = S> + 'static>(
+        self,
+        scheme: P,
+        _: P::EncoderState,
+    ) -> Result<Fingerprint, Error> {
+        Ok(scheme.fingerprint())
     }
 }
 

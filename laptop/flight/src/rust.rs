@@ -2,7 +2,7 @@
 
 use crate::{Flight, FlightError, FlightErrorKind};
 use catalogue::run::{Constant, Rust};
-use std::fmt::Write;
+use std::fmt::{Debug, Write};
 
 /// Writes the module `flight` of a flight in Rust, for `include!`. It needs the crate `spikewire` with the feature `link`,
 /// and the crate `fixed` if its samples are fixed point.
@@ -15,7 +15,7 @@ use std::fmt::Write;
 /// | `LABEL` | what the schemes do not say of the flight, in a text |
 /// | `PERIOD`, `KEYFRAME_EVERY` | µs from sample to sample; samples from one keyframe to the next |
 /// | `CODING`, `transmitter(session)` | the sender's half of the link |
-/// | `Receiver`, `receiver()` | the receiver's half |
+/// | `EVENTS`, `Receiver`, `receiver()` | the receiver's half |
 ///
 /// # Errors
 /// Returns an error if the scheme has no constant: those by chance take a generator of the user's.
@@ -37,9 +37,8 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         return Err(FlightError::new("channel", FlightErrorKind::Missing));
     };
     let (channels, coding) = (flight.channels.len(), flight.coding());
-    let names: Vec<String> = flight.channels.iter().map(|own| format!("{:?}", own.name)).collect();
-    let counts: Vec<String> =
-        flight.channels.iter().map(|own| format!("{:?}", own.counts)).collect();
+    let names = listed(flight.channels.iter().map(|own| &own.name));
+    let counts = listed(flight.channels.iter().map(|own| own.counts));
     let slots = match flight.slot_ticks() {
         0 => String::new(),
         ticks => format!(".with_slot_ticks({ticks})"),
@@ -56,11 +55,11 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     item("Number of channels.", format!("pub const CHANNELS: usize = {channels};"));
     item(
         "Names of the channels, in the order of a sample.",
-        format!("pub const NAMES: [&str; CHANNELS] = [{}];", names.join(", ")),
+        format!("pub const NAMES: [&str; CHANNELS] = [{names}];"),
     );
     item(
         "Counts for one unit of each channel.",
-        format!("pub const COUNTS: [f64; CHANNELS] = [{}];", counts.join(", ")),
+        format!("pub const COUNTS: [f64; CHANNELS] = [{counts}];"),
     );
     item("The code of every channel.", format!("pub type Code = {code};"));
     for (place, (Constant { value, .. }, of)) in statics.iter().enumerate() {
@@ -80,7 +79,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         format!("pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES){slots};"),
     );
     item(
-        "What the schemes do not say of the flight: period, names, units, counts; for `with_label` at both ends.",
+        "What the schemes do not say of the flight: period, names, units, counts. Both ends compare it.",
         format!("pub const LABEL: &str = {:?};", flight.label()),
     );
     item("µs from sample to sample.", format!("pub const PERIOD: u16 = {};", flight.period));
@@ -96,32 +95,44 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         ),
     );
     item(
-        "The sender's half of the link, before the first frame of this session. Its frames carry the bank's fingerprint.",
+        "The sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.",
         "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {\n    \
-             spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint())\n}"
+             spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint()).with_label(LABEL)\n}"
             .to_owned(),
     );
     item(
+        "The most events of a sample that the receiver keeps.",
+        format!("pub const EVENTS: usize = {};", flight.events()),
+    );
+    item(
         "The type of the receiver.",
-        format!(
-            "pub type Receiver = spikewire::link::Receiver<[&'static Code; CHANNELS], CHANNELS, {}>;",
-            flight.events()
-        ),
+        "pub type Receiver = spikewire::link::Receiver<[&'static Code; CHANNELS], CHANNELS, EVENTS>;"
+            .to_owned(),
     );
     item(
         "The receiver's half of the link, before the first frame.",
         format!(
-            "#[must_use]\npub fn receiver() -> Receiver {{\n    Receiver::per_channel(SCHEMES){slots}.with_clock_tolerance({})\n}}",
+            "#[must_use]\npub fn receiver() -> Receiver {{\n    Receiver::per_channel(SCHEMES){slots}.with_clock_tolerance({}).with_label(LABEL)\n}}",
             flight.clock_ppm
         ),
     );
+    Ok(module(&items))
+}
+
+/// The module of these items.
+fn module(items: &str) -> String {
     let lines = items
         .lines()
         .map(|line| if line.is_empty() { "\n".to_owned() } else { format!("    {line}\n") });
-    Ok(format!(
+    format!(
         "/// Both ends of a flight, written from its file.\n#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\npub mod flight {{\n{}}}\n",
         lines.skip(1).collect::<String>()
-    ))
+    )
+}
+
+/// Values as a list in Rust.
+fn listed<T: Debug>(values: impl Iterator<Item = T>) -> String {
+    values.map(|own| format!("{own:?}")).collect::<Vec<_>>().join(", ")
 }
 
 impl Flight {

@@ -48,6 +48,20 @@ fn on_the_laptop(flight: &Flight, channel: usize) -> (Vec<Fired>, Vec<f64>) {
     (events, decoded)
 }
 
+/// A saw with a step, whose numbers are the same on any machine, and whole in counts; `bindings/c/tests/ends.c` has it too.
+fn saw(place: u32, channel: u32, counts: f64) -> f64 {
+    let saw = place * (3 + 2 * channel) % 193;
+    let value = (f64::from(if saw < 97 { saw } else { 193 - saw }) - 48.0) / 32.0 * counts;
+    if counts > 1.0 { value.trunc() } else { value }
+}
+
+/// FNV-1a.
+fn fnv(hash: u64, bytes: &[u8]) -> u64 {
+    bytes
+        .iter()
+        .fold(hash, |hash, own| (hash ^ u64::from(*own)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
 /// For each flight: its module as it is written, and both ends of that module beside the laptop.
 macro_rules! flights {
     ($($name:ident)*) => {$(
@@ -59,11 +73,52 @@ macro_rules! flights {
             #[test]
             fn the_module_is_what_the_file_writes() {
                 let flight = Flight::parse(include_str!(concat!("flights/", stringify!($name), ".toml")));
-                let written = rust(&flight.unwrap()).unwrap();
+                let flight = flight.unwrap();
+                let written = rust(&flight).unwrap();
                 let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/", stringify!($name), ".rs");
                 std::fs::write(path, &written).unwrap();
                 let known = include_str!(concat!("flights/", stringify!($name), ".rs"));
                 assert!(written == known, "tests/flights has another module than {path}");
+                assert_eq!(flight.fingerprint(), flight::receiver().fingerprint());
+            }
+
+            #[test]
+            fn the_ends_in_c_have_these_bits() {
+                type S = <flight::Code as Scheme>::Sample;
+                let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::random(7)));
+                let (mut items, mut buffer) = (Vec::new(), [0; MAX_FRAME]);
+                let (mut bytes, mut frames) = (Vec::new(), 0);
+                for place in 0..400 {
+                    let tick = Tick::from(place * u32::from(flight::PERIOD));
+                    let sample = |own: usize| S::from_f64(saw(place, own as u32, flight::COUNTS[own]));
+                    bank.encode_into(tick, std::array::from_fn(sample), Items(&mut items));
+                    if place % flight::KEYFRAME_EVERY == 0 {
+                        bank.keyframe_into(tick, Items(&mut items));
+                    }
+                    let mut source = FromItems(items.drain(..));
+                    while let Some(frame) = transmitter.next_frame(&mut source, &mut buffer).unwrap() {
+                        bytes.extend_from_slice(frame);
+                        frames += 1;
+                    }
+                }
+                let mut hash = fnv(0xcbf2_9ce4_8422_2325, &bytes);
+                let (mut reader, mut receiver) = (Reader::<MAX_FRAME>::new(), flight::receiver());
+                let mut exact = 0;
+                for mut part in bytes.chunks(64) {
+                    while let Some(received) = reader.next_frame(&mut part) {
+                        receiver.apply(&received, |_, _, _| ());
+                    }
+                    for channel in 0..flight::CHANNELS as u16 {
+                        if let Some(value) = receiver.exact(channel) {
+                            exact += 1;
+                            hash = fnv(fnv(hash, &channel.to_le_bytes()), &value.to_le_bytes());
+                        }
+                    }
+                }
+                let (name, length) = (stringify!($name), bytes.len());
+                let line = format!("{name} {frames} frames, {length} bytes, {exact} exact values, {hash:016x}");
+                let known = include_str!("flights/flown.txt");
+                assert!(known.lines().any(|own| own == line), "tests/flights/flown.txt lacks {line}");
             }
 
             #[test]

@@ -146,17 +146,7 @@ fn a_file_names_itself_in_its_errors() {
 #[test]
 fn no_sample_has_more_events_than_are_kept() {
     for info in catalogue::INFO {
-        let set = info.parameters.iter().filter(|own| own.is_recorded && own.default.is_none());
-        let set = set.filter_map(|own| match own.name {
-            "min" => Some("min = -2.5".to_owned()),
-            "max" => Some("max = 2.5".to_owned()),
-            "shift" => Some("shift = -2.5".to_owned()),
-            "start" => None,
-            name if own.example.parse::<f64>().is_ok() => Some(format!("{name} = {}", own.example)),
-            _ if own.example.is_empty() => None,
-            name => Some(format!("{name} = \"{}\"", own.example)),
-        });
-        let parameters = set.collect::<Vec<_>>().join(", ");
+        let parameters = catalogue::run::example(info);
         let text = format!(
             "version = 1\nscheme = \"{}\"\nperiod = 2000\nparameters = {{ {parameters} }}\n[[channel]]\nname = \"a\"\n",
             info.name

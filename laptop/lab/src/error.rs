@@ -384,14 +384,14 @@ macro_rules! foreign {
 foreign! {
     fmt::Error,
     serde_json::Error,
-    spikewire::format::FormatError,
+    spikewire_cameras::format::FormatError,
     spikewire::link::LinkError,
     #[cfg(feature = "frames")]
     gif::EncodingError,
     #[cfg(feature = "frames")]
     image::ImageError,
     #[cfg(feature = "frames")]
-    spikewire::frame::FrameSize,
+    spikewire_cameras::frame::FrameSize,
     #[cfg(feature = "networks")]
     hdf5_reader::error::Error,
     #[cfg(feature = "networks")]

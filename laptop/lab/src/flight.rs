@@ -37,17 +37,33 @@ impl Coding {
 /// Returns an error if there are no channels, if their schemes differ or they differ in more than numbers, or if the
 /// rate's period cannot be expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
-    const KEYFRAMES: f64 = 20.0;
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
         return Err(RequestKind::SeveralSchemes.into());
     }
-    let channels = rows.iter().map(|(name, scheme, row)| Channel {
-        name: (*name).to_owned(),
-        source: (*name).to_owned(),
-        unit: known_unit(name).unwrap_or_default().to_owned(),
+    let asked = |(name, _, row): &(&str, Scheme, &Row)| {
+        ((*name).to_owned(), row.settings.to_asked(scheme.info()))
+    };
+    of_settings(*scheme, sample, rate, rows.iter().map(asked))
+}
+
+/// The flight of channels by their names and what is asked of their parameters. A keyframe comes 20 times a second.
+///
+/// # Errors
+/// Returns an error if there are no channels, they differ in more than numbers, or the rate has no period in µs.
+pub fn of_settings(
+    scheme: Scheme,
+    sample: SampleType,
+    rate: f64,
+    channels: impl Iterator<Item = (String, Asked)>,
+) -> Result<Flight> {
+    const KEYFRAMES: f64 = 20.0;
+    let channels = channels.map(|(name, asked)| Channel {
+        source: name.clone(),
+        unit: known_unit(&name).unwrap_or_default().to_owned(),
         counts: 1.0,
-        asked: row.settings.to_asked(scheme.info()),
+        name,
+        asked,
     });
     Ok(Flight::new(Parts {
         scheme: scheme.info(),
@@ -133,9 +149,8 @@ pub fn with_receiver<'a>(
 ) -> Result<()> {
     let slot_ticks = Some(flight.slot_ticks()).filter(|ticks| *ticks > 0);
     let scheme = Scheme::from(flight.run_time());
-    let filter = flight.filter.map(|own| own.fingerprint(flight.sample, flight.rate() as f32));
-    let filter = filter.transpose()?;
-    let link = values::Link { slot_ticks, filter };
+    let (fingerprint, clock_ppm) = (Some(flight.fingerprint()), Some(flight.clock_ppm));
+    let link = values::Link { slot_ticks, fingerprint, clock_ppm };
     values::with_receiver(scheme, flight.sample, flight.settings(), link, move |values| {
         then(Box::new(InUnits { flight, values }))
     })

@@ -27,13 +27,15 @@ type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 pub struct Link {
     /// Length of the sub-timesteps in µs, if there are any.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint of the filter before the schemes, if there is one.
-    pub filter: Option<Fingerprint>,
+    /// Fingerprint of the sender's frames; unless given, that of the schemes alone, for as many channels as match the sender's.
+    pub fingerprint: Option<Fingerprint>,
+    /// How far the time between samples may differ from the period, in millionths of it; a sensor's tolerance unless given.
+    pub clock_ppm: Option<u32>,
 }
 
 impl From<Option<u32>> for Link {
     fn from(slot_ticks: Option<u32>) -> Self {
-        Self { slot_ticks, filter: None }
+        Self { slot_ticks, ..Self::default() }
     }
 }
 
@@ -85,7 +87,8 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 impl Receive<'_> {
     /// Makes a receiver of up to `N` channels.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
-        let Self { scheme, sample, settings, link: Link { slot_ticks, filter }, then } = self;
+        let Self { scheme, sample, settings, link, then } = self;
+        let Link { slot_ticks, fingerprint, clock_ppm } = link;
         if settings.len() > N {
             let (channels, scheme) = (settings.len(), scheme.name());
             return Err(RequestKind::Channels { channels, scheme, most: N }.into());
@@ -109,6 +112,9 @@ impl Receive<'_> {
         if let Some(length) = slot_ticks {
             receiver = receiver.with_slot_ticks(length);
         }
+        if let Some(millionths) = clock_ppm {
+            receiver = receiver.with_clock_tolerance(millionths);
+        }
         then(Box::new(Receiving {
             receiver,
             channels,
@@ -117,13 +123,11 @@ impl Receive<'_> {
             end: None,
             unused_keyframes: 0,
             one: sample.one(),
-            kind: kind(sample),
+            kind: sample.into(),
             outside: 0,
             slot_ticks: slot_ticks.unwrap_or(0),
-            schemes: given
-                .iter()
-                .map(|own| filter.map_or(own.fingerprint(), |filter| filter.and(own.fingerprint())))
-                .collect(),
+            known: fingerprint,
+            schemes: given.iter().map(Scheme::fingerprint).collect(),
             has_exact: false,
             decoded: Vec::new(),
         }))
@@ -142,15 +146,6 @@ impl<S: Sample> Visit<S> for Boxed {
         _: P::EncoderState,
     ) -> catalogue::run::Result<Box<dyn Any>> {
         Ok(Box::new(scheme))
-    }
-}
-
-/// Returns the link's name of a sample type.
-fn kind(sample: SampleType) -> SampleKind {
-    match sample {
-        SampleType::F32 => SampleKind::F32,
-        SampleType::Fixed16 { fraction } => SampleKind::Fixed16 { fraction },
-        SampleType::Fixed32 { fraction } => SampleKind::Fixed32 { fraction },
     }
 }
 
@@ -240,6 +235,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
+    /// The sender's fingerprint, if it is known.
+    known: Option<Fingerprint>,
     /// Fingerprint of each channel's scheme; or of the one scheme that all channels share, however many there are.
     schemes: Vec<Fingerprint>,
     /// Whether any value so far was exact.
@@ -325,7 +322,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P,
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
         let received = &self.in_our_type(received);
         if let Some(sender) = received.frame.fingerprint() {
-            let own = self.fingerprint(sender);
+            let own = self.known.unwrap_or_else(|| self.fingerprint(sender));
             if own != self.receiver.fingerprint() {
                 self.receiver = self.receiver.clone().with_fingerprint(own);
             }

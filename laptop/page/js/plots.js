@@ -1,6 +1,7 @@
 // Signal and reconstructions over spikes, on one time axis that zooms and pans.
 
 import uPlot from "uplot";
+import { listen } from "./gestures.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -26,9 +27,9 @@ export class Times {
 }
 
 export class Plots {
-  /** `onRange` is told the samples in view. */
-  constructor(host, onRange) {
-    [this.host, this.onRange] = [host, onRange];
+  /** `onRange` is told the samples in view, `onCursor` the one under the pointer, and the one with the mark. */
+  constructor(host, { onRange, onCursor }) {
+    Object.assign(this, { host, onRange, onCursor });
     this.runs = [];
     new ResizeObserver(() => this.resize()).observe(host);
   }
@@ -38,6 +39,8 @@ export class Plots {
     this.times = new Times(recording.samples, recording.rate, recording.arrays.times);
     this.signal = new Pyramid(recording.arrays.values);
     this.runs = [];
+    this.mark = this.pointed = undefined;
+    this.onCursor();
     this.full = [this.times.at(0), Math.max(this.times.at(recording.samples - 1), this.times.at(0) + this.times.step)];
     this.view = [...this.full];
     this.rebuild();
@@ -62,15 +65,15 @@ export class Plots {
     const common = {
       width, legend: { show: false }, padding: [8, 12, 0, 0],
       cursor: { drag: { x: true, y: false, setScale: false }, sync: { key: "time" } },
-      hooks: { setSelect: [(own) => this.select(own)] },
+      hooks: { setSelect: [(plot) => this.select(plot)], setCursor: [(plot) => this.point(plot)] },
     };
     const { name, unit } = this.recording;
     const scales = { x: { time: false, range: () => this.view }, y: { range: (_, low, high) => air(low, high) } };
     this.upper = new uPlot({
-      ...common, height: 280, scales,
+      ...common, height: this.tall(), scales,
       axes: [axis("", { size: 24 }), axis(unit ? `${name}, ${unit}` : name, { size: AXIS })],
       series: [{}, ...[css("--signal"), ...this.runs.map((own) => own.colour)].map((stroke) => ({ stroke, width: 1.5, points: { show: false }, paths: (...asked) => (this.isThinned ? null : line(...asked)) }))],
-      hooks: { ...common.hooks, draw: [(plot) => this.drawColumns(plot)] },
+      hooks: { ...common.hooks, draw: [(plot) => this.drawColumns(plot), (plot) => this.drawMark(plot)] },
     }, this.data(), this.host);
     this.rasters = this.runs.map((own, place) => {
       const isLast = place === this.runs.length - 1;
@@ -81,11 +84,41 @@ export class Plots {
         axes: [axis(isLast ? `time, ${this.times.unit}` : "", { size: isLast ? 28 : 24 }),
           axis((own.neurons > 1 ? "neuron" : "spikes") + (this.runs.length > 1 ? ` ${own.name[0]}` : ""), { size: AXIS, grid: { show: false }, splits: own.neurons > 1 ? undefined : () => (own.isSigned ? [-1, 0, 1] : [0, 1]) })],
         series: [{}, { paths: () => null, points: { show: false } }],
-        hooks: { ...common.hooks, draw: [(plot) => this.drawSpikes(plot, this.runs[place])] },
+        hooks: { ...common.hooks, draw: [(plot) => this.drawSpikes(plot, this.runs[place]), (plot) => this.drawMark(plot)] },
       }, [this.view, [0, 0]], this.host);
     });
-    for (const own of [this.upper, ...this.rasters]) this.listen(own);
+    for (const own of [this.upper, ...this.rasters]) listen(own, this);
     this.onRange(this.samples());
+  }
+
+  /** Tells the sample under the pointer, of the plot that it is over. */
+  point(plot) {
+    if (plot.cursor.event === undefined) return;
+    const { left } = plot.cursor;
+    const sample = left >= 0 ? this.times.first(plot.posToVal(left, "x") - this.times.step / 2) : undefined;
+    this.pointed = sample < this.times.count ? sample : undefined;
+    this.onCursor(this.pointed, this.mark);
+  }
+
+  /** Sets the mark on the sample under the pointer, or takes it away from there. */
+  setMark() {
+    this.mark = this.pointed === this.mark ? undefined : this.pointed;
+    this.onCursor(this.pointed, this.mark);
+    this.draw();
+  }
+
+  drawMark(plot) {
+    if (this.mark === undefined) return;
+    const { ctx, bbox: { left, width, top, height } } = plot;
+    const x = Math.round(plot.valToPos(this.times.at(this.mark), "x", true));
+    if (x < left || x > left + width) return;
+    ctx.fillStyle = css("--ink");
+    ctx.fillRect(x, top, Math.max(1, Math.round(devicePixelRatio)), height);
+  }
+
+  /** How tall the signal is drawn: what a window leaves beside spikes and figures. */
+  tall() {
+    return Math.max(150, Math.min(300, Math.round(0.3 * innerHeight)));
   }
 
   width() {
@@ -223,52 +256,10 @@ export class Plots {
 
   select(plot) {
     if (plot.select.width < 3) return;
+    this.hasDragged = true;
     const [low, high] = [plot.select.left, plot.select.left + plot.select.width].map((at) => plot.posToVal(at, "x"));
     plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
     this.show(low, high);
-  }
-
-  /** Wheel zooms, shift and wheel or a middle button pans, a double click shows all. */
-  listen(plot) {
-    const { over } = plot;
-    over.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      const sideways = event.shiftKey ? event.deltaY : event.deltaX;
-      if (Math.abs(sideways) > Math.abs(event.shiftKey ? 0 : event.deltaY)) return this.pan(sideways / 1000);
-      const at = plot.posToVal(event.clientX - over.getBoundingClientRect().left, "x");
-      this.zoom(event.deltaY < 0 ? 0.8 : 1.25, at);
-    }, { passive: false });
-    over.addEventListener("dblclick", () => this.show(...this.full));
-    let from;
-    const touches = new Map();
-    over.addEventListener("pointerdown", (event) => {
-      if (event.pointerType === "touch") touches.set(event.pointerId, event.clientX);
-      else if (event.button === 1) {
-        from = event.clientX;
-        over.setPointerCapture(event.pointerId);
-        event.preventDefault();
-      }
-    });
-    over.addEventListener("pointermove", (event) => {
-      if (touches.size === 1 && touches.has(event.pointerId)) {
-        this.pan((touches.get(event.pointerId) - event.clientX) / over.clientWidth);
-      } else if (touches.size === 2 && touches.has(event.pointerId)) {
-        const [a, b] = touches.values();
-        const other = [...touches].find(([id]) => id !== event.pointerId)[1];
-        const before = Math.abs(a - b), now = Math.abs(event.clientX - other);
-        if (now > 8) this.zoom(before / now);
-      } else if (from !== undefined) {
-        this.pan((from - event.clientX) / over.clientWidth);
-        from = event.clientX;
-      }
-      if (touches.has(event.pointerId)) touches.set(event.pointerId, event.clientX);
-    });
-    const end = (event) => {
-      touches.delete(event.pointerId);
-      from = undefined;
-    };
-    over.addEventListener("pointerup", end);
-    over.addEventListener("pointercancel", end);
   }
 
   /** The canvases below each other, as one. */

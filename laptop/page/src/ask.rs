@@ -1,7 +1,7 @@
 //! What the page can ask for.
 
 use crate::run::Choice;
-use crate::{board, catalogue, export, frames, front, recording, run, words};
+use crate::{board, catalogue, export, flight, frames, front, recording, run, words};
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -24,6 +24,10 @@ enum Ask {
     Run { choice: Choice },
     /// Settings as text, or a file of spikes.
     Export { kind: String, choice: Choice },
+    /// A flight's file of these channels.
+    Flight(flight::Flown),
+    /// What a flight's file asks of its channels.
+    ReadFlight { text: String },
     /// The settings of a scheme that no other ones beat in spikes and error.
     Front { choice: Choice, evaluations: usize },
     /// Encodes the next frame of a video.
@@ -50,6 +54,8 @@ fn answer(request: &[u8]) -> Result<Value> {
         Ask::Take { name, rate, file } => recording::take(name, rate, file),
         Ask::Run { choice } => run::run(&choice),
         Ask::Export { kind, choice } => export::export(&kind, &choice),
+        Ask::Flight(channels) => flight::write(&channels),
+        Ask::ReadFlight { text } => flight::read(&text),
         Ask::Front { choice, evaluations } => front::front(&choice, evaluations),
         Ask::Frame(frame) => frames::next(&frame),
         Ask::Listen(options) => board::listen(&options),

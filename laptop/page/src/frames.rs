@@ -5,7 +5,7 @@ use anyhow::Result;
 use flight_logs::files::Bytes;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use spikewire::frame::{DynamicFrameEncoder, Intensity};
+use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use spikewire::{Polarity, Tick};
 use std::cell::RefCell;
 

@@ -6,6 +6,7 @@ mod ask;
 mod board;
 mod catalogue;
 mod export;
+mod flight;
 mod frames;
 mod front;
 mod host;

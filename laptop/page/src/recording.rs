@@ -106,7 +106,7 @@ fn paper() -> String {
 /// What a file holds: topics with fields, of which a table has one without a name.
 fn list(path: &Path, accept_cut: bool) -> Result<Value> {
     FILE.set(path.to_owned());
-    let topic = |name: &str, fields: Vec<String>, about: String| json!({ "name": name, "fields": fields, "about": about });
+    let topic = |name: &str, fields: Vec<String>, (count, about): (u64, String)| json!({ "name": name, "fields": fields, "count": count, "about": about });
     let (topics, notes) = match Kind::of(path)? {
         None => {
             let mut options = options(None);
@@ -114,7 +114,7 @@ fn list(path: &Path, accept_cut: bool) -> Result<Value> {
             let source = InputOptions { input: path.to_owned(), channel: options }.open()?;
             let names = source.names().into_iter().map(str::to_owned).collect();
             let notes = source.notes().iter().map(|note| note.spelled(label).to_string());
-            (vec![topic("", names, String::new())], notes.collect())
+            (vec![topic("", names, (0, String::new()))], notes.collect())
         }
         Some(kind) => {
             let (topics, notes) = overview(path, kind, accept_cut, GAP)?;
@@ -123,7 +123,7 @@ fn list(path: &Path, accept_cut: bool) -> Result<Value> {
             let topics = topics.map(|own| {
                 let fields = own.fields.iter().flat_map(|field| each(field)).collect();
                 let about = format!("{} messages {}", own.count, own.kind);
-                topic(&own.name, fields, about.trim_end().to_owned())
+                topic(&own.name, fields, (own.count, about.trim_end().to_owned()))
             });
             (topics.collect(), notes)
         }

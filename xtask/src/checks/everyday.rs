@@ -32,15 +32,15 @@ pub fn test() -> Result<()> {
     run(&mut tests("")?)
 }
 
-/// Tests the code on each page of documentation: `pages` includes each as the documentation of an item, which exists
-/// only for this.
+/// Tests the code on each page of documentation: `pages` of a crate includes each as the documentation of an item, which
+/// exists only for this.
 pub fn readme() -> Result<()> {
     let said = output(&mut tests("--doc -- pages")?)?;
     print!("{said}");
     for page in ["Readme", "Usage", "Frames"] {
         ensure!(
             said.contains(&format!(" - pages::{page} (line ")),
-            "no doctest of `pages::{page}`: is the page included in src/lib.rs?"
+            "no doctest of `pages::{page}`: is the page included in a lib.rs?"
         );
     }
     Ok(())

@@ -37,9 +37,9 @@ pub fn sweeps() -> Result<()> {
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH)?;
     let seed = std::env::var("SWEEPS_SEED").unwrap_or_else(|_| since_1970.as_micros().to_string());
     println!("SWEEPS_SEED={seed} draws these cases again.");
-    let tests = "test --release --package spikewire --package spikewire-chips --package host-tests --package lab --package spikewire-cli --tests";
+    let tests = "test --release --package spikewire --package spikewire-cameras --package spikewire-chips --package host-tests --package lab --package spikewire-cli --tests";
     let mut all = cargo(&format!(
-        "{tests} --no-fail-fast -- --include-ignored --skip formats_peers --skip hours_of_flight"
+        "{tests} --no-fail-fast -- --include-ignored --skip peers:: --skip hours_of_flight"
     ));
     run(all.env("CASES_TIMES", "20").env("PROPTEST_RNG_SEED", &seed))?;
     let mut catalogue = cargo("test --release --package catalogue --lib");

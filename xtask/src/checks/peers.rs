@@ -7,9 +7,9 @@ use std::{fs, path::PathBuf};
 
 /// Installs the Python packages in an environment of their own, and runs the tests that need them.
 pub fn peers() -> Result<()> {
-    let python = environment("peers", "host-tests/peers/requirements.txt")?;
+    let python = environment("peers", "cameras/peers/requirements.txt")?;
     fs::create_dir_all(paths::target().join("tmp"))?; // cargo makes it where it compiles the tests
-    run(tests("--test wire formats_peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
+    run(tests("--test cameras peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
     run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
 }
 

@@ -53,8 +53,8 @@ impl Copy {
         let packages = CRATES.map(|(name, _)| format!(" --package {name}")).concat();
         self.compile(changes, &format!("check{packages} --all-features"))?;
         fs::write(&kept, serde_json::to_string(&self.out)?)?;
-        let tests =
-            env::var("MUTANTS_TESTS").unwrap_or_else(|_| "catalogue chips codes wire".into());
+        let tests = env::var("MUTANTS_TESTS")
+            .unwrap_or_else(|_| "catalogue cameras chips codes wire".into());
         let (own, tests): (Vec<_>, Vec<_>) =
             tests.split(' ').partition(|name| *name == "catalogue");
         let tests = tests.iter().map(|name| format!(" --test {name}")).collect::<String>();

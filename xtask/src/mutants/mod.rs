@@ -21,14 +21,16 @@ use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, env};
 
 /// Modules after which the tests' programs are named, with the beginnings of their sources' paths.
-const ROOMS: [(&str, &[&str]); 3] = [
+const ROOMS: [(&str, &[&str]); 4] = [
     ("wire", &["src/wire/", "src/event/", "src/out/", "src/serial.rs"]),
+    ("cameras", &["cameras/src/"]),
     ("chips", &["chips/src/"]),
-    ("codes", &["src/scheme/", "src/num/", "src/frame/", "src/error/"]),
+    ("codes", &["src/scheme/", "src/num/", "src/error/"]),
 ];
 
 /// Crates that are changed, with the paths of their sources.
-const CRATES: [(&str, &str); 2] = [("spikewire", "src"), ("spikewire-chips", "chips/src")];
+const CRATES: [(&str, &str); 3] =
+    [("spikewire", "src"), ("spikewire-cameras", "cameras/src"), ("spikewire-chips", "chips/src")];
 
 /// The reason that a change cannot be switched on.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -35,8 +35,9 @@ impl Crate {
 }
 
 /// The published crates, each after those on which it depends.
-pub const CRATES: [Crate; 4] = [
+pub const CRATES: [Crate; 5] = [
     Crate { name: "spikewire", directory: "", flies: true },
+    Crate { name: "spikewire-cameras", directory: "cameras", flies: true },
     Crate { name: "spikewire-chips", directory: "chips", flies: true },
     Crate { name: "spikewire-network", directory: "network", flies: true },
     Crate { name: "flight-logs", directory: "flight-logs", flies: false },

@@ -3,9 +3,9 @@
 use core::fmt::{self, Write};
 
 use board::stopwatch::Count;
-use spikewire::{
-    Event, Polarity, Tick,
-    format::{Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio},
+use spikewire::{Event, Polarity, Tick};
+use spikewire_cameras::format::{
+    Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, FormatError, eieio,
 };
 
 use super::{ensure, flight, meter::Cost};

@@ -6,10 +6,8 @@ use core::{
 };
 
 use board::stopwatch::{counted, keep};
-use spikewire::{
-    Tick,
-    frame::{FrameEncoder, Intensity, LogIntensity, PixelCode, Refractory},
-};
+use spikewire::Tick;
+use spikewire_cameras::frame::{FrameEncoder, Intensity, LogIntensity, PixelCode, Refractory};
 
 use super::{
     ensure,

@@ -1,6 +1,7 @@
 //! The number types in which samples are encoded.
 
 use super::error::{Error, ErrorKind};
+use spikewire::SampleKind;
 use std::fmt;
 use std::str::FromStr;
 
@@ -77,6 +78,17 @@ impl SampleType {
         };
         let (half, step) = (2_f64.powi(bits), 2_f64.powi(-i32::from(fraction)));
         (-half * step, (half - 1.0) * step)
+    }
+}
+
+/// The type as a link names it.
+impl From<SampleType> for SampleKind {
+    fn from(sample: SampleType) -> Self {
+        match sample {
+            SampleType::F32 => Self::F32,
+            SampleType::Fixed16 { fraction } => Self::Fixed16 { fraction },
+            SampleType::Fixed32 { fraction } => Self::Fixed32 { fraction },
+        }
     }
 }
 

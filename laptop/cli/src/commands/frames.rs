@@ -4,8 +4,10 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::frames::{Preview, Rate, Sink, open};
-use spikewire::frame::{DynamicFrameEncoder, Intensity, LogIntensity, PixelCode, Refractory};
 use spikewire::{Polarity, Tick};
+use spikewire_cameras::frame::{
+    DynamicFrameEncoder, Intensity, LogIntensity, PixelCode, Refractory,
+};
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -133,7 +135,7 @@ fn encode<C: PixelCode>(options: &Frames, code: Option<C>) -> Result<()> {
         if let Some(encoder) = &mut encoder {
             let before = ups + downs;
             let mut written = Ok(());
-            let emit = |event: spikewire::frame::PixelEvent| {
+            let emit = |event: spikewire_cameras::frame::PixelEvent| {
                 *(if event.polarity == Polarity::Up { &mut ups } else { &mut downs }) += 1;
                 if let (Some(sink), Ok(())) = (&mut sink, &written) {
                     written = sink.write(event);

@@ -28,7 +28,7 @@ pub mod flight {
     /// The encoders, before the first sample.
     pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES);
 
-    /// What the schemes do not say of the flight: period, names, units, counts; for `with_label` at both ends.
+    /// What the schemes do not say of the flight: period, names, units, counts. Both ends compare it.
     pub const LABEL: &str = "2000 us; gyro_x [rad/s] 1; gyro_y [rad/s] 1; gyro_z [rad/s] 1; accel_x [m/s²] 1; accel_y [m/s²] 1; accel_z [m/s²] 1";
 
     /// µs from sample to sample.
@@ -40,18 +40,21 @@ pub mod flight {
     /// The bits that the parts of an event take on the link.
     pub const CODING: spikewire::link::Coding = spikewire::link::Coding::for_channels(6, PERIOD);
 
-    /// The sender's half of the link, before the first frame of this session. Its frames carry the bank's fingerprint.
+    /// The sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.
     #[must_use]
     pub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {
-        spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint())
+        spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint()).with_label(LABEL)
     }
 
+    /// The most events of a sample that the receiver keeps.
+    pub const EVENTS: usize = 0;
+
     /// The type of the receiver.
-    pub type Receiver = spikewire::link::Receiver<[&'static Code; CHANNELS], CHANNELS, 0>;
+    pub type Receiver = spikewire::link::Receiver<[&'static Code; CHANNELS], CHANNELS, EVENTS>;
 
     /// The receiver's half of the link, before the first frame.
     #[must_use]
     pub fn receiver() -> Receiver {
-        Receiver::per_channel(SCHEMES).with_clock_tolerance(20000)
+        Receiver::per_channel(SCHEMES).with_clock_tolerance(20000).with_label(LABEL)
     }
 }

@@ -3,8 +3,8 @@
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
 use crate::Result;
-use spikewire::format::{EventDecoder, EventFormat, FormatError};
 use spikewire::{Event, Tick};
+use spikewire_cameras::format::{EventDecoder, EventFormat, FormatError};
 use std::io::Write;
 
 /// Reads events with the decoder of one format.

@@ -3,8 +3,8 @@
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
 use crate::Result;
-use spikewire::format::eieio;
 use spikewire::{Event, Polarity, Tick};
+use spikewire_cameras::format::eieio;
 use std::io::Write;
 use std::num::NonZeroU32;
 

@@ -6,8 +6,8 @@ use super::{EventReader, EventWriter, EventsKind, LinkReader, csv, link};
 use crate::{Error, Result};
 use catalogue::run::SampleType;
 use spikewire::Tick;
-use spikewire::format::{Edvs, EdvsTime, EventStream, Evt2};
 use spikewire::link::Coding;
+use spikewire_cameras::format::{Edvs, EdvsTime, EventStream, Evt2};
 use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
@@ -36,18 +36,20 @@ impl Format {
             Self::Link(_) => Box::new(LinkReader::new(None)),
             Self::Edvs(edvs, time) => {
                 let is_timed = time != EdvsTime::None;
-                let set_arrival: fn(&mut _, Tick) = spikewire::format::EdvsDecoder::set_tick;
+                let set_arrival: fn(&mut _, Tick) =
+                    spikewire_cameras::format::EdvsDecoder::set_tick;
                 let hooks =
                     Hooks { check: |_| Ok(()), set_arrival: (!is_timed).then_some(set_arrival) };
                 Box::new(bytes::Reader::new(edvs.decoder(), hooks))
             }
             Self::EventStream => {
-                let check: fn(&spikewire::format::EventStreamDecoder) -> Result<()> = |decoder| {
-                    if decoder.is_foreign() {
-                        return Err(EventsKind::NotAnEventStream.into());
-                    }
-                    Ok(())
-                };
+                let check: fn(&spikewire_cameras::format::EventStreamDecoder) -> Result<()> =
+                    |decoder| {
+                        if decoder.is_foreign() {
+                            return Err(EventsKind::NotAnEventStream.into());
+                        }
+                        Ok(())
+                    };
                 let hooks = Hooks { check, set_arrival: None };
                 Box::new(bytes::Reader::new(EventStream::decoder(), hooks))
             }

@@ -2,7 +2,7 @@
 
 use crate::error::room;
 use catalogue::kinds;
-use spikewire::format::FormatError;
+use spikewire_cameras::format::FormatError;
 
 kinds! {
     /// The reason that a stream of events cannot be read or written.

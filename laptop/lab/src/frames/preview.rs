@@ -7,8 +7,8 @@ use crate::output::Output;
 use gif::{Encoder, Frame, Repeat};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
-use spikewire::frame::{DynamicFrameEncoder, Intensity};
 use spikewire::{Polarity, Tick};
+use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use std::borrow::Cow;
 use std::path::Path;
 

@@ -3,9 +3,11 @@
 use super::FramesKind;
 use crate::Result;
 use crate::output::Output;
-use spikewire::format::{Dvs, DvsEncoder, EventFormat, Evt2Pixels, Evt2PixelsEncoder, FormatError};
-use spikewire::frame::PixelEvent;
 use spikewire::{Polarity, Tick};
+use spikewire_cameras::format::{
+    Dvs, DvsEncoder, EventFormat, Evt2Pixels, Evt2PixelsEncoder, FormatError,
+};
+use spikewire_cameras::frame::PixelEvent;
 use std::io::Write;
 use std::path::Path;
 

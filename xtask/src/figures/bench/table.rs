@@ -196,10 +196,10 @@ fn codecs(rows: &[Row]) -> String {
 const ROOMS: [(&str, &[&str]); 6] = [
     ("bank and queues", &["spikewire::event::"]),
     ("link", &["spikewire::wire::link::"]),
-    ("formats and batches", &["spikewire::wire::format::", "spikewire::wire::batch::"]),
+    ("formats and batches", &["spikewire_cameras::format::", "spikewire::wire::batch::"]),
     ("sinks", &["spikewire::out::"]),
     ("chips", &["spikewire_chips::"]),
-    ("cameras", &["spikewire::frame::"]),
+    ("cameras", &["spikewire_cameras::frame::"]),
 ];
 
 /// Formats the stacks of a core: the largest bound of all sample types, and the depth seen by painting.

@@ -1,0 +1,133 @@
+// The other axes of the sensor: each with its spikes by the settings that are open, below the channel that is looked at.
+
+import { at, css, element, fine, fixed } from "./dom.js";
+import { siblings } from "./channels.js";
+import { Library } from "./library.js";
+import { Times } from "./plots.js";
+import { lowerBound, Pyramid } from "./pyramid.js";
+import { loadRequest, openRequest, state } from "./state.js";
+
+/** Longer recordings show one channel alone: each axis takes 24 bytes a sample. */
+const MOST_SAMPLES = 3_000_000;
+const HEIGHT = 56, RASTER = 12;
+
+export class Axes {
+  #all = [];
+  #of;
+  #setting;
+  #isRunning = false;
+
+  constructor(host, plots) {
+    [this.host, this.plots] = [host, plots];
+  }
+
+  /** What was open is gone. */
+  forget() {
+    const { opened } = state, topic = at("topic").value;
+    if (this.#of && this.#of.opened === opened && this.#of.topic === topic) return;
+    for (const { library } of this.#all) library.stop();
+    this.#all = [];
+    this.#of = undefined;
+    this.host.textContent = "";
+  }
+
+  /** Runs a setting on the other axes of the topic that is open, and draws them. */
+  async show(setting) {
+    const { opened, recording } = state, topic = at("topic").value, shown = at("field").value;
+    this.#setting = structuredClone(setting);
+    if (!opened || recording.samples > MOST_SAMPLES) return;
+    if (!this.#of) {
+      const fields = siblings(opened.topics, topic);
+      this.#of = { opened, topic };
+      this.#all = fields.length < 2 ? [] : fields.map((field) => ({ field, library: new Library() }));
+      this.host.replaceChildren(...this.#all.map((axis) => this.#strip(axis)));
+    }
+    for (const { field, button } of this.#all) button.setAttribute("aria-pressed", field === shown);
+    if (this.#isRunning) return;
+    this.#isRunning = true;
+    let done;
+    do {
+      done = JSON.stringify(this.#setting);
+      await Promise.all(this.#all.map((axis) => this.#run(axis, JSON.parse(done))));
+    } while (done !== JSON.stringify(this.#setting));
+    this.#isRunning = false;
+  }
+
+  async #run(axis, setting) {
+    try {
+      if (!axis.recording) {
+        const { opened } = state, acceptCut = at("accept-cut").checked;
+        await axis.library.ask(openRequest(opened, acceptCut), { files: opened.files });
+        const channel = { topic: at("topic").value, field: axis.field, rate: at("rate").value, skip: at("skip").checked };
+        axis.recording = await axis.library.ask(loadRequest(channel, acceptCut));
+        axis.times = new Times(axis.recording.samples, axis.recording.rate, axis.recording.arrays.times);
+        axis.signal = new Pyramid(axis.recording.arrays.values);
+      }
+      axis.answer = await axis.library.ask({ ask: "run", choice: setting });
+      axis.decoded = new Pyramid(axis.answer.arrays.decoded);
+      const { spikes, spikes_per_second: rate, rmse } = axis.answer.figures;
+      axis.words.textContent = `${axis.field}: ${rate === null ? `${fixed(spikes, 0)} spikes` : `${fixed(rate, 1)} spikes a second`}, RMSE ${fine(rmse)}`;
+    } catch (error) {
+      if (error.isStopped) return;
+      axis.answer = undefined;
+      axis.words.textContent = `${axis.field}: ${error.message}`;
+    }
+    this.#draw(axis);
+  }
+
+  /** The strip of an axis: a button that opens its channel. */
+  #strip(axis) {
+    axis.words = element("span", { className: "quiet", textContent: axis.field });
+    axis.canvas = element("canvas");
+    axis.button = element("button", { type: "button", className: "axis" });
+    axis.button.append(axis.words, axis.canvas);
+    axis.button.addEventListener("click", () => {
+      at("field").value = axis.field;
+      at("field").dispatchEvent(new Event("change"));
+    });
+    return axis.button;
+  }
+
+  draw() {
+    for (const axis of this.#all) this.#draw(axis);
+  }
+
+  /** The part of the axis that the picture above shows. */
+  #draw({ canvas, recording, answer, signal, decoded, times }) {
+    const { view } = this.plots;
+    const scale = devicePixelRatio, width = canvas.clientWidth * scale, height = HEIGHT * scale;
+    Object.assign(canvas, { width, height });
+    if (!recording || !answer || !view || !width) return;
+    const context = canvas.getContext("2d");
+    const start = times.first(view[0]), end = Math.max(start + 1, times.first(view[1] + times.step / 2));
+    const [low, high] = signal.range(start, end), tall = height - RASTER * scale;
+    const y = (value) => tall - 2 - ((value - low) / (high - low || 1)) * (tall - 4);
+    const x = (sample) => Math.round(((times.at(sample) - view[0]) / (view[1] - view[0])) * width);
+    for (const [pyramid, colour] of [[signal, "--signal"], [decoded, "--decoded"]]) {
+      context.fillStyle = css(colour);
+      let before;
+      for (let column = 0; column < width; column++) {
+        const from = start + Math.floor(((end - start) * column) / width);
+        const [least, most] = pyramid.range(from, Math.max(from + 1, start + Math.floor(((end - start) * (column + 1)) / width)));
+        const top = y(Math.max(most, before?.least ?? most)), bottom = y(Math.min(least, before?.most ?? least));
+        context.fillRect(column, top - scale / 2, 1, bottom - top + scale);
+        before = { least, most };
+      }
+    }
+    const { sample, up } = answer.arrays, colours = [css("--down"), css("--ink")];
+    let last = -1;
+    for (let spike = lowerBound(sample, start); spike < sample.length && sample[spike] < end; spike++) {
+      const place = x(sample[spike]);
+      if (place === last) continue;
+      last = place;
+      context.fillStyle = colours[up[spike]];
+      context.fillRect(place, tall, scale, RASTER * scale);
+    }
+  }
+
+  /** Each axis with what was asked of its parameters, for a flight's file; none where one has no answer. */
+  get channels() {
+    if (this.#all.some(({ answer }) => !answer)) return [];
+    return this.#all.map(({ recording: { name }, answer: { asked } }) => ({ name, parameters: asked }));
+  }
+}
