@@ -195,6 +195,11 @@ impl Definition {
         Parser::parse(name, &|name| texts.get(name).cloned(), Dialect::Px4)
     }
 
+    /// A message of these fields, none of which holds another message.
+    pub(crate) fn of_fields(fields: Vec<Field>) -> Self {
+        Self { structs: vec![Struct { fields }] }
+    }
+
     /// Returns the path to the time at which PX4 logged a message.
     pub fn time(&self) -> Option<Path> {
         let is_time = |field: &Field| {

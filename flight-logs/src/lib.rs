@@ -1,4 +1,5 @@
-//! Flight logs, message by message: PX4's `ULog`, bags of ROS 1 and ROS 2, MCAP files, Betaflight's blackbox.
+//! Flight logs, message by message: PX4's `ULog`, `ArduPilot`'s `DataFlash`, `MAVLink` telemetry, bags of ROS 1 and ROS 2, MCAP
+//! files, Betaflight's blackbox.
 //!
 //! All formats are read in the same way. [`Kind::of`] recognises a log by its first bytes, [`Reading`] returns its messages
 //! in the order of the file, and reads the numbers of a message by the names of their fields. Memory use does not grow with
@@ -26,13 +27,15 @@
 //!
 //! The readers are not taken from other crates, because they must name the byte of a fault and be able to continue after
 //! it. As of November 2026, `mcap` 0.26 accepts a damaged chunk silently, or stops at it if checksums are turned on;
-//! `blackbox-log` 0.4.3 refuses a log whose header names a firmware that it does not know; `SQLite` itself needs a C
-//! compiler. `yule_log` 0.4 serves the tests of this repository as an independent reader of `ULog`.
+//! `blackbox-log` 0.4.3 refuses a log whose header names a firmware that it does not know; `ardupilot-binlog` 0.2 passes
+//! over damage silently, and stops after 256 damaged places; `SQLite` itself needs a C compiler. `yule_log` 0.4 serves the
+//! tests of this repository as an independent reader of `ULog`.
 
 mod bag;
 mod blackbox;
 mod bytes;
 mod chunk;
+mod dataflash;
 pub mod definition;
 mod error;
 mod faults;
@@ -41,6 +44,7 @@ mod known;
 #[cfg(any(test, feature = "made"))]
 #[doc(hidden)]
 pub mod made;
+mod mavlink;
 mod mcap;
 #[cfg(test)]
 mod mutated;
@@ -49,6 +53,7 @@ mod rosbag2;
 mod sqlite;
 mod topic;
 mod ulog;
+mod window;
 mod wire;
 pub mod zstd;
 
@@ -118,6 +123,12 @@ pub enum Kind {
     Blackbox,
     /// A PX4 log.
     Ulog,
+    /// An `ArduPilot` log, `.bin`.
+    ArduPilot,
+    /// An `ArduPilot` log as text, `.log`.
+    ArduPilotText,
+    /// A telemetry log of a ground station, `.tlog`.
+    Mavlink,
 }
 
 impl Kind {
@@ -127,7 +138,6 @@ impl Kind {
     /// Returns an error if the file cannot be opened or read, or if it should be a log by its name and is not: a
     /// directory without `metadata.yaml`, or a file `.ulg` with other first bytes.
     pub fn of(path: &Path) -> Result<Option<Self>> {
-        const START: u64 = 32;
         if path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
             return Ok(Some(Self::Directory));
         }
@@ -144,7 +154,7 @@ impl Kind {
             return Ok(None);
         }
         let mut start = Vec::new();
-        let read = Bytes::open(path)?.take(START, &mut start);
+        let read = Bytes::open(path)?.take(dataflash::LOOKED_AT, &mut start);
         let is_named = path.extension().is_some_and(|own| own == "ulg");
         match (read, of_start(&start)) {
             (Err(error), _) if is_named => Err(Error::of(path, ErrorKind::Unpack(error))),
@@ -162,7 +172,14 @@ impl Kind {
     pub fn usual_topic(self) -> Option<&'static str> {
         match self {
             Self::Blackbox => Some(blackbox::MAIN),
-            Self::Bag | Self::Mcap | Self::Sqlite | Self::Directory | Self::Ulog => None,
+            Self::Bag
+            | Self::Mcap
+            | Self::Sqlite
+            | Self::Directory
+            | Self::Ulog
+            | Self::ArduPilot
+            | Self::ArduPilotText
+            | Self::Mavlink => None,
         }
     }
 }
@@ -179,7 +196,18 @@ fn of_start(start: &[u8]) -> Option<Kind> {
         (blackbox::START, Kind::Blackbox),
         (ulog::START, Kind::Ulog),
     ];
-    kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind)
+    let kind = kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind);
+    let looked_into = || {
+        let is_begun = |window: &[u8]| window == dataflash::START;
+        if start.windows(dataflash::START.len()).any(is_begun) {
+            Some(Kind::ArduPilot)
+        } else if dataflash::is_text(start) {
+            Some(Kind::ArduPilotText)
+        } else {
+            mavlink::is_log(start).then_some(Kind::Mavlink)
+        }
+    };
+    kind.or_else(looked_into)
 }
 
 /// Compiles the code of the README as doctests.
@@ -199,6 +227,9 @@ pub fn open(path: &Path, kind: Kind, damage: Damage) -> Result<Box<dyn Log>> {
         Kind::Sqlite => Box::new(rosbag2::Sqlite::open(path, faults)?),
         Kind::Blackbox => Box::new(blackbox::Blackbox::open(path, faults)?),
         Kind::Ulog => Box::new(ulog::Ulog::open(path, faults)?),
+        Kind::ArduPilot => Box::new(dataflash::Binary::open(path, faults)?),
+        Kind::ArduPilotText => Box::new(dataflash::Text::open(path, faults)?),
+        Kind::Mavlink => Box::new(mavlink::Mavlink::open(path, faults)?),
         Kind::Directory => Box::new(rosbag2::Directory::open(path, faults)?),
     })
 }

@@ -1,6 +1,9 @@
-//! Makes ROS 1 and 2 bags, MCAP files and blackbox logs byte by byte, for tests.
+//! Makes logs of every kind byte by byte, for tests.
 #![allow(dead_code, unreachable_pub)]
 
+mod ardupilot;
+
+pub use ardupilot::*;
 use std::io::Write;
 
 /// The kind of a log to make. It has one topic `/imu`, with a counted header, an array and a text.

@@ -1,6 +1,6 @@
 //! Reads a thousand damaged logs of each kind. They may be refused, but none may panic.
 
-use super::made::{KINDS, Kind, blackbox};
+use super::made::{KINDS, Kind, blackbox, dataflash, dataflash_text, tlog};
 use super::{Damage, Kind as LogKind, Reading, Result};
 use std::fs;
 use std::path::Path;
@@ -47,6 +47,9 @@ fn a_thousand_damaged_logs_of_each_kind_panic_nowhere() {
     let mut all: Vec<(&str, Vec<Vec<u8>>)> =
         KINDS.into_iter().map(|made| (made.name(), own(made))).collect();
     all.push(("log.bbl", vec![blackbox()]));
+    all.push(("log.bin", vec![dataflash()]));
+    all.push(("log.log", vec![dataflash_text().into_bytes()]));
+    all.push(("log.tlog", vec![tlog()]));
     for (name, logs) in all {
         let (mut read, mut refused) = (0, 0);
         for round in 0..1000 {
@@ -59,7 +62,7 @@ fn a_thousand_damaged_logs_of_each_kind_panic_nowhere() {
             refused += u32::from(read_through(&path, kind).is_err());
             let Ok(mut log) = Reading::open(&path, kind, Damage::Skip) else { continue };
             while let Ok(true) = log.advance() {
-                for field in ["rate", "few[0]", "gyroADC[0]"] {
+                for field in ["rate", "few[0]", "gyroADC[0]", "GyrX", "x[31]", "zmag"] {
                     read += u32::from(log.number(field).is_ok());
                 }
                 let _ = (log.text("header.frame_id"), log.time());

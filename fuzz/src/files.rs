@@ -35,7 +35,7 @@ fn file(name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// Bags of ROS 1 and 2, MCAP files and Betaflight's blackbox, told apart by how they start.
+/// Logs of every kind but `ULog`, told apart by how they start.
 pub fn logs(bytes: &[u8]) {
     let path = file("log", bytes);
     let Ok(Some(kind)) = Kind::of(&path) else { return };
@@ -46,7 +46,17 @@ pub fn logs(bytes: &[u8]) {
         && let Ok(true) = log.advance()
     {
         count += 1;
-        for field in ["rate", "few[0]", "few[4294967295]", "gyroADC[0]", "header.seq", "time"] {
+        for field in [
+            "rate",
+            "few[0]",
+            "few[4294967295]",
+            "gyroADC[0]",
+            "GyrX",
+            "x[31]",
+            "zmag",
+            "header.seq",
+            "time",
+        ] {
             let _ = log.number(field).is_ok();
         }
         let _ = (log.text("header.frame_id"), log.time().is_ok(), log.place());

@@ -14,8 +14,7 @@ type Filtering = (&'static str, f32, Option<f32>);
 
 /// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, error of the clock in millionths, label,
 /// fingerprint, filter, channels.
-type Told =
-    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>);
+type Told = (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>);
 
 /// Reads a flight's file.
 #[pyfunction]

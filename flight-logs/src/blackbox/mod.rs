@@ -11,6 +11,7 @@ use super::bytes::Bytes;
 use super::definition::Dialect;
 use super::faults::Faults;
 use super::topic::Topic;
+use super::window::{AHEAD, Window};
 use super::{Entry, Log};
 use crate::{Error, Result};
 use encoding::{Fault, Input};
@@ -23,22 +24,14 @@ pub(crate) const START: &[u8] = b"H Product:Blackbox";
 /// The topic of the frames of the main loop.
 pub(crate) const MAIN: &str = "main";
 
-/// Length in bytes of the longest frame and of the longest line of the header.
-const LONGEST: usize = 4096;
 /// Longest plausible step between frames, in µs and in iterations. A longer one counts as damage unless the following
 /// frames confirm it.
 const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
 
 /// A log that is being read.
 pub(crate) struct Blackbox {
-    bytes: Bytes,
     faults: Faults,
-    /// Bytes read from the file. Those from index `at` on are not decoded yet; `start` is the offset of the first in
-    /// the file.
-    window: Vec<u8>,
-    at: usize,
-    start: u64,
-    is_read: bool,
+    window: Window,
     /// Number of logs in the file so far: a flight controller appends one for each flight.
     logs: usize,
     session: Option<Session>,
@@ -77,12 +70,8 @@ enum Frame {
 impl Blackbox {
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
         Ok(Self {
-            bytes: Bytes::open(path)?,
             faults,
-            window: Vec::new(),
-            at: 0,
-            start: 0,
-            is_read: false,
+            window: Window::new(Bytes::open(path)?),
             logs: 0,
             session: None,
             topics: Vec::new(),
@@ -91,54 +80,24 @@ impl Blackbox {
         })
     }
 
-    /// Reads until the window holds a whole frame, or the file ends.
-    fn fill(&mut self) -> Result<()> {
-        const MORE: u64 = 1 << 16;
-        if self.is_read || self.window.len() - self.at >= LONGEST {
-            return Ok(());
-        }
-        self.window.drain(..self.at);
-        self.start += self.at as u64;
-        self.at = 0;
-        let mut more = Vec::new();
-        let at = self.bytes.at();
-        match self.bytes.take(MORE, &mut more) {
-            Ok(is_whole) => self.is_read = !is_whole,
-            Err(error) => {
-                self.faults.end(at, error)?;
-                self.is_read = true;
-            }
-        }
-        self.window.append(&mut more);
-        Ok(())
-    }
-
-    fn left(&self) -> &[u8] {
-        &self.window[self.at..]
-    }
-
-    fn place(&self) -> u64 {
-        self.start + self.at as u64
-    }
-
     /// Reads the header of a log.
     fn head(&mut self) -> Result<()> {
-        let place = self.place();
+        let place = self.window.place();
         let mut lines = Vec::new();
         loop {
-            self.fill()?;
-            let left = self.left();
-            let end = left.iter().take(LONGEST).position(|&byte| byte == b'\n');
+            self.window.fill(&mut self.faults)?;
+            let left = self.window.left();
+            let end = left.iter().take(AHEAD).position(|&byte| byte == b'\n');
             let Some(end) = end.filter(|_| left.starts_with(b"H ")) else { break };
             let line = String::from_utf8_lossy(&left[2..end.max(2)]).into_owned();
             if let Some((key, value)) = line.split_once(':') {
                 lines.push((key.trim().to_owned(), value.trim().to_owned()));
             }
-            self.at += end + 1;
+            self.window.pass(end + 1);
         }
         // Where there is not even a line, the start is passed over.
         if lines.is_empty() {
-            self.at += START.len();
+            self.window.pass(START.len());
         }
         let header = match Header::parse(&lines) {
             Ok(header) => header,
@@ -182,12 +141,12 @@ impl Blackbox {
 
     /// Reads a frame, or skips a byte that cannot begin one.
     fn frame(&mut self) -> Result<Option<Entry>> {
-        let place = self.place();
+        let place = self.window.place();
         let Some(session) = &mut self.session else {
-            self.at += 1;
+            self.window.pass(1);
             return Ok(None);
         };
-        let left = &self.window[self.at..];
+        let left = self.window.left();
         let mut input = Input { bytes: left, at: 0 };
         let frame = session.frame(&mut input).and_then(|frame| {
             // What follows tells whether it was one.
@@ -203,25 +162,25 @@ impl Blackbox {
         }
         match frame {
             Ok(Frame::Message { topic, time, numbers }) => {
-                self.at += taken;
+                self.window.pass(taken);
                 self.message.clear();
                 self.message.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
                 let time = time.saturating_mul(1000);
                 return Ok(Some(Entry { topic, time, at: place, sequence: None }));
             }
-            Ok(Frame::Other) => self.at += taken,
+            Ok(Frame::Other) => self.window.pass(taken),
             Ok(Frame::End) => {
-                self.at += taken;
+                self.window.pass(taken);
                 self.session = None;
             }
-            Err(Fault::End) if self.is_read && left.len() < LONGEST && self.damaged.is_none() => {
-                self.at = self.window.len();
+            Err(Fault::End) if self.window.is_at_end() && self.damaged.is_none() => {
+                self.window.pass(AHEAD);
                 self.faults.end(place, "the log ends within a frame")?;
             }
             Err(_) => {
                 session.previous = None;
                 self.damaged.get_or_insert(place);
-                self.at += 1;
+                self.window.pass(1);
             }
         }
         Ok(None)
@@ -396,10 +355,10 @@ impl Fields {
 impl Log for Blackbox {
     fn next(&mut self) -> Result<Option<Entry>> {
         loop {
-            self.fill()?;
-            if self.left().is_empty() {
+            self.window.fill(&mut self.faults)?;
+            if self.window.left().is_empty() {
                 if let Some(damaged) = self.damaged.take() {
-                    let what = format!("{} bytes are no frames", self.place() - damaged);
+                    let what = format!("{} bytes are no frames", self.window.place() - damaged);
                     self.faults.skip(damaged, what)?;
                 }
                 if self.session.take().is_some() {
@@ -413,7 +372,7 @@ impl Log for Blackbox {
                 }
                 return Ok(None);
             }
-            if self.left().starts_with(START) {
+            if self.window.left().starts_with(START) {
                 self.head()?;
                 continue;
             }

@@ -9,5 +9,8 @@ fn main() -> io::Result<()> {
     for kind in logs::KINDS {
         write(kind.name(), kind.log(kind.packings().last().unwrap_or(&"none")))?;
     }
+    write("log.bin", logs::dataflash())?;
+    write("log.log", logs::dataflash_text().into_bytes())?;
+    write("log.tlog", logs::tlog())?;
     write("log.bbl", logs::blackbox())
 }

@@ -19,8 +19,8 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// CSV table with a header, also compressed by gzip; or a log: PX4's `ULog`, bag of ROS 1 or 2, MCAP, Betaflight's
-    /// blackbox; `-` reads a CSV table from standard input
+    /// CSV table with a header, or log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or
+    /// 2, MCAP, Betaflight's blackbox; also compressed; `-` is a CSV table on standard input
     pub input: PathBuf,
     #[command(flatten)]
     channel: ChannelOptions,
@@ -52,7 +52,7 @@ pub(crate) struct ChannelOptions {
     /// Separator of columns: `,` `;` `|` `tab` `space`; default: found in the header
     #[arg(long, help_heading = "Input")]
     delimiter: Option<Delimiter>,
-    /// Topic of a log; `:1` after it means the second instance in a PX4 log
+    /// Topic of a log; `:1` after it means the second instance of a sensor
     #[arg(long, help_heading = "Input")]
     topic: Option<String>,
     /// Field of that topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several

@@ -4,7 +4,8 @@ mod common;
 
 use common::{file, flight, good, ran, refused, values};
 use flight_logs::made::{
-    CHUNKED, KINDS, Kind, PAGE, blackbox, fields, frame, gyro, long, record, seconds, time, wave,
+    CHUNKED, KINDS, Kind, PAGE, blackbox, dataflash, dataflash_rate, dataflash_sample,
+    dataflash_text, fields, frame, gyro, long, record, seconds, time, tlog, wave,
 };
 use serde_json::Value;
 
@@ -159,6 +160,58 @@ fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     assert!(told.contains("main: 200 samples") && told.contains("main:1: 200 samples"), "{told}");
     let ran = ran!("encode --scheme sf --threshold 101 --topic main:1 --field time {path}");
     assert!(ran.output.contains("# samples=200\n"), "{}", ran.output);
+}
+
+/// The same values of the log and of its text, a sensor each.
+#[test]
+fn an_ardupilot_log_is_read_sensor_by_sensor() {
+    for (name, log) in [("log.bin", dataflash()), ("log.log", dataflash_text().into_bytes())] {
+        let (_directory, path) = file(name, log);
+        for sensor in 0..2 {
+            let topic = ["IMU", "IMU:1"][usize::from(sensor)];
+            let encode = format!("encode --scheme sf --threshold 0.21 --topic {topic}");
+            let spikes = ran!("{encode} --field GyrX {path}").output;
+            let decoded = values(&good("decode", &spikes).output);
+            assert_eq!(decoded.len(), 100);
+            for (sample, value) in (0..).zip(decoded) {
+                let rate = f64::from(dataflash_rate(sample, sensor));
+                assert!((value - rate).abs() <= 0.21, "{name}, {topic}: {sample}: {value}, {rate}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_ardupilot_log_that_is_cut_or_damaged_goes_on_where_it_can() {
+    let log = dataflash();
+    let size = dataflash_sample(0).len();
+    let told = damaged("cut.bin", &log[..log.len() - 3], &["the log ends within a message"]);
+    assert!(told.contains("IMU: 100 samples") && told.contains("IMU:1: 99 samples"), "{told}");
+    // A byte that is missing: the message that lacks it is doubted, and all others are read.
+    let mut other = log.clone();
+    let place = log.len() - 10 * size;
+    other.remove(place + 20);
+    let words = format!("byte {place}: {} bytes are no messages; --accept-cut", size / 2 - 1);
+    let told = damaged("damaged.bin", &other, &[&words]);
+    assert!(told.contains("IMU: 99 samples") && told.contains("IMU:1: 100 samples"), "{told}");
+    // Before its start, as some loggers begin.
+    let told = info("late.bin", [b"garbage", &log[..]].concat(), "--accept-cut");
+    assert!(told.starts_with("skipped at byte 0: 7 bytes") && told.contains("IMU: 100"), "{told}");
+    let text = dataflash_text();
+    let told = damaged("cut.log", &text.as_bytes()[..text.len() - 20], &["a message of 4 columns"]);
+    assert!(told.contains("IMU:1: 99 samples"), "{told}");
+}
+
+#[test]
+fn a_telemetry_log_that_is_cut_or_damaged_goes_on_where_it_can() {
+    let log = tlog();
+    let told = damaged("cut.tlog", &log[..log.len() - 3], &["the log ends within a packet"]);
+    assert!(told.contains("RAW_IMU: 100 samples"), "{told}");
+    // A bit of a value, which the checksum tells.
+    let mut other = log.clone();
+    other[20] ^= 1;
+    let told = damaged("damaged.tlog", &other, &["byte 0: 42 bytes are no packets; --accept-cut"]);
+    assert!(told.contains("RAW_IMU: 100 samples") && told.contains("RAW_IMU:1: 99"), "{told}");
 }
 
 #[test]

@@ -9,7 +9,7 @@
 mod common;
 
 use common::{RanBytes, flight, flight_logs, good_bytes, spikewire_bytes, table};
-use flight_logs::made::{KINDS, blackbox};
+use flight_logs::made::{KINDS, blackbox, dataflash, dataflash_text, tlog};
 use std::fs;
 use std::path::Path;
 
@@ -38,6 +38,9 @@ fn names(directory: &Path) -> Names {
         write(kind.name(), &kind.log("none"));
     }
     write("log.bbl", &blackbox());
+    write("log.bin", &dataflash());
+    write("log.log", dataflash_text().as_bytes());
+    write("log.tlog", &tlog());
     names
 }
 

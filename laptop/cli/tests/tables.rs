@@ -81,7 +81,7 @@ fn all_frames_of_zstandard_are_read() {
 fn other_files_are_named() {
     for (start, words) in [
         (&b"PK\x03\x04\x14\x00\x06\x00\x08\x00\x00\x00\x21\x00"[..], "spreadsheet"),
-        (b"\xa3\x95\x80\x80\x59FMT\x00BBnNZ\x00\x00\x00\x00", "mavlogdump.py"),
+        (b"\xa3\x95\x80\x80\x59FMT\x00BBnNZ\x00\x00\x00\x00", "a log needs --topic and --field"),
         (b"#ROSBAG V2.0\nE", "a log needs --topic and --field"),
         (b"\x89MCAP0\r\n\x01\x00\x00", "a log needs --topic and --field"),
         (b"SQLite format 3\0\x10\0", "a log needs --topic and --field"),

@@ -21,7 +21,11 @@ pub fn logs() -> Result<()> {
     let place = paths::target().join("logs-check");
     let recording = paths::root().join("data/hexarotor.csv");
     let check = paths::root().join("laptop/cli/python/logs_check.py");
-    run(command(&python).arg(check).args([program, recording, place]))
+    run(command(&python).arg(check).args([program, recording, place.clone()]))?;
+    run(&mut cargo("build --package flight-logs --example numbers"))?;
+    let numbers = paths::target().join("debug/examples/numbers");
+    let check = paths::root().join("laptop/cli/python/ardupilot_check.py");
+    run(command(&python).arg(check).args([numbers, place]))
 }
 
 /// Compares `spikewire tune` with other people's optimisers, at equal numbers of settings.

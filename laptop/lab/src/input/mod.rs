@@ -36,8 +36,8 @@ pub const CHUNK: usize = 8192;
 /// A recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// CSV table with a header, also compressed by gzip; or a log: PX4's `ULog`, bag of ROS 1 or 2, MCAP, Betaflight's
-    /// blackbox. `-` reads a CSV table from standard input.
+    /// CSV table with a header, or log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or
+    /// 2, MCAP, Betaflight's blackbox; also compressed; `-` is a CSV table on standard input
     pub input: PathBuf,
     /// The channel to read.
     pub channel: ChannelOptions,
@@ -66,7 +66,7 @@ pub struct ChannelOptions {
     pub time_unit: Option<TimeUnit>,
     /// Delimiter of columns: `,` `;` `|` `tab` `space`; by default found in the header.
     pub delimiter: Option<Delimiter>,
-    /// Topic of a log; `:1` after it means the second instance in a PX4 log.
+    /// Topic of a log; `:1` after it means the second instance of a sensor.
     pub topic: Option<String>,
     /// Fields of that topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,

@@ -15,7 +15,7 @@ const HEAD: usize = 16;
 const OTHERS: [(&[u8], &str); 11] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
-    (b"\xa3\x95", "an ArduPilot log; `mavlogdump.py --format csv --types IMU` exports it"),
+    (b"\xa3\x95", "an ArduPilot log; it is read from a file only"),
     (b"H Product:Blackbox", "a Betaflight log; it is read from a file only"),
     (b"#ROSBAG", "a ROS bag; it is read from a file only"),
     (b"SQLite format 3", "a database, perhaps a ROS 2 bag; those are read from a file only"),

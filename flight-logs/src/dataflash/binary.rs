@@ -1,0 +1,268 @@
+//! The log as it lies in the flight controller: a head of three bytes, then the columns without gaps.
+
+use super::format::{Column, FMT, Format, Formats, Letter};
+use crate::bytes::Bytes;
+use crate::definition::Number;
+use crate::faults::Faults;
+use crate::topic::Topic;
+use crate::window::Window;
+use crate::{Entry, Log, Result};
+use std::path::Path;
+
+/// The bytes that begin a message; its type follows.
+const HEAD: &[u8] = &[0xa3, 0x95];
+/// The bytes before a message's columns.
+const CONTENT: usize = 3;
+
+/// A log that is read from its start to its end.
+pub(crate) struct Binary {
+    window: Window,
+    faults: Faults,
+    formats: Formats,
+    message: Vec<u8>,
+    /// The time of the message that last had one, in ns.
+    time: i64,
+    /// The place at which the present damage began.
+    damaged: Option<u64>,
+}
+
+/// The bytes ahead.
+enum Ahead {
+    /// A message of this type and length.
+    Message(u8, usize),
+    /// A message that the end of the file cuts.
+    Cut,
+    /// No message.
+    Odd,
+}
+
+impl Binary {
+    pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
+        Ok(Self {
+            window: Window::new(Bytes::open(path)?),
+            faults,
+            formats: Formats::new(),
+            message: Vec::new(),
+            time: 0,
+            damaged: None,
+        })
+    }
+
+    /// Looks at the bytes ahead. A message that no other follows is doubted, as it may lack bytes.
+    fn look(&self) -> Ahead {
+        let left = self.window.left();
+        let begins = |bytes: &[u8]| bytes.iter().zip(HEAD).all(|(own, head)| own == head);
+        if !begins(left) {
+            return Ahead::Odd;
+        }
+        let Some(&kind) = left.get(HEAD.len()) else { return Ahead::Cut };
+        let Some(format) = self.formats.get(kind) else { return Ahead::Odd };
+        match left.get(format.length..) {
+            None => Ahead::Cut,
+            Some(next) if begins(next) => Ahead::Message(kind, format.length),
+            Some(_) => Ahead::Odd,
+        }
+    }
+
+    /// Takes a message: what it defines, and its columns as the definition of its topic has them.
+    fn take(&mut self, kind: u8, length: usize) -> Result<Option<Entry>> {
+        let at = self.window.place();
+        let content = &self.window.left()[CONTENT..length];
+        let Some(format) = self.formats.get(kind) else { return Ok(None) };
+        self.message.clear();
+        let mut instance = 0;
+        let mut defined = None;
+        if let Ok(columns) = &format.columns {
+            let mut rest = content;
+            for (place, column) in columns.iter().enumerate() {
+                let Some((own, after)) = rest.split_at_checked(column.letter.size()) else { break };
+                rest = after;
+                convert(column.letter, own, &mut self.message);
+                if format.instance == Some(place) {
+                    instance = whole(column.letter, own).unwrap_or_default();
+                }
+                if let Some((_, unit)) = format.time.filter(|(time, _)| *time == place) {
+                    let time = whole(column.letter, own).unwrap_or_default();
+                    self.time = time.saturating_mul(unit);
+                }
+            }
+            if kind == FMT {
+                defined = Some(Defined::of_format(content));
+            } else if let Some(units) = Defined::of_units(columns, content) {
+                defined = Some(Some(units));
+            }
+        }
+        let topic = self.formats.topic(kind, instance, false);
+        self.window.pass(length);
+        match defined {
+            Some(Some(Defined::Format(kind, format))) => self.formats.define(kind, format),
+            Some(Some(Defined::Units(kind, units))) => self.formats.units(kind, &units),
+            Some(None) => self.faults.skip(at, "a definition that cannot be read")?,
+            None => {}
+        }
+        Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
+    }
+
+    /// Ends a stretch of damage before this place.
+    fn end_damage(&mut self) -> Result<()> {
+        match self.damaged.take() {
+            None => Ok(()),
+            Some(damaged) => {
+                let count = self.window.place() - damaged;
+                self.faults.skip(damaged, format!("{count} bytes are no messages"))
+            }
+        }
+    }
+}
+
+/// What a message defines.
+enum Defined {
+    /// The format of a type.
+    Format(u8, Format),
+    /// The units of a type's columns.
+    Units(u8, String),
+}
+
+impl Defined {
+    /// The content of `FMT`; `None` if its bytes are no definition.
+    fn of_format(content: &[u8]) -> Option<Self> {
+        let (&[kind, length], rest) = content.split_first_chunk()?;
+        let (name, rest) = rest.split_at_checked(4)?;
+        let (letters, columns) = rest.split_at_checked(16)?;
+        let [name, letters, columns] = [name, letters, columns].map(printed);
+        let (name, letters, columns) = (name?, letters?, columns?);
+        let is_good = !name.is_empty() && usize::from(length) >= CONTENT;
+        let format = || Format::new(name, length.into(), letters, columns);
+        is_good.then(|| Self::Format(kind, format()))
+    }
+
+    /// The type and the units out of an `FMTU`.
+    fn of_units(columns: &[Column], content: &[u8]) -> Option<Self> {
+        let column = |name: &str| {
+            let place = columns.iter().position(|column| column.name == name)?;
+            let before: usize = columns[..place].iter().map(|own| own.letter.size()).sum();
+            content.get(before..before + columns[place].letter.size())
+        };
+        let kind = *column("FmtType")?.first()?;
+        Some(Self::Units(kind, printed(column("UnitIds")?)?.to_owned()))
+    }
+}
+
+/// A text up to its first zero; `None` if it holds other than printed characters of ASCII.
+fn printed(bytes: &[u8]) -> Option<&str> {
+    let text = bytes.split(|&byte| byte == 0).next()?;
+    let is_printed = text.iter().all(|byte| matches!(byte, b' '..=b'~'));
+    str::from_utf8(text).ok().filter(|_| is_printed)
+}
+
+/// Adds a column to a message as its definition has it.
+fn convert(letter: Letter, own: &[u8], message: &mut Vec<u8>) {
+    match letter {
+        Letter::Number(_) | Letter::Array | Letter::Mode => message.extend(own),
+        Letter::Half => message.extend(half(own).to_le_bytes()),
+        Letter::Scaled(_, unit) => {
+            let number = whole(letter, own).unwrap_or_default() as f64 / f64::from(unit);
+            message.extend(number.to_le_bytes());
+        }
+        Letter::Text(_) => {
+            let text = own.split(|&byte| byte == 0).next().unwrap_or_default();
+            message.extend((text.len() as u32).to_le_bytes());
+            message.extend(text);
+        }
+    }
+}
+
+/// The whole number of a column, if its letter is of one.
+fn whole(letter: Letter, own: &[u8]) -> Option<i64> {
+    let (Letter::Number(number) | Letter::Scaled(number, _)) = letter else { return None };
+    Some(match number {
+        Number::I8 => i8::from_le_bytes(*own.first_chunk()?).into(),
+        Number::U8 => u8::from_le_bytes(*own.first_chunk()?).into(),
+        Number::I16 => i16::from_le_bytes(*own.first_chunk()?).into(),
+        Number::U16 => u16::from_le_bytes(*own.first_chunk()?).into(),
+        Number::I32 => i32::from_le_bytes(*own.first_chunk()?).into(),
+        Number::U32 => u32::from_le_bytes(*own.first_chunk()?).into(),
+        Number::I64 => i64::from_le_bytes(*own.first_chunk()?),
+        Number::U64 => i64::try_from(u64::from_le_bytes(*own.first_chunk()?)).ok()?,
+        Number::Bool | Number::F32 | Number::F64 => return None,
+    })
+}
+
+/// A float of two bytes: sign, five bits of exponent, ten bits of fraction.
+fn half(own: &[u8]) -> f64 {
+    let bits = own.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
+    let magnitude = match exponent {
+        0 => fraction * 2_f64.powi(-24),
+        0x1f if fraction == 0.0 => f64::INFINITY,
+        0x1f => f64::NAN,
+        _ => (1024.0 + fraction) * 2_f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 1 { -magnitude } else { magnitude }
+}
+
+impl Log for Binary {
+    fn next(&mut self) -> Result<Option<Entry>> {
+        loop {
+            self.window.fill(&mut self.faults)?;
+            if self.window.left().is_empty() {
+                self.end_damage()?;
+                return Ok(None);
+            }
+            match self.look() {
+                Ahead::Message(kind, length) => {
+                    self.end_damage()?;
+                    if let Some(entry) = self.take(kind, length)? {
+                        return Ok(Some(entry));
+                    }
+                }
+                Ahead::Cut if self.damaged.is_none() => {
+                    let place = self.window.place();
+                    self.window.pass(usize::MAX);
+                    self.faults.end(place, "the log ends within a message")?;
+                }
+                Ahead::Cut | Ahead::Odd => {
+                    self.damaged.get_or_insert(self.window.place());
+                    let mut behind = self.window.left().iter().skip(1);
+                    let next = behind.position(|byte| *byte == HEAD[0]);
+                    self.window.pass(next.map_or(usize::MAX, |next| next + 1));
+                }
+            }
+        }
+    }
+
+    fn topics(&self) -> &[Topic] {
+        &self.formats.topics
+    }
+
+    fn message(&self) -> &[u8] {
+        &self.message
+    }
+
+    fn faults(&mut self) -> &mut Faults {
+        &mut self.faults
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::half;
+
+    #[test]
+    fn halves_are_as_ieee_has_them() {
+        for (bits, value) in [
+            (0x0000, 0.0),
+            (0x0001, 2_f64.powi(-24)),
+            (0x03ff, 1023.0 * 2_f64.powi(-24)),
+            (0x0400, 2_f64.powi(-14)),
+            (0x3c00, 1.0),
+            (0x3555, 0.333_251_953_125),
+            (0xc000, -2.0),
+            (0x7bff, 65504.0),
+            (0xfc00, f64::NEG_INFINITY),
+        ] {
+            assert_eq!(half(&u16::to_le_bytes(bits)).to_bits(), f64::to_bits(value), "{bits:#06x}");
+        }
+        assert!(half(&[0xff, 0x7f]).is_nan());
+    }
+}

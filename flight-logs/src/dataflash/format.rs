@@ -1,0 +1,212 @@
+//! Formats of messages: `FMT` names each message, its columns and a letter for each of them.
+
+use crate::definition::{Definition, Field, Kind, Number, Shape};
+use crate::topic::Topic;
+use crate::wire::Wire;
+use std::collections::HashMap;
+
+/// The type of the message that defines the others, which needs no definition.
+pub(crate) const FMT: u8 = 0x80;
+
+/// The formats of a log, and the topics of the messages that came.
+#[derive(Default)]
+pub(crate) struct Formats {
+    of_type: HashMap<u8, Format>,
+    by_name: HashMap<String, u8>,
+    pub topics: Vec<Topic>,
+}
+
+/// The format of a type of messages.
+pub(crate) struct Format {
+    name: String,
+    /// The bytes of a message, with its head.
+    pub length: usize,
+    /// The columns in order, or the reason that they cannot be read.
+    pub columns: Result<Vec<Column>, String>,
+    /// The column that tells instances apart, such as the first sensor from the second.
+    pub instance: Option<usize>,
+    /// The column that tells the time, and the ns in one of its units.
+    pub time: Option<(usize, i64)>,
+    /// The index among the topics of each instance that came.
+    topics: HashMap<i64, usize>,
+}
+
+/// A column of a message.
+pub(crate) struct Column {
+    pub name: String,
+    pub letter: Letter,
+}
+
+/// What a letter stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Letter {
+    /// A number as it is.
+    Number(Number),
+    /// A float of two bytes.
+    Half,
+    /// A whole number that is logged as a multiple: 100 or 10 million to the unit.
+    Scaled(Number, u32),
+    /// A text of this many bytes.
+    Text(usize),
+    /// 32 numbers of two bytes.
+    Array,
+    /// A flight mode: a number, but in a text log its name.
+    Mode,
+}
+
+impl Letter {
+    fn of(letter: char) -> Option<Self> {
+        Some(match letter {
+            'a' => Self::Array,
+            'b' => Self::Number(Number::I8),
+            'B' => Self::Number(Number::U8),
+            'g' => Self::Half,
+            'h' => Self::Number(Number::I16),
+            'H' => Self::Number(Number::U16),
+            'i' => Self::Number(Number::I32),
+            'I' => Self::Number(Number::U32),
+            'f' => Self::Number(Number::F32),
+            'd' => Self::Number(Number::F64),
+            'q' => Self::Number(Number::I64),
+            'Q' => Self::Number(Number::U64),
+            'c' => Self::Scaled(Number::I16, 100),
+            'C' => Self::Scaled(Number::U16, 100),
+            'e' => Self::Scaled(Number::I32, 100),
+            'E' => Self::Scaled(Number::U32, 100),
+            'L' => Self::Scaled(Number::I32, 10_000_000),
+            'M' => Self::Mode,
+            'n' => Self::Text(4),
+            'N' => Self::Text(16),
+            'Z' => Self::Text(64),
+            _ => return None,
+        })
+    }
+
+    /// Its size in a message.
+    pub(crate) fn size(self) -> usize {
+        match self {
+            Self::Number(number) | Self::Scaled(number, _) => number.size(),
+            Self::Half => 2,
+            Self::Text(size) => size,
+            Self::Array => 64,
+            Self::Mode => 1,
+        }
+    }
+}
+
+impl Format {
+    /// A format out of the texts of its definition.
+    pub(crate) fn new(name: &str, length: usize, letters: &str, columns: &str) -> Self {
+        let columns = self::columns(length, letters, columns);
+        let time = columns.as_ref().ok().and_then(|columns| time(name, columns));
+        let name = name.to_owned();
+        Self { name, length, columns, instance: None, time, topics: HashMap::new() }
+    }
+
+    /// The definition of messages as they are handed on.
+    fn definition(&self, is_text: bool) -> Result<Definition, String> {
+        let columns = self.columns.as_ref().map_err(Clone::clone)?;
+        let field = |column: &Column| {
+            let (kind, shape) = match column.letter {
+                Letter::Text(_) => (Kind::Text, Shape::One),
+                Letter::Mode | Letter::Array if is_text => (Kind::Text, Shape::One),
+                _ if is_text => (Kind::Number(Number::F64), Shape::One),
+                Letter::Number(number) if column.name.is_empty() => {
+                    (Kind::Hidden(number), Shape::One)
+                }
+                Letter::Number(number) => (Kind::Number(number), Shape::One),
+                Letter::Half | Letter::Scaled(..) => (Kind::Number(Number::F64), Shape::One),
+                Letter::Mode => (Kind::Number(Number::I8), Shape::One),
+                Letter::Array => (Kind::Number(Number::I16), Shape::Fixed(32)),
+            };
+            Field { name: column.name.clone(), kind, shape }
+        };
+        Ok(Definition::of_fields(columns.iter().map(field).collect()))
+    }
+}
+
+/// The columns, if their letters are known and are of this length with the head.
+fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, String> {
+    const HEAD: usize = 3;
+    let mut names = names.split(',').map(str::trim);
+    let mut columns = Vec::new();
+    for letter in letters.chars() {
+        let letter =
+            Letter::of(letter).ok_or_else(|| format!("format letter `{letter}` is not known"))?;
+        // A column that has no name cannot be asked for.
+        columns.push(Column { name: names.next().unwrap_or_default().to_owned(), letter });
+    }
+    let sum = HEAD + columns.iter().map(|column| column.letter.size()).sum::<usize>();
+    if sum == length {
+        Ok(columns)
+    } else {
+        Err(format!("letters `{letters}` are {sum} bytes, the definition says {length}"))
+    }
+}
+
+/// The column with the time since start: the first, or `T` of the GPS, whose `TimeMS` is the satellites'.
+fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
+    const MICROSECOND: i64 = 1_000;
+    const MILLISECOND: i64 = 1_000_000;
+    match columns.first()?.name.as_str() {
+        "TimeUS" => Some((0, MICROSECOND)),
+        "TimeMS" => Some((0, MILLISECOND)),
+        _ if matches!(name, "GPS" | "GPS2") => {
+            let place = columns.iter().position(|column| column.name == "T")?;
+            Some((place, MILLISECOND))
+        }
+        _ => None,
+    }
+}
+
+impl Formats {
+    /// The formats that a log begins with.
+    pub(crate) fn new() -> Self {
+        let mut formats = Self::default();
+        let columns = "Type,Length,Name,Format,Columns";
+        formats.define(FMT, Format::new("FMT", 89, "BBnNZ", columns));
+        formats
+    }
+
+    pub(crate) fn get(&self, kind: u8) -> Option<&Format> {
+        self.of_type.get(&kind)
+    }
+
+    /// The type of the messages of this name.
+    pub(crate) fn named(&self, name: &str) -> Option<u8> {
+        self.by_name.get(name).copied()
+    }
+
+    /// Defines a type, or defines it anew; what tells its instances apart stays.
+    pub(crate) fn define(&mut self, kind: u8, mut format: Format) {
+        let before = self.of_type.get(&kind).filter(|before| before.name == format.name);
+        format.instance = before.and_then(|before| before.instance);
+        self.by_name.insert(format.name.clone(), kind);
+        self.of_type.insert(kind, format);
+    }
+
+    /// Takes the units of a type's columns, of which `#` marks the number of the instance.
+    pub(crate) fn units(&mut self, kind: u8, units: &str) {
+        let Some(format) = self.of_type.get_mut(&kind) else { return };
+        let count = format.columns.as_ref().map_or(0, Vec::len);
+        format.instance = units.find('#').filter(|place| *place < count);
+        format.topics.clear();
+    }
+
+    /// The index of the topic of a type's instance, which is added if it is new: `IMU`, later ones as `IMU:1`.
+    pub(crate) fn topic(&mut self, kind: u8, instance: i64, is_text: bool) -> Option<usize> {
+        let format = self.of_type.get_mut(&kind)?;
+        if let Some(&known) = format.topics.get(&instance) {
+            return Some(known);
+        }
+        let name = match instance {
+            0 => format.name.clone(),
+            instance => format!("{}:{instance}", format.name),
+        };
+        let definition = format.definition(is_text);
+        let topic = Topic { name, kind: String::new(), wire: Wire::Ros1, definition };
+        let place = topic.place_in(&mut self.topics);
+        format.topics.insert(instance, place);
+        Some(place)
+    }
+}

@@ -1,0 +1,162 @@
+//! The log as text: a line a message, its name first. Numbers stand as they are meant.
+
+use super::format::{Format, Formats, Letter};
+use crate::bytes::Bytes;
+use crate::faults::Faults;
+use crate::topic::Topic;
+use crate::window::{AHEAD, Window};
+use crate::{Entry, Log, Result};
+use std::path::Path;
+
+/// A log that is read from its start to its end.
+pub(crate) struct Text {
+    window: Window,
+    faults: Faults,
+    formats: Formats,
+    /// Whether a definition came: some loggers write words before the first.
+    is_begun: bool,
+    message: Vec<u8>,
+    /// The time of the message that last had one, in ns.
+    time: i64,
+}
+
+/// The name of the message that defines the others.
+const DEFINITION: &str = "FMT";
+
+impl Text {
+    pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
+        Ok(Self {
+            window: Window::new(Bytes::open(path)?),
+            faults,
+            formats: Formats::new(),
+            is_begun: false,
+            message: Vec::new(),
+            time: 0,
+        })
+    }
+
+    /// Takes a line.
+    fn line(&mut self, at: u64, line: &str) -> Result<Option<Entry>> {
+        let (name, rest) = line.split_once(',').unwrap_or((line, ""));
+        let name = name.trim();
+        self.is_begun |= name == DEFINITION;
+        if !self.is_begun || line.trim().is_empty() {
+            return Ok(None);
+        }
+        let Some(kind) = self.formats.named(name) else {
+            self.faults.skip(at, "a line that no `FMT` defines")?;
+            return Ok(None);
+        };
+        let topic = match self.read(kind, rest) {
+            Ok(instance) => self.formats.topic(kind, instance, true),
+            Err(what) => {
+                self.faults.skip(at, what)?;
+                return Ok(None);
+            }
+        };
+        match name {
+            DEFINITION if !self.define(rest) => {
+                self.faults.skip(at, "a definition that cannot be read")?;
+            }
+            "FMTU" => {
+                let mut words = rest.split(',').map(str::trim).skip(1);
+                if let (Some(Ok(kind)), Some(units)) = (words.next().map(str::parse), words.next())
+                {
+                    self.formats.units(kind, units);
+                }
+            }
+            _ => {}
+        }
+        Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
+    }
+
+    /// Reads the columns of a message, and returns the number of its instance.
+    fn read(&mut self, kind: u8, line: &str) -> std::result::Result<i64, String> {
+        self.message.clear();
+        let Some(format) = self.formats.get(kind) else { return Ok(0) };
+        let Ok(columns) = &format.columns else { return Ok(0) };
+        let mut instance = 0;
+        // The last column may hold commas.
+        let mut words = line.splitn(columns.len().max(1), ',').map(str::trim);
+        for (place, column) in columns.iter().enumerate() {
+            let Some(word) = words.next() else {
+                return Err(format!(
+                    "a message of {place} columns where {} are defined",
+                    columns.len()
+                ));
+            };
+            if matches!(column.letter, Letter::Text(_) | Letter::Mode | Letter::Array) {
+                self.message.extend((word.len() as u32).to_le_bytes());
+                self.message.extend(word.as_bytes());
+                continue;
+            }
+            let number: f64 =
+                word.parse().map_err(|_| format!("column {} is no number", column.name))?;
+            self.message.extend(number.to_le_bytes());
+            if format.instance == Some(place) {
+                instance = number as i64;
+            }
+            if let Some((_, unit)) = format.time.filter(|(time, _)| *time == place) {
+                self.time = (number as i64).saturating_mul(unit);
+            }
+        }
+        Ok(instance)
+    }
+
+    /// Takes a definition; returns whether it is one.
+    fn define(&mut self, line: &str) -> bool {
+        let mut words = line.splitn(5, ',').map(str::trim);
+        let mut word = || words.next().unwrap_or_default();
+        let (kind, length) = (word().parse(), word().parse());
+        let (name, letters, columns) = (word(), word(), word());
+        let (Ok(kind), Ok(length)) = (kind, length) else { return false };
+        // Logs of text leave out the name of the last column of `FMT`, which is defined already.
+        if name != DEFINITION {
+            self.formats.define(kind, Format::new(name, length, letters, columns));
+        }
+        !name.is_empty()
+    }
+}
+
+impl Log for Text {
+    fn next(&mut self) -> Result<Option<Entry>> {
+        loop {
+            self.window.fill(&mut self.faults)?;
+            let left = self.window.left();
+            if left.is_empty() {
+                return Ok(None);
+            }
+            let end = left.iter().take(AHEAD).position(|&byte| byte == b'\n');
+            let (own, passed) = match end {
+                Some(end) => (&left[..end], end + 1),
+                None => (left, left.len().min(AHEAD)),
+            };
+            let line = str::from_utf8(own).map(str::to_owned);
+            let at = self.window.place();
+            let is_whole = end.is_some() || self.window.is_at_end();
+            self.window.pass(passed);
+            match line {
+                Ok(line) if is_whole => {
+                    let entry = self.line(at, &line)?;
+                    if entry.is_some() {
+                        return Ok(entry);
+                    }
+                }
+                _ if self.is_begun => self.faults.skip(at, "a line that is no text of a log")?,
+                _ => {}
+            }
+        }
+    }
+
+    fn topics(&self) -> &[Topic] {
+        &self.formats.topics
+    }
+
+    fn message(&self) -> &[u8] {
+        &self.message
+    }
+
+    fn faults(&mut self) -> &mut Faults {
+        &mut self.faults
+    }
+}
