@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The names of an array's numbers, `few[0..3]`, or the name itself.
+/// Returns the name of each number in an array `few[0..3]`, or the name itself.
 fn expanded(name: &str) -> Vec<String> {
     let array = || {
         let (stem, rest) = name.split_once("[0..")?;

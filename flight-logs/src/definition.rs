@@ -195,7 +195,7 @@ impl Definition {
         Parser::parse(name, &|name| texts.get(name).cloned(), Dialect::Px4)
     }
 
-    /// A message of these fields, none of which holds another message.
+    /// Makes a message of these fields, none of which is a nested message.
     pub(crate) fn of_fields(fields: Vec<Field>) -> Self {
         Self { structs: vec![Struct { fields }] }
     }

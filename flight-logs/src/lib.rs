@@ -123,9 +123,9 @@ pub enum Kind {
     Blackbox,
     /// A PX4 log.
     Ulog,
-    /// An `ArduPilot` log, `.bin`.
+    /// An `ArduPilot` log in binary form, `.bin`.
     ArduPilot,
-    /// An `ArduPilot` log as text, `.log`.
+    /// An `ArduPilot` log in text form, `.log`.
     ArduPilotText,
     /// A telemetry log of a ground station, `.tlog`.
     Mavlink,

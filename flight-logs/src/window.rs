@@ -1,17 +1,18 @@
-//! A few bytes of a log in memory, from a place on that moves through the file.
+//! A window of a few bytes that moves through a log.
 
 use crate::Result;
 use crate::bytes::Bytes;
 use crate::faults::Faults;
 
-/// The number of bytes that are ahead, unless the file ends. No message of a format that is read through a window is longer.
+/// Number of bytes in the window, unless the file ends. No message of a format that is read through a window is longer.
 pub(crate) const AHEAD: usize = 4096;
 
-/// Bytes read from a file and not yet taken.
+/// Bytes read from a file that are not decoded yet.
 pub(crate) struct Window {
     bytes: Bytes,
     held: Vec<u8>,
-    /// The index in `held` of the first byte not yet taken, and the place in the file of the first byte of `held`.
+    /// Index in `held` of the first byte that is not decoded; the offset in the file of the first byte of `held`
+    /// follows.
     at: usize,
     start: u64,
     is_read: bool,
@@ -22,10 +23,10 @@ impl Window {
         Self { bytes, held: Vec::new(), at: 0, start: 0, is_read: false }
     }
 
-    /// Reads on until [`AHEAD`] bytes are there, or the file ends.
+    /// Reads until the window holds [`AHEAD`] bytes, or the file ends.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be read or unpacked, and damage is refused.
+    /// Returns an error if the file cannot be read or decompressed, and damage is refused.
     pub(crate) fn fill(&mut self, faults: &mut Faults) -> Result<()> {
         const MORE: u64 = 1 << 16;
         if self.is_read || self.held.len() - self.at >= AHEAD {
@@ -47,22 +48,22 @@ impl Window {
         Ok(())
     }
 
-    /// The bytes that are ahead.
+    /// Returns the bytes in the window.
     pub(crate) fn left(&self) -> &[u8] {
         &self.held[self.at..]
     }
 
-    /// The place in the file of the first byte ahead.
+    /// Returns the offset in the file of the first byte in the window.
     pub(crate) fn place(&self) -> u64 {
         self.start + self.at as u64
     }
 
-    /// Takes this many of the bytes ahead, or all if there are fewer.
+    /// Skips this many bytes, or all in the window if there are fewer.
     pub(crate) fn pass(&mut self, count: usize) {
         self.at = self.held.len().min(self.at.saturating_add(count));
     }
 
-    /// Whether the bytes ahead are the last of the file.
+    /// Returns whether the bytes in the window are the last of the file.
     pub(crate) fn is_at_end(&self) -> bool {
         self.is_read && self.left().len() < AHEAD
     }

@@ -47,7 +47,7 @@ pub enum Input {
     Bistability(Option<u8>),
     /// A spike on one synapse: presynaptic and postsynaptic neuron.
     Synapse(u8, u8),
-    /// A spike, if the second value is 0, or a virtual event, for the queue.
+    /// An event for the queue: the bits of a virtual event, or 0 for a spike; and the neuron.
     Queued(u8, u8),
 }
 

@@ -1,4 +1,4 @@
-//! The log as it lies in the flight controller: a head of three bytes, then the columns without gaps.
+//! Reads the binary form of the log: each message is a header of three bytes, followed by the columns without gaps.
 
 use super::format::{Column, FMT, Format, Formats, Letter};
 use crate::bytes::Bytes;
@@ -9,30 +9,30 @@ use crate::window::Window;
 use crate::{Entry, Log, Result};
 use std::path::Path;
 
-/// The bytes that begin a message; its type follows.
+/// First bytes of a message; the type follows them.
 const HEAD: &[u8] = &[0xa3, 0x95];
-/// The bytes before a message's columns.
+/// Number of bytes before a message's columns.
 const CONTENT: usize = 3;
 
-/// A log that is read from its start to its end.
+/// A log that is being read.
 pub(crate) struct Binary {
     window: Window,
     faults: Faults,
     formats: Formats,
     message: Vec<u8>,
-    /// The time of the message that last had one, in ns.
+    /// Time of the last message that contained one, in ns.
     time: i64,
-    /// The place at which the present damage began.
+    /// Offset at which the present damage began.
     damaged: Option<u64>,
 }
 
-/// The bytes ahead.
+/// What the next bytes are.
 enum Ahead {
     /// A message of this type and length.
     Message(u8, usize),
-    /// A message that the end of the file cuts.
+    /// A message that is cut off by the end of the file.
     Cut,
-    /// No message.
+    /// Bytes that begin no message.
     Odd,
 }
 
@@ -48,7 +48,7 @@ impl Binary {
         })
     }
 
-    /// Looks at the bytes ahead. A message that no other follows is doubted, as it may lack bytes.
+    /// Examines the next bytes. A message that is not followed by another is doubtful, as bytes may be missing in it.
     fn look(&self) -> Ahead {
         let left = self.window.left();
         let begins = |bytes: &[u8]| bytes.iter().zip(HEAD).all(|(own, head)| own == head);
@@ -64,7 +64,7 @@ impl Binary {
         }
     }
 
-    /// Takes a message: what it defines, and its columns as the definition of its topic has them.
+    /// Reads a message: stores what it defines, and converts its columns to the definition of its topic.
     fn take(&mut self, kind: u8, length: usize) -> Result<Option<Entry>> {
         let at = self.window.place();
         let content = &self.window.left()[CONTENT..length];
@@ -103,7 +103,7 @@ impl Binary {
         Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
     }
 
-    /// Ends a stretch of damage before this place.
+    /// Ends a range of damage before this offset.
     fn end_damage(&mut self) -> Result<()> {
         match self.damaged.take() {
             None => Ok(()),
@@ -117,14 +117,14 @@ impl Binary {
 
 /// What a message defines.
 enum Defined {
-    /// The format of a type.
+    /// The format of a message type.
     Format(u8, Format),
-    /// The units of a type's columns.
+    /// The units of a message type's columns.
     Units(u8, String),
 }
 
 impl Defined {
-    /// The content of `FMT`; `None` if its bytes are no definition.
+    /// Parses the content of `FMT`; `None` if it is not a definition.
     fn of_format(content: &[u8]) -> Option<Self> {
         let (&[kind, length], rest) = content.split_first_chunk()?;
         let (name, rest) = rest.split_at_checked(4)?;
@@ -136,7 +136,7 @@ impl Defined {
         is_good.then(|| Self::Format(kind, format()))
     }
 
-    /// The type and the units out of an `FMTU`.
+    /// Parses the type and the units in an `FMTU`.
     fn of_units(columns: &[Column], content: &[u8]) -> Option<Self> {
         let column = |name: &str| {
             let place = columns.iter().position(|column| column.name == name)?;
@@ -148,14 +148,14 @@ impl Defined {
     }
 }
 
-/// A text up to its first zero; `None` if it holds other than printed characters of ASCII.
+/// Returns a text up to its first NUL; `None` if it contains anything but printable ASCII.
 fn printed(bytes: &[u8]) -> Option<&str> {
     let text = bytes.split(|&byte| byte == 0).next()?;
     let is_printed = text.iter().all(|byte| matches!(byte, b' '..=b'~'));
     str::from_utf8(text).ok().filter(|_| is_printed)
 }
 
-/// Adds a column to a message as its definition has it.
+/// Appends a column to a message, converted to the message's definition.
 fn convert(letter: Letter, own: &[u8], message: &mut Vec<u8>) {
     match letter {
         Letter::Number(_) | Letter::Array | Letter::Mode => message.extend(own),
@@ -172,7 +172,7 @@ fn convert(letter: Letter, own: &[u8], message: &mut Vec<u8>) {
     }
 }
 
-/// The whole number of a column, if its letter is of one.
+/// Returns the value of a column, if its letter stands for an integer.
 fn whole(letter: Letter, own: &[u8]) -> Option<i64> {
     let (Letter::Number(number) | Letter::Scaled(number, _)) = letter else { return None };
     Some(match number {
@@ -188,7 +188,7 @@ fn whole(letter: Letter, own: &[u8]) -> Option<i64> {
     })
 }
 
-/// A float of two bytes: sign, five bits of exponent, ten bits of fraction.
+/// Converts a float of two bytes: sign, five bits of exponent, ten bits of fraction.
 fn half(own: &[u8]) -> f64 {
     let bits = own.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
     let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));

@@ -1,14 +1,14 @@
-//! Formats of messages: `FMT` names each message, its columns and a letter for each of them.
+//! Formats of messages: each `FMT` defines the name of a message, its columns, and a letter for the type of each.
 
 use crate::definition::{Definition, Field, Kind, Number, Shape};
 use crate::topic::Topic;
 use crate::wire::Wire;
 use std::collections::HashMap;
 
-/// The type of the message that defines the others, which needs no definition.
+/// Type of the message that defines the others, and needs no definition itself.
 pub(crate) const FMT: u8 = 0x80;
 
-/// The formats of a log, and the topics of the messages that came.
+/// The formats of a log, and the topics of the messages so far.
 #[derive(Default)]
 pub(crate) struct Formats {
     of_type: HashMap<u8, Format>,
@@ -16,18 +16,18 @@ pub(crate) struct Formats {
     pub topics: Vec<Topic>,
 }
 
-/// The format of a type of messages.
+/// The format of a message type.
 pub(crate) struct Format {
     name: String,
-    /// The bytes of a message, with its head.
+    /// Length of a message in bytes, including its header.
     pub length: usize,
     /// The columns in order, or the reason that they cannot be read.
     pub columns: Result<Vec<Column>, String>,
-    /// The column that tells instances apart, such as the first sensor from the second.
+    /// Index of the column that distinguishes instances, such as the first and the second sensor.
     pub instance: Option<usize>,
-    /// The column that tells the time, and the ns in one of its units.
+    /// Index of the column with the time, and the length of its unit in ns.
     pub time: Option<(usize, i64)>,
-    /// The index among the topics of each instance that came.
+    /// Index of the topic of each instance so far.
     topics: HashMap<i64, usize>,
 }
 
@@ -37,20 +37,20 @@ pub(crate) struct Column {
     pub letter: Letter,
 }
 
-/// What a letter stands for.
+/// The type for which a letter stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Letter {
-    /// A number as it is.
+    /// A number without a factor.
     Number(Number),
     /// A float of two bytes.
     Half,
-    /// A whole number that is logged as a multiple: 100 or 10 million to the unit.
+    /// An integer that is logged as a multiple of the value: 100 or 10 million times.
     Scaled(Number, u32),
     /// A text of this many bytes.
     Text(usize),
-    /// 32 numbers of two bytes.
+    /// An array of 32 two-byte numbers.
     Array,
-    /// A flight mode: a number, but in a text log its name.
+    /// A flight mode: a number in a binary log, a name in a text log.
     Mode,
 }
 
@@ -82,7 +82,7 @@ impl Letter {
         })
     }
 
-    /// Its size in a message.
+    /// Returns the size in a message, in bytes.
     pub(crate) fn size(self) -> usize {
         match self {
             Self::Number(number) | Self::Scaled(number, _) => number.size(),
@@ -95,7 +95,7 @@ impl Letter {
 }
 
 impl Format {
-    /// A format out of the texts of its definition.
+    /// Makes a format from the texts of its definition.
     pub(crate) fn new(name: &str, length: usize, letters: &str, columns: &str) -> Self {
         let columns = self::columns(length, letters, columns);
         let time = columns.as_ref().ok().and_then(|columns| time(name, columns));
@@ -103,7 +103,7 @@ impl Format {
         Self { name, length, columns, instance: None, time, topics: HashMap::new() }
     }
 
-    /// The definition of messages as they are handed on.
+    /// Returns the definition of the messages into which this format is converted.
     fn definition(&self, is_text: bool) -> Result<Definition, String> {
         let columns = self.columns.as_ref().map_err(Clone::clone)?;
         let field = |column: &Column| {
@@ -125,7 +125,7 @@ impl Format {
     }
 }
 
-/// The columns, if their letters are known and are of this length with the head.
+/// Parses the columns. Their letters must be known, and their sizes with the header must add up to `length`.
 fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, String> {
     const HEAD: usize = 3;
     let mut names = names.split(',').map(str::trim);
@@ -144,7 +144,8 @@ fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, Str
     }
 }
 
-/// The column with the time since start: the first, or `T` of the GPS, whose `TimeMS` is the satellites'.
+/// Finds the column with the time since start: the first column, or `T` for the GPS, whose `TimeMS` is the satellites'
+/// time.
 fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
     const MICROSECOND: i64 = 1_000;
     const MILLISECOND: i64 = 1_000_000;
@@ -160,7 +161,7 @@ fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
 }
 
 impl Formats {
-    /// The formats that a log begins with.
+    /// Returns the formats with which every log begins.
     pub(crate) fn new() -> Self {
         let mut formats = Self::default();
         let columns = "Type,Length,Name,Format,Columns";
@@ -172,12 +173,12 @@ impl Formats {
         self.of_type.get(&kind)
     }
 
-    /// The type of the messages of this name.
+    /// Returns the type of the messages with this name.
     pub(crate) fn named(&self, name: &str) -> Option<u8> {
         self.by_name.get(name).copied()
     }
 
-    /// Defines a type, or defines it anew; what tells its instances apart stays.
+    /// Defines a type, or redefines it; the column that distinguishes its instances stays.
     pub(crate) fn define(&mut self, kind: u8, mut format: Format) {
         let before = self.of_type.get(&kind).filter(|before| before.name == format.name);
         format.instance = before.and_then(|before| before.instance);
@@ -185,7 +186,7 @@ impl Formats {
         self.of_type.insert(kind, format);
     }
 
-    /// Takes the units of a type's columns, of which `#` marks the number of the instance.
+    /// Sets the units of a type's columns, among which `#` marks the number of the instance.
     pub(crate) fn units(&mut self, kind: u8, units: &str) {
         let Some(format) = self.of_type.get_mut(&kind) else { return };
         let count = format.columns.as_ref().map_or(0, Vec::len);
@@ -193,7 +194,8 @@ impl Formats {
         format.topics.clear();
     }
 
-    /// The index of the topic of a type's instance, which is added if it is new: `IMU`, later ones as `IMU:1`.
+    /// Returns the index of the topic for an instance of a type; adds the topic if it is new. Names are `IMU`, then
+    /// `IMU:1` and so on.
     pub(crate) fn topic(&mut self, kind: u8, instance: i64, is_text: bool) -> Option<usize> {
         let format = self.of_type.get_mut(&kind)?;
         if let Some(&known) = format.topics.get(&instance) {

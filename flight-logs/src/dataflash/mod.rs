@@ -1,7 +1,7 @@
-//! `ArduPilot`'s `DataFlash` logs: `.bin`, and the same in text, `.log`.
+//! Reads `ArduPilot`'s `DataFlash` logs: the binary form `.bin`, and the text form `.log`.
 //!
-//! A topic each for every type of message, later instances of a sensor as `IMU:1`. Columns of letters that stand for multiples
-//! are divided, as pymavlink does; the multipliers of `MULT` belong to units and change no number.
+//! Every type of message is a topic; later instances of a sensor are `IMU:1` and so on. Columns whose letters stand for
+//! multiples are divided, as in pymavlink. The multipliers in `MULT` belong to the units, and change no number.
 
 mod binary;
 mod format;
@@ -13,10 +13,10 @@ pub(crate) use text::Text;
 /// The definition of `FMT` itself, with which a log begins.
 pub(crate) const START: &[u8] = b"\xa3\x95\x80\x80\x59FMT\0BBnNZ";
 
-/// The bytes of a file among which a log must begin: some loggers write words before it.
+/// Number of bytes within which a log must begin: some loggers write text before it.
 pub(crate) const LOOKED_AT: u64 = 8192;
 
-/// Whether a file is a text log: a line among the first defines `FMT` itself.
+/// Returns whether a file is a text log, that is, whether one of its first lines defines `FMT` itself.
 pub(crate) fn is_text(start: &[u8]) -> bool {
     start.split(|&byte| byte == b'\n').any(|line| {
         let mut words = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);

@@ -1,4 +1,4 @@
-//! The log as text: a line a message, its name first. Numbers stand as they are meant.
+//! Reads the text form of the log: each line is a message, which begins with its name. Numbers are already scaled.
 
 use super::format::{Format, Formats, Letter};
 use crate::bytes::Bytes;
@@ -8,19 +8,19 @@ use crate::window::{AHEAD, Window};
 use crate::{Entry, Log, Result};
 use std::path::Path;
 
-/// A log that is read from its start to its end.
+/// A log that is being read.
 pub(crate) struct Text {
     window: Window,
     faults: Faults,
     formats: Formats,
-    /// Whether a definition came: some loggers write words before the first.
+    /// Whether there was a definition yet: some loggers write text before the first.
     is_begun: bool,
     message: Vec<u8>,
-    /// The time of the message that last had one, in ns.
+    /// Time of the last message that contained one, in ns.
     time: i64,
 }
 
-/// The name of the message that defines the others.
+/// Name of the message that defines the others.
 const DEFINITION: &str = "FMT";
 
 impl Text {
@@ -35,7 +35,7 @@ impl Text {
         })
     }
 
-    /// Takes a line.
+    /// Reads a line.
     fn line(&mut self, at: u64, line: &str) -> Result<Option<Entry>> {
         let (name, rest) = line.split_once(',').unwrap_or((line, ""));
         let name = name.trim();
@@ -70,7 +70,7 @@ impl Text {
         Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
     }
 
-    /// Reads the columns of a message, and returns the number of its instance.
+    /// Reads the columns of a message; returns the number of its instance.
     fn read(&mut self, kind: u8, line: &str) -> std::result::Result<i64, String> {
         self.message.clear();
         let Some(format) = self.formats.get(kind) else { return Ok(0) };
@@ -103,7 +103,7 @@ impl Text {
         Ok(instance)
     }
 
-    /// Takes a definition; returns whether it is one.
+    /// Reads a definition; returns false if the line is not one.
     fn define(&mut self, line: &str) -> bool {
         let mut words = line.splitn(5, ',').map(str::trim);
         let mut word = || words.next().unwrap_or_default();

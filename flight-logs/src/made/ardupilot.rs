@@ -1,8 +1,8 @@
-//! `ArduPilot`'s logs, binary and in text, and a telemetry log.
+//! Makes `ArduPilot`'s logs, in binary and in text form, and a telemetry log.
 
 use super::wave;
 
-/// The samples of a log; each has a message of two sensors.
+/// Number of samples in a log; each has a message of each of two sensors.
 const SAMPLES: u32 = 100;
 
 /// The formats: type, name, letters, columns, and the units of the columns.
@@ -32,17 +32,17 @@ fn padded(text: &str, size: usize) -> Vec<u8> {
     bytes
 }
 
-/// A message of this type.
+/// Returns a message of this type.
 pub fn dataflash_message(kind: u8, columns: &[&[u8]]) -> Vec<u8> {
     [&[0xa3, 0x95, kind], &columns.concat()[..]].concat()
 }
 
-/// The rate of a sensor at a sample.
+/// Returns the angular rate of a sensor at a sample.
 pub fn dataflash_rate(sample: u32, sensor: u8) -> f32 {
     (wave(sample) * f64::from(sensor + 1)) as f32
 }
 
-/// The messages of both sensors at a sample.
+/// Returns the messages of both sensors at a sample.
 pub fn dataflash_sample(sample: u32) -> Vec<u8> {
     let time = 1_000_000 + u64::from(sample) * 5000;
     let of = |sensor: u8| {
@@ -59,7 +59,7 @@ pub fn dataflash_sample(sample: u32) -> Vec<u8> {
     [of(0), of(1)].concat()
 }
 
-/// A log of 100 samples of two sensors, an array and a text.
+/// Returns a log of 100 samples of two sensors, an array and a text.
 pub fn dataflash() -> Vec<u8> {
     let mut log = Vec::new();
     for (kind, name, letters, columns, _) in FORMATS {
@@ -77,7 +77,7 @@ pub fn dataflash() -> Vec<u8> {
     log
 }
 
-/// The same as text, without the array, which text logs do not have.
+/// Returns the log as text, without the array, which text logs do not have.
 pub fn dataflash_text() -> String {
     let mut log = "\nArduCopter V4.5\n".to_owned();
     let mut line = |line: String| log.extend([&line, "\n"]);
@@ -100,7 +100,7 @@ pub fn dataflash_text() -> String {
     log
 }
 
-/// A packet of the first version with the time before it.
+/// Returns a packet of version 1, with the time before it.
 pub fn packet(time: u64, system: u8, number: u8, payload: &[u8], extra: u8) -> Vec<u8> {
     let checked = [&[payload.len() as u8, 0, system, 1, number], payload].concat();
     let mut sum = 0xffff_u16;
@@ -113,7 +113,7 @@ pub fn packet(time: u64, system: u8, number: u8, payload: &[u8], extra: u8) -> V
     [&time.to_be_bytes()[..], &[0xfe], &checked, &sum.to_le_bytes()].concat()
 }
 
-/// A telemetry log of 100 `RAW_IMU` from each of two systems, and 100 packets that no reader knows.
+/// Returns a telemetry log with 100 `RAW_IMU` from each of two systems, and 100 packets of an unknown message.
 pub fn tlog() -> Vec<u8> {
     const EXTRA: u8 = 144;
     let mut log = Vec::new();

@@ -1,20 +1,21 @@
-//! Layouts of common messages, in the order of their bytes.
+//! Layouts of common messages, with the fields in the order of their bytes.
 
 use crate::definition::Definition;
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// A message that is known.
+/// A known message.
 pub(crate) struct Message {
     pub name: &'static str,
-    /// The byte that ends what the checksum is of: both ends have the same layout, or it does not fit.
+    /// Last byte of the checksum's input. It depends on the layout, so the checksum fails if the other end has another
+    /// one.
     pub extra: u8,
-    /// The bytes of all its fields.
+    /// Length of all its fields, in bytes.
     pub length: usize,
     pub definition: Definition,
 }
 
-/// Number, name and fields of each message. Fields behind `|` came later and may be missing.
+/// Number, name and fields of each message. Fields after `|` were added later and may be missing.
 #[rustfmt::skip]
 const MESSAGES: &[(u32, &str, &str)] = &[
     (0, "HEARTBEAT", "uint32_t custom_mode; uint8_t type autopilot base_mode system_status mavlink_version"),
@@ -51,7 +52,7 @@ const MESSAGES: &[(u32, &str, &str)] = &[
 ];
 
 impl Message {
-    /// The message of this number.
+    /// Returns the message with this number.
     pub(crate) fn of(number: u32) -> Option<&'static Self> {
         static ALL: OnceLock<HashMap<u32, Message>> = OnceLock::new();
         let all = || {
@@ -84,7 +85,7 @@ impl Message {
     }
 }
 
-/// The fields of a text, `type name name; type name`, each with its type.
+/// Parses fields from a text `type name name; type name`; returns name and type of each.
 fn fields(text: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
     text.split(';').flat_map(|group| {
         let mut words = group.split_whitespace();
@@ -103,7 +104,7 @@ fn size(kind: &str) -> Option<usize> {
     })
 }
 
-/// The checksum of packets, CRC-16/MCRF4XX.
+/// Checksum of packets, CRC-16/MCRF4XX.
 #[derive(Clone, Copy)]
 pub(crate) struct Checksum(pub u16);
 

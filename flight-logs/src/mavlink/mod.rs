@@ -1,6 +1,8 @@
-//! Telemetry logs of a ground station, `.tlog`: packets of `MAVLink` 1 and 2, each behind the time at which it came.
+//! Reads telemetry logs of a ground station, `.tlog`: packets of `MAVLink` 1 and 2, each after the time at which it
+//! arrived.
 //!
-//! A topic each for every common message; those of a second sender are `ATTITUDE:1`. Packets of other messages are passed over.
+//! Every common message is a topic; those of a second sender are `ATTITUDE:1` and so on. Packets of other messages are
+//! skipped.
 
 mod messages;
 
@@ -14,47 +16,47 @@ use messages::{Checksum, Message};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The bytes of the time before a packet: µs since 1970, the highest byte first.
+/// Number of bytes in the time before a packet: µs since 1970, big-endian.
 const TIME: usize = 8;
 
-/// A log that is read from its start to its end.
+/// A log that is being read.
 pub(crate) struct Mavlink {
     window: Window,
     faults: Faults,
     topics: Vec<Topic>,
-    /// The index of the topic of each message, system and component.
+    /// Index of the topic for each message, system and component.
     senders: HashMap<(u32, [u8; 2]), usize>,
     message: Vec<u8>,
-    /// The packets of messages that are not known.
+    /// Number of packets of unknown messages.
     unknown: u64,
-    /// The place at which the present damage began.
+    /// Offset at which the present damage began.
     damaged: Option<u64>,
 }
 
-/// A packet and the time before it.
+/// A packet, and the time before it.
 struct Packet<'a> {
     microseconds: u64,
-    /// System and component.
+    /// System and component that sent it.
     sender: [u8; 2],
     number: u32,
     payload: &'a [u8],
-    /// All that the checksum is of but the extra byte, and the checksum.
+    /// The checksum's input except for the extra byte, and the checksum.
     checked: &'a [u8],
     checksum: u16,
-    /// The bytes of all, with the time and a signature.
+    /// Total length in bytes, including the time and a signature.
     length: usize,
 }
 
-/// The bytes ahead.
+/// What the next bytes are.
 enum Ahead<'a> {
     Packet(Packet<'a>),
-    /// A packet that the end of the file cuts.
+    /// A packet that is cut off by the end of the file.
     Cut,
-    /// No packet.
+    /// Bytes that begin no packet.
     Odd,
 }
 
-/// Looks at the bytes ahead.
+/// Examines the next bytes.
 fn look(left: &[u8]) -> Ahead<'_> {
     let Some((time, packet)) = left.split_first_chunk::<TIME>() else { return Ahead::Cut };
     let (head, signature) = match packet {
@@ -85,7 +87,7 @@ fn look(left: &[u8]) -> Ahead<'_> {
 }
 
 impl Packet<'_> {
-    /// Whether the checksum fits, of a message that is known; else whether another packet follows.
+    /// Returns whether the checksum is right, if the message is known; otherwise whether another packet follows.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
             Some(message) => {
@@ -99,12 +101,13 @@ impl Packet<'_> {
     }
 }
 
-/// Whether these bytes begin as a packet does, or the file ends.
+/// Returns whether these bytes begin like a packet, or the file ends.
 fn is_followed(next: &[u8]) -> bool {
     next.get(TIME).is_none_or(|start| matches!(start, 0xfd | 0xfe))
 }
 
-/// Whether a file is a log: it begins with a packet of the years 2000 to 2100, and goes on as one.
+/// Returns whether a file is a log, that is, whether it begins with a packet from the years 2000 to 2100 and continues
+/// like one.
 pub(crate) fn is_log(start: &[u8]) -> bool {
     const YEARS: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
     match look(start) {
@@ -130,7 +133,7 @@ impl Mavlink {
         })
     }
 
-    /// Takes the packet ahead, if it is one: its length, and its topic and time if it is of a known message.
+    /// Reads the next packet, if there is one. Returns its length, with its topic and time if the message is known.
     fn packet(&mut self) -> Option<(usize, Option<(usize, i64)>)> {
         let left = self.window.left();
         let Ahead::Packet(packet) = look(left) else { return None };

@@ -19,8 +19,8 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// CSV table with a header, or log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or
-    /// 2, MCAP, Betaflight's blackbox; also compressed; `-` is a CSV table on standard input
+    /// CSV table with a header, or a log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS
+    /// 1 or 2, MCAP, Betaflight's blackbox; also compressed; `-` reads a CSV table from standard input
     pub input: PathBuf,
     #[command(flatten)]
     channel: ChannelOptions,

@@ -162,7 +162,7 @@ fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     assert!(ran.output.contains("# samples=200\n"), "{}", ran.output);
 }
 
-/// The same values of the log and of its text, a sensor each.
+/// The log and its text form have the same values, with a topic for each sensor.
 #[test]
 fn an_ardupilot_log_is_read_sensor_by_sensor() {
     for (name, log) in [("log.bin", dataflash()), ("log.log", dataflash_text().into_bytes())] {

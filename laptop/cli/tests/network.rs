@@ -263,7 +263,8 @@ fn resets_are_asked_for_and_compared_with_the_frameworks_own_spikes() {
     refused(&short, "", &["1 steps", "200"]);
 }
 
-/// `ReckOn` subtracts a threshold after the leak. The network subtracts it before, which weights of its own reproduce.
+/// `ReckOn` subtracts a threshold after the leak, the network before it. Weights from each neuron to itself make up the
+/// difference.
 #[test]
 fn reckon_subtracts_where_the_network_does() {
     let json = r#"{"layers": [{"name": "one", "weights": [[127, -20], [60, 50]], "keep": 0.9,

@@ -304,8 +304,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Returns the fingerprint that a sender of these channels has, in its own sample type. If all channels share one
-    /// scheme, tries each number of channels until one gives `sender`.
+    /// Returns the fingerprint that a sender of these channels has, in its own sample type. If one scheme stands for all
+    /// channels, their number is not known: each is tried until one gives the fingerprint `sender`.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {

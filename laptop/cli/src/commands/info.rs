@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 Example:
   spikewire info flight.ulg")]
 pub(crate) struct Info {
-    /// PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an MCAP file, Betaflight's
-    /// blackbox or a CSV table, also compressed; `-` is a table on standard input
+    /// Log or table: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an
+    /// MCAP file, Betaflight's blackbox or a CSV table, also compressed; `-` reads a table from standard input
     log: PathBuf,
     /// Report time steps that are longer than this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]

@@ -42,7 +42,7 @@ const ZERO: &str = "to-value";
 
 type Choices<T> = [(&'static str, T, &'static str)];
 
-/// Parses one of these words.
+/// Makes a parser for an option whose value is the name of one of these choices.
 fn of<T: Copy + Send + Sync + 'static>(
     choices: &'static Choices<T>,
 ) -> impl TypedValueParser<Value = T> {

@@ -331,7 +331,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the line at which the last row begins. The reader itself counts comments before it as part of it.
+    /// Returns the line at which the last row begins, counted back from where the reader stands: the row's own position is
+    /// that of the comments before it.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);

@@ -36,8 +36,8 @@ pub const CHUNK: usize = 8192;
 /// A recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// CSV table with a header, or log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or
-    /// 2, MCAP, Betaflight's blackbox; also compressed; `-` is a CSV table on standard input
+    /// CSV table with a header, or a log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS
+    /// 1 or 2, MCAP, Betaflight's blackbox; also compressed. `-` reads a CSV table from standard input.
     pub input: PathBuf,
     /// The channel to read.
     pub channel: ChannelOptions,

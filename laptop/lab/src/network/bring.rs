@@ -44,9 +44,9 @@ pub struct Brought {
     pub tuned: Figures,
     /// The figures on the recording that was held out.
     pub held_out: Option<Figures>,
-    /// For each part of the chip's arithmetic, the agreement that is left if the network uses that part alone, and
-    /// double precision otherwise: the share of active steps with the same outputs. Measured on the recording held out,
-    /// or else on the one tuned on.
+    /// The cost of each part of the chip's arithmetic by itself. The network runs in double precision except for that
+    /// part; the number is the share of active steps in which the same outputs fire as without it. Measured on the
+    /// recording held out, or on the one tuned on if there is none.
     pub costs: Vec<(Cost, f64)>,
     /// Share of active steps in which double precision fires as the training framework did.
     pub reading: Option<f64>,
