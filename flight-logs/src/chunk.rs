@@ -73,7 +73,7 @@ impl Chunk {
     }
 }
 
-/// State of reading a log of records and chunks, common to all formats.
+/// State of reading a log of records and chunks, common to the formats that have them.
 pub(crate) struct Walk {
     pub bytes: Bytes,
     pub faults: Faults,

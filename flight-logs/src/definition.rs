@@ -38,9 +38,9 @@ pub enum Kind {
     Number(Number),
     /// A number that is not selected by name: PX4's time stamp, or padding.
     Hidden(Number),
-    /// A character of a text of fixed length: an array of this type is a text.
+    /// A text of UTF-8, preceded by its length.
     Text,
-    /// A byte of a text. Only arrays have this type; their length is that of the text.
+    /// A character of a text of fixed length: an array of this type is a text.
     Character,
     /// A text of 2 or 4 bytes for each character; the definition does not tell which, so fields after it cannot be
     /// read.

@@ -86,8 +86,8 @@ impl Faults {
         self.notes.push(note);
     }
 
-    /// Returns the notes, one sentence each: the first damage, and the number of damaged places and of messages that
-    /// are too long.
+    /// Returns notes on the log, one sentence each: what its reader noticed, the first damage, and the number of
+    /// damaged places and of messages that are too long.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = self.notes.clone();
         if self.skipped > 1 {

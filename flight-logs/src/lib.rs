@@ -25,11 +25,11 @@
 //! # Ok::<(), flight_logs::Error>(())
 //! ```
 //!
-//! The readers are not taken from other crates, because they must name the byte of a fault and be able to continue after
-//! the fault. As of November 2026, `mcap` 0.26 accepts a damaged chunk silently, or stops at it if checksums are turned on;
-//! `blackbox-log` 0.4.3 refuses a log whose header names a firmware that it does not know; `ardupilot-binlog` 0.2 passes
-//! over damage silently, and stops after 256 damaged places; `SQLite` itself needs a C compiler. `yule_log` 0.4 serves the
-//! tests of this repository as an independent reader of `ULog`.
+//! The readers are not taken from other crates, because they must name the byte of a fault and be able to continue
+//! after the fault. As of November 2026, `mcap` 0.26 accepts a damaged chunk silently, or stops at it if checksums are
+//! turned on; `blackbox-log` 0.4.3 refuses a log whose header names a firmware that it does not know;
+//! `ardupilot-binlog` 0.2 passes over damage silently, and stops after 256 damaged places; `SQLite` itself needs a C
+//! compiler. `yule_log` 0.4 serves the tests of this repository as an independent reader of `ULog`.
 
 mod bag;
 mod blackbox;

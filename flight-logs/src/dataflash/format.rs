@@ -24,7 +24,8 @@ pub(crate) struct Format {
     pub length: usize,
     /// The columns in order, or the reason that the messages cannot be read.
     pub columns: Result<Vec<Column>, String>,
-    /// Index of the column with the number of the sensor or other instance, which distinguishes topics of one type.
+    /// Index of the column that holds the instance number, such as the number of the sensor. Each instance has a topic
+    /// of its own.
     pub instance: Option<usize>,
     /// Index of the column with the time, and the time's unit in ns.
     pub time: Option<(usize, i64)>,

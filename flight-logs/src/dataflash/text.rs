@@ -1,5 +1,5 @@
 //! Reads `ArduPilot`'s text logs, `.log`: each line is a message, which begins with the name of its type. Numbers are
-//! not fixed-point.
+//! written as values, not as fixed-point integers.
 
 use super::format::{Format, Formats, Letter};
 use crate::bytes::Bytes;

@@ -252,7 +252,8 @@ impl<'a> Scan<'a> {
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
-        /// Zeros in place of a message, to measure the length of its definition. A message has at most 65 535 bytes.
+        /// Zeros in place of a message, to measure how long its definition says it is. A message has at most 65 535
+        /// bytes.
         const NOTHING: &[u8] = &[0; 1 << 16];
         let registered = || {
             let (&[instance, low, high], name) = content.split_first_chunk()?;

@@ -36,7 +36,8 @@ pub(crate) struct Stop {
 }
 
 impl Stop {
-    /// Creates the end condition: Ctrl-C, or `seconds` from now if given. A second Ctrl-C ends the program at once.
+    /// Creates the end condition: Ctrl-C or, if `seconds` is given, the time in that many seconds. A second Ctrl-C ends
+    /// the program at once.
     ///
     /// # Errors
     /// Returns an error if `seconds` is not above 0.

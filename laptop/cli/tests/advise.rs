@@ -35,8 +35,8 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg "));
 }
 
-/// With a loop bandwidth of 5 Hz at 100 samples a second, a code may be late by one sample, about 20° of phase. The
-/// signal jumps every 25 samples, which step forward cannot follow when it is tuned for few spikes.
+/// With a loop bandwidth of 5 Hz at 100 samples a second, no code is advised whose latency exceeds one sample, about
+/// 20° of phase. Nor is step forward, which cannot follow this signal's jumps when it is tuned for few spikes.
 #[test]
 fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     let sample = |sample: u32| {
@@ -87,7 +87,7 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
 }
 
 /// One scheme is advised for both channels, although tuning them separately would give different schemes or different
-/// numbers of spikes a sample, and the flight file is accepted by `encode` and `emit`.
+/// numbers of spikes a sample. The flight file written by `advise` is accepted by `encode` and `emit`.
 #[test]
 fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
     let row = |sample: u32| {
@@ -179,7 +179,8 @@ fn a_shaken_flight_is_advised_on() {
     assert!(!report["channels"][0]["reaching"].as_array().unwrap().is_empty());
 }
 
-/// A log from the ground, of 10 samples, or of a constant gets a verdict, and no scheme is advised for it.
+/// A log recorded on the ground, with only 10 samples, or with a constant value gets a verdict, and no scheme is
+/// advised for it.
 #[test]
 fn a_log_on_the_ground_or_too_short_has_a_verdict() {
     let rest = spikewire(&format!("advise {} {SHORT}", flight("vtol_at_rest.csv")), "");

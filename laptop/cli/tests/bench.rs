@@ -26,8 +26,8 @@ fn the_last_line_says_how_many_means_agree() {
     assert_eq!(report.lines().last(), Some("24 of 24 means within sampling error"));
 }
 
-/// Recorded means: table, seconds of signal, and one mean for each of [`SCHEMES`]. They reveal a rule that is slightly
-/// wrong, which a comparison with the paper's statistics would not: a single spike changes them.
+/// Recorded means: table, seconds of signal, and one mean for each of [`SCHEMES`]. A single changed spike changes them,
+/// so they reveal a slightly wrong rule, which a comparison with the paper's statistics would not.
 #[rustfmt::skip]
 const BEFORE: [(&str, u64, [f64; 8]); 6] = [
     ("efficiency", 1, [37.900000, 29.975000, 75.100000, 45.800000, 73.675000, 62.275000, 0.000000, -223.700000]),

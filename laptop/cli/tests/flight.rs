@@ -89,15 +89,15 @@ fn what_a_flight_sends_is_heard_by_its_file() {
     );
 }
 
-/// A flight whose channels are filtered before they are encoded.
-mod shaken {
+/// A generated flight whose channels are filtered before they are encoded.
+mod filtered {
     include!("../../flight/tests/flights/sf.rs");
 }
 
 #[test]
 fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
+    use filtered::flight;
     use fixed::types::I8F8;
-    use shaken::flight;
     let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(3)));
     let (mut bytes, mut items, mut buffer) = (Vec::new(), Vec::new(), [0; MAX_FRAME]);
     for sample in 0..SAMPLES {

@@ -129,8 +129,8 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {}", empty.path().display()), "", &["which has a file metadata.yaml"]);
 }
 
-/// Decoded with a threshold of 101, every sample is within 101 of the rate in the log, whose change between frames is
-/// smaller.
+/// With a threshold of 101, larger than any change between frames, every decoded sample is within 101 of the rate in
+/// the log.
 #[test]
 fn a_blackbox_log_is_read_frame_by_frame() {
     let (_directory, path) = file("log.bbl", blackbox());

@@ -47,17 +47,17 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     assert!(winners[0] > 80.0, "{}", ran.stderr);
 }
 
-/// Writes a file of a network in JSON, whose inputs are the spikes of step forward; returns its directory, and the
-/// arguments that convert it.
+/// Writes a network to a JSON file; returns the file's directory, and the arguments that convert the network with the
+/// spikes of step forward as its inputs.
 fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
     let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
     let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
     (directory, format!("network {path} {options} {sf} {}", flight("hexarotor.csv")))
 }
 
-/// Networks whose weights the chip can hold unrounded give the same spikes on the chip as in double precision.
-/// Thresholds lie between the sums that the weights can reach, and at most one spike a sample reaches a neuron, so that
-/// order does not matter.
+/// Networks whose weights the chip can hold unrounded give the same spikes on the chip as in double precision. No sum
+/// of weights equals a threshold, and at most one spike a sample reaches a neuron, so that the order of spikes does not
+/// matter.
 #[test]
 fn networks_that_a_chip_can_hold_lose_nothing() {
     let three = r#"{"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
@@ -209,7 +209,7 @@ fn a_file_of_spikes_drives_a_network_that_answers_step_by_step() {
 }
 
 /// A rise and a fall in the same step cancel out in the trained network, but not on a chip that compares after each
-/// spike. Comparing once a step, at the cost of extra rows and rungs, loses nothing here, and is therefore chosen.
+/// spike. Comparing once a step takes more events, but loses nothing here, and is therefore chosen.
 #[test]
 fn neurons_compare_once_a_step_if_that_agrees_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},
@@ -359,8 +359,7 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
-/// Networks from snnTorch and Norse are read, although these frameworks write each layer as a nested graph, and a
-/// recurrent layer as a cycle.
+/// Networks whose layers are nested graphs, as snnTorch and Norse write them, are read, and so is a recurrent layer.
 #[test]
 fn nested_and_recurrent_graphs_are_taken() {
     let whole = good(&network(&peers("roll.nir").display().to_string()), "");

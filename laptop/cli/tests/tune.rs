@@ -141,8 +141,8 @@ fn held_out_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     }
 }
 
-/// The search tries numbers of spikes a sample above 16 for a flight with an impact, which needs them for an RMSE of
-/// 0.06, but none beyond the double of what the signal needs.
+/// In a flight with an impact, an RMSE of 0.06 needs more than 16 spikes a sample. The search finds such a number, at
+/// most twice the number of spikes that any sample needs.
 #[test]
 fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     let flight = flight("hexarotor.csv");
@@ -278,7 +278,7 @@ fn several_logs_are_tuned_on_together() {
     );
 }
 
-/// A log of noise, a constant, too few samples, no flight, clipped values, or gaps is refused with the reason.
+/// A log is refused with the reason if it is noise or constant, too short, never in the air, clipped, or full of gaps.
 #[test]
 fn logs_that_say_nothing_are_refused() {
     let noise = |count: u64| -> Vec<f64> {

@@ -51,11 +51,10 @@ pub(crate) struct Advise {
     /// simulated drone flew badly with it at this loss
     #[arg(long, value_name = "PERCENT", default_value_t = AdviseRequest::FRAME_LOSS)]
     frame_loss: f64,
-    /// Core on which the measured costs count: M0 or M4F
+    /// Core whose measured costs count: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
-    /// Stop after this many seconds for the whole command; the advice then depends on the machine's speed. Ctrl-C stops
-    /// too
+    /// Stop after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
     #[arg(long, value_parser = lab::input::above_zero)]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel

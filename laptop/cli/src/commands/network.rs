@@ -73,20 +73,20 @@ pub(crate) struct Network {
     parameters: SchemeOptions,
     #[command(flatten)]
     rule: RuleOptions,
-    /// Recording on which the network is tested, in addition to INPUT, on which it is tuned; default: the last third of
-    /// INPUT
+    /// Recording to test the network on, after it was tuned on INPUT; default: the last third of INPUT, on which the
+    /// network is then not tuned
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
-    /// Tune on the whole of INPUT, and test on no other recording
+    /// Tune on the whole of INPUT, without a test on held-out data
     #[arg(long, conflicts_with = "held_out")]
     no_held_out: bool,
     /// Spikes of the network's outputs in the training framework, one line for each step of INPUT. The outputs of the
-    /// chip, and of the file as it is understood here, are compared with these spikes
+    /// chip, and those of the network in double precision, are compared with these spikes
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
-    /// When tinyODIN's neurons compare their potentials with their thresholds: `spike` is after each spike, the chip's
-    /// own way; `step` is once a step, as in training, which takes more events; default: the one that keeps more
-    /// accuracy
+    /// When tinyODIN's neurons compare their potentials with their thresholds: after each spike (`spike`), as the chip
+    /// does by itself, or once a step (`step`), as in training, which takes more events; default: the one that keeps
+    /// more accuracy
     #[arg(long, value_parser = compares())]
     compare: Option<Compare>,
     /// Rust file to write; default: standard output
@@ -241,8 +241,8 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     if options.live { live(&*brought.network, converted.inputs().0) } else { Ok(()) }
 }
 
-/// Simulates the network with steps read from standard input: one line for each step holds the inputs that fire, and
-/// one line of output the clock cycles and the outputs that fired.
+/// Simulates the network step by step. Each line of standard input holds the numbers of the inputs that fire; the line
+/// of output for it holds the number of clock cycles, and the numbers of the outputs that fired.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| -> lab::Result<_> {

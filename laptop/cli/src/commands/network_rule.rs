@@ -8,15 +8,15 @@ use lab::network::{Asked, Current, Decay, Fires, Framework, Numbers, Reset};
 /// Options for the update rule of a network's neurons, which a NIR file does not contain.
 #[derive(Args, Debug)]
 pub(crate) struct RuleOptions {
-    /// Framework in which the network was trained, whose update rule it then follows. A NIR file needs this or --reset;
-    /// on the controller, this or all of the options below
+    /// Framework whose update rule the network follows. A NIR file needs this or --reset; on the controller, this or
+    /// all of the options below
     #[arg(long = "as", value_name = "FRAMEWORK", value_parser = of(&FRAMEWORKS))]
     framework: Option<Framework>,
     /// Reset mode: the effect of a spike on its neuron's potential. One word for all layers, or one for each layer that
     /// fires, comma-separated
     #[arg(long = "reset", value_delimiter = ',', value_parser = of(&RESETS))]
     resets: Vec<Reset>,
-    /// Comparison by which a neuron fires: potential above its threshold, or equal to it as well
+    /// Comparison of a neuron's potential with its threshold: the neuron fires only above the threshold, or also at it
     #[arg(long, value_parser = of(&FIRES))]
     fires: Option<Fires>,
     /// Formula by which a time constant becomes the decay of potentials and currents in a step

@@ -24,7 +24,8 @@ Examples:
   spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
   spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
-    /// Draw panels A-G for the paper's schemes with the paper's settings, and H with their efficiency
+    /// Draw the paper's figure: panels A-G for the paper's schemes, with the paper's settings, and panel H for their
+    /// efficiency
     #[arg(long, conflicts_with_all = ["scheme", "params"])]
     all: bool,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! `spikewire tune`: searches the parameters of a scheme for flight logs.
+//! `spikewire tune`: finds the parameters of a scheme that suit flight logs best.
 
 use crate::inputs::ChannelOptions;
 use crate::options::{FREE, answer, augment, given, option_group, whole};
@@ -74,7 +74,7 @@ pub(crate) struct Tune {
     /// Maximum number of events a second
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
-    /// Core on which the measured costs count: M0 or M4F
+    /// Core whose measured costs count: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
     /// Share of the blocks that is held out, 0 for none
@@ -83,8 +83,8 @@ pub(crate) struct Tune {
     /// Number of blocks of equal length into which each log is cut
     #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
-    /// Stop after this many seconds for the whole command, and keep the best settings so far, which then depend on the
-    /// machine's speed; Ctrl-C stops too
+    /// Stop after this many seconds in total, and keep the best settings so far, which then depend on the machine's
+    /// speed; Ctrl-C stops too
     #[arg(long, value_parser = lab::input::above_zero, help_heading = "Search")]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel
