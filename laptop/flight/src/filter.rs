@@ -29,7 +29,7 @@ pub enum Filter {
     },
 }
 
-/// A running filter: takes a sample, in units of the recording, and returns the filtered sample.
+/// A running filter: takes the samples one by one, and returns the filtered samples.
 pub type Filtering = Box<dyn FnMut(f64) -> f64 + Send>;
 
 impl Filter {

@@ -36,8 +36,8 @@ pub struct Parts {
     pub period: NonZeroU16,
     /// Number of samples from one keyframe, or heartbeat, to the next; 1 or more.
     pub keyframe_every: u32,
-    /// Maximum deviation of the time between samples from the period, in millionths of the period, 0 to 100 000, by the
-    /// sender's clock.
+    /// Maximum deviation from the period of the time between samples, as measured by the sender's clock, in millionths
+    /// of the period, 0 to 100 000.
     pub clock_ppm: u32,
     /// Filter that runs before the encoder of each channel.
     pub filter: Option<Filter>,

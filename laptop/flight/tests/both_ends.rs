@@ -48,8 +48,8 @@ fn on_the_laptop(flight: &Flight, channel: usize) -> (Vec<Fired>, Vec<f64>) {
     (events, decoded)
 }
 
-/// Returns a sample of a sawtooth with a different pace in each channel, which `bindings/c/tests/ends.c` generates too.
-/// The values are the same on every machine.
+/// Returns a sample of a triangle wave with a different frequency in each channel, which `bindings/c/tests/ends.c`
+/// generates too. The values are the same on every machine.
 fn saw(sample: u32, channel: u32, counts: f64) -> f64 {
     let saw = sample * (3 + 2 * channel) % 193;
     let value = (f64::from(if saw < 97 { saw } else { 193 - saw }) - 48.0) / 32.0 * counts;
