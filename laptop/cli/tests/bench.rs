@@ -1,4 +1,5 @@
-//! `bench` with fewer signals agrees with the paper's tables, and with figures recorded from earlier versions.
+//! `bench` with fewer signals agrees with the tables of Dupeyroux et al. (2022), and with figures recorded from earlier
+//! versions.
 
 #![expect(clippy::unreadable_literal, reason = "figures as they are printed")]
 

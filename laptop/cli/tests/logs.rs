@@ -331,8 +331,8 @@ fn spikes_as_messages_decode_as_those_of_a_table() {
     assert!(report.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{report}");
 }
 
-/// A bag of the paper's toolbox decodes as the toolbox's own script does: with the mean of the thresholds, and without
-/// the first message's spike.
+/// A bag written by the toolbox of Dupeyroux et al. (2022) decodes as the toolbox's own script does: with the mean of
+/// the thresholds, and without the first message's spike.
 #[test]
 fn the_toolboxs_own_bag_decodes_as_its_script_does() {
     let numbers =

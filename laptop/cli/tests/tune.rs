@@ -21,7 +21,7 @@ fn number(row: &Value, path: &str) -> f64 {
     row.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path}: {row:#}"))
 }
 
-/// Writes ten seconds of the paper's signal to a file; returns its directory and path.
+/// Writes ten seconds of the test signal of `spikewire signal` to a file; returns its directory and path.
 fn paper_signal() -> (tempfile::TempDir, String) {
     file("signal.csv", good("signal --seconds 10 --seed 3", "").output)
 }

@@ -1,4 +1,5 @@
-//! `spikewire bench`: reproduces Tables I and II of the paper that the schemes come from.
+//! `spikewire bench`: reproduces Tables I and II of Dupeyroux et al. (2022), the paper that many of the schemes come
+//! from.
 
 use crate::options::answer;
 use anyhow::{Result, bail};
@@ -7,7 +8,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lab::bench::{self, paper};
 use std::time::Instant;
 
-/// Reproduce Tables I and II of the paper, cell by cell; fails if a cell differs from the printed one.
+/// Reproduce Tables I and II of the paper, Dupeyroux et al. (2022), cell by cell; fails if a cell differs from the
+/// printed one.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

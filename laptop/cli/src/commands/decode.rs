@@ -14,8 +14,8 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Decode a file of spikes that `encode` wrote, or a ROS log with messages of the paper's toolbox (`spyke_msgs`). The
-/// scheme and its parameters are read from the file itself.
+/// Decode a file of spikes that `encode` wrote, or a ROS log with messages `spyke_msgs`, of the toolbox by Dupeyroux et
+/// al. (2022). The scheme and its parameters are read from the file itself.
 ///
 /// Writes the columns `index,value`; with several channels, one column for each, under its name. If times were
 /// recorded, the column `time_us` follows: exact at events and at gaps, evenly spaced between them.

@@ -33,8 +33,8 @@ pub(crate) struct Encode {
     flight: Option<PathBuf>,
     #[command(flatten)]
     input: InputOptions,
-    /// File to write: spikes as `.csv`, `.txt` or without an extension, or messages of the paper's toolbox
-    /// (`spyke_msgs`) as `.bag` (ROS 1) or `.mcap` (ROS 2); default: standard output
+    /// File to write: spikes as `.csv`, `.txt` or without an extension, or ROS messages `spyke_msgs` as `.bag` (ROS 1)
+    /// or `.mcap` (ROS 2); default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
 }

@@ -28,7 +28,7 @@ pub(crate) struct Frames {
     /// Video file, or several pictures
     #[arg(required = true)]
     video: Vec<PathBuf>,
-    /// Threshold in grey levels, 1 to 254; the paper's figure uses 1 and 10
+    /// Threshold in grey levels, 1 to 254
     #[arg(long, conflicts_with = "contrast")]
     threshold: Option<u8>,
     /// Contrast threshold, as a difference of natural logarithms: 0.2 means 22 % brighter

@@ -13,7 +13,8 @@ use lab::trial::{Recording, Trial};
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// Draw signal and reconstruction above the spikes, in the layout of the paper's first figure.
+/// Draw signal and reconstruction above the spikes, in the layout of the first figure in the paper, Dupeyroux et al.
+/// (2022).
 ///
 /// A scheme without parameters runs with the paper's settings; with `--all`, every scheme does. A long recording is
 /// decimated to the resolution of the picture. The curve decoded from a rate code is drawn without the code's latency,

@@ -1,4 +1,4 @@
-//! `spikewire signal`: writes the test signal of the paper's benchmark as a table.
+//! `spikewire signal`: writes the test signal of the benchmark in Dupeyroux et al. (2022) as a table.
 
 use crate::options::whole;
 use anyhow::Result;
@@ -8,7 +8,8 @@ use lab::output::{Output, is_table};
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Write the test signal of the paper's benchmark as a CSV table `time_us,signal`, 100 samples a second.
+/// Write the test signal of the paper's benchmark, Dupeyroux et al. (2022), as a CSV table `time_us,signal`, 100
+/// samples a second.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:

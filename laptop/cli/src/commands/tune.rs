@@ -29,7 +29,7 @@ use std::time::Instant;
 ///
 /// Some blocks of each log are held out, and the settings found are scored on them too. Settings are scored with the
 /// codec that flies, in the sample type given. Parameters that are given stay fixed; the others are searched. The
-/// default goal is the least RMSE at the efficiency that the paper's settings reach.
+/// default goal is the least RMSE at the efficiency that the settings of Dupeyroux et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
