@@ -44,7 +44,8 @@ const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
 /// Block sizes in 32-bit words, longest first, each with its code in the header.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
-/// First address of the chip's memory. The bus carries the low 26 bits of an address; the chip adds these high 6 bits.
+/// First address of the chip's memory. The bus carries only the low 26 bits of an address; the chip adds the high 6
+/// bits, which are those of this one.
 const BASE: u32 = 0xFC00_0000;
 /// First address beyond the chip's memory.
 const END: u32 = 0xFD00_0000;
@@ -159,7 +160,7 @@ fn blocks(address: u32, words: &[u32]) -> impl Iterator<Item = (u32, u8, &[u32])
     })
 }
 
-/// An event that a convolutional layer takes or sends, in two 32-bit words.
+/// An activation of a convolutional layer, as an event of two 32-bit words.
 ///
 /// ```
 /// use spikewire_chips::{ChipError, ConvolutionEvent};
@@ -207,7 +208,7 @@ impl ConvolutionEvent {
     }
 }
 
-/// An event that a dense (fully connected) layer takes or sends, in two 32-bit words.
+/// An activation of a dense (fully connected) layer, as an event of two 32-bit words.
 ///
 /// ```
 /// use spikewire_chips::{ChipError, DenseEvent};

@@ -257,7 +257,7 @@ impl<K: Kind> AerPort for Port<Chip<K>> {
     }
 }
 
-/// Runs the chip for the time of a delay, with the chip at 10 MHz.
+/// Runs the chip for the time of a delay, at a clock frequency of 10 MHz.
 impl<C: Model> DelayNs for Board<C> {
     fn delay_ns(&mut self, ns: u32) {
         self.run(ns.div_ceil(100));

@@ -96,8 +96,8 @@ pub struct Steps<'a> {
     pub layers: &'a [StepsLayer],
     /// Number of events that raise a layer in a step, and number of events that later lower all neurons again.
     pub rungs: u16,
-    /// When all neurons leak, for each step of a repeating cycle: the numbers of lowering events after which a leak is
-    /// sent, in ascending order.
+    /// The leaks of all neurons in each step: the number of lowering events that come before each leak, in ascending
+    /// order. Steps take the lists in turn.
     pub leaks: &'a [&'a [u16]],
     /// Number of events that raise all neurons again after they were lowered, before the leaks of neurons that fired;
     /// as many events lower them afterwards. 0 if these leaks need no raising.

@@ -259,7 +259,7 @@ fn bad_addresses_and_values_are_refused_without_a_byte() {
         assert!(matches!(refused, Err(ChipError::OutOfRange { what: "address", .. })));
     }
     assert!(matches!(chip.write(0xFCFF_FFFC, &[0, 0]), Err(ChipError::OutOfRange { max: 4, .. })));
-    // These addresses end after the chip's memory, so the vendor's driver refuses them, too.
+    // These addresses lie after the chip's memory, so the vendor's driver refuses them, too.
     for address in [0xFD00_0000, 0xFEDC_BA98, 0xFFFF_FFFC] {
         let refused = Err(ChipError::OutOfRange {
             what: "address",

@@ -2,7 +2,8 @@
 
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 
-/// Passes transactions on, except for one, which fails before any byte is sent.
+/// An SPI device that passes transactions on to another device, except for one transaction, which fails before any byte
+/// is sent.
 #[derive(Debug)]
 pub(crate) struct Failing<D> {
     /// The bus to which transactions are passed.

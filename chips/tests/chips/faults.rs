@@ -438,7 +438,7 @@ fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
 /// Two faults that cancel out in the last frames of a sync check, and leave a wrong value in the byte that the check
 /// writes, are an error.
 #[test]
-fn a_pair_within_a_step_check_is_an_error() {
+fn a_pair_within_a_sync_check_is_an_error() {
     use ClockFault::{Doubled, Lost};
     for (before, lost, doubled) in
         [(0xEDFF_1087, 580, 614), (0xB941_10FA, 588, 631), (0x46A2_1000, 535, 570)]

@@ -99,7 +99,7 @@ fn reads_per_clock_multiply_the_polls_of_every_wait() {
 
 /// The sync check changes the byte of synapses (255, 248) and (255, 249), and restores it.
 #[test]
-fn the_byte_that_the_step_check_writes_keeps_its_synapses() {
+fn the_byte_that_the_sync_check_writes_keeps_its_synapses() {
     let board = TinyBoard::new(4, 1);
     let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);
     let mut gated = chip.reset(&mut board.clone()).unwrap();

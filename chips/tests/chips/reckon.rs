@@ -639,7 +639,7 @@ fn spi_needs_an_eighth_of_the_chips_clock_to_read() {
 }
 
 /// Asserts that the chip's weights and registers are those of `network`.
-fn expected(board: &Board, network: &impl DescribeReckOn, at: &str) {
+fn assert_holds(board: &Board, network: &impl DescribeReckOn, at: &str) {
     let pins = board.pins();
     for input in 0..network.inputs() {
         for neuron in 0..network.neurons() {
@@ -703,7 +703,7 @@ fn search(seed: u64, count: &mut [u32; 2]) {
                 Ok(mut programmed) => {
                     is_loaded = programmed.load(&NETWORK, |_| ()).is_ok();
                     if is_loaded {
-                        expected(&board, &NETWORK, &at);
+                        assert_holds(&board, &NETWORK, &at);
                     }
                     is_loaded
                 }
@@ -724,7 +724,7 @@ fn search(seed: u64, count: &mut [u32; 2]) {
                 Ok(Ok(mut programmed)) => {
                     let is_same = programmed.verify(&NETWORK).is_ok();
                     if is_same {
-                        expected(&board, &NETWORK, &at);
+                        assert_holds(&board, &NETWORK, &at);
                     }
                     is_same
                 }

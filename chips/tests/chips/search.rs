@@ -81,7 +81,7 @@ struct Known {
     registers: Option<TinyOdinRegisters>,
     fired: Vec<u8>,
     out: Vec<u8>,
-    /// Whether spikes in a closed loop may have changed the potentials in a way that is not predicted.
+    /// Whether the chip ran in closed loop, in which the test does not predict the potentials.
     is_stale: bool,
 }
 

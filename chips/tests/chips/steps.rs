@@ -7,8 +7,8 @@ use spikewire_chips::{
     Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
 };
 
-/// A neuron in plain arithmetic. Its potential is the one that it compares with its threshold, without what rungs add
-/// on the chip.
+/// A neuron in plain arithmetic. Its potential is the one that it compares with its threshold. The offset that the
+/// chip's potential has during a step is left out.
 #[derive(Clone, Debug)]
 struct Neuron {
     threshold: i32,

@@ -207,7 +207,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let brought = match &placed {
         Placed::Chip(chip, trained) => {
             let chip = *chip;
-            bring(&Request { chip, trained, tuned, held_out, own, compare, progress })
+            bring(&Request { chip, trained, tuned, held_out, framework: own, compare, progress })
         }
         Placed::Controller(model) => {
             ensure!(

@@ -21,7 +21,7 @@ pub struct Request<'a> {
     pub held_out: Option<HeldOut<'a>>,
     /// The outputs' spikes as the training framework computed them, by step: for the recording tuned on, and for the
     /// one held out.
-    pub own: Option<(&'a Trains, &'a Trains)>,
+    pub framework: Option<(&'a Trains, &'a Trains)>,
     /// When neurons compare with their thresholds. `None` tries both ways and chooses the one that agrees better with
     /// the original.
     pub compare: Option<Compare>,
@@ -119,7 +119,7 @@ pub struct LayerFigures {
 /// Returns an error if the network does not fit the chip, if the framework's spikes do not fit the network, or if the
 /// chip's model refuses a call.
 pub fn bring(request: &Request) -> Result<Brought> {
-    let Request { chip, trained, tuned, held_out, own, compare, progress } = *request;
+    let Request { chip, trained, tuned, held_out, framework: own, compare, progress } = *request;
     let mut original = Original::of(trained, tuned);
     let mut other = held_out.map(|held_out| Original::of(trained, held_out.steps));
     let from = held_out.map_or(0, |held_out| held_out.from);

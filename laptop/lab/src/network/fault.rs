@@ -8,7 +8,7 @@ use catalogue::kinds;
 pub(super) use crate::Result;
 
 kinds! {
-    /// The reason for which a network cannot be read, or does not fit.
+    /// The reason for which a network cannot be read, or does not fit its target.
     pub enum NetworkKind by spell of subject {
         Fault { what: String } => ("{what}"),
         OpenRule { framework: Option<Framework>, open: Vec<Choice> } => (

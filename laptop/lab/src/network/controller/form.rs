@@ -16,7 +16,7 @@ const LARGEST: f64 = 1e15;
 /// little from that of the training.
 const A_STEP: f64 = 0.98;
 
-/// Largest difference from 1 at which a gain counts as 1 that was rounded.
+/// Gains that differ from 1 by less than this are taken for exactly 1.
 const ROUNDING: f64 = 1e-5;
 
 impl Model {

@@ -7,15 +7,15 @@ use std::fmt::{self, Display};
 /// The training framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// snnTorch, which trains with five kinds of reset; its files do not say with which one.
+    /// The framework snnTorch, which trains with five kinds of reset; its files do not say with which one.
     SnnTorch,
-    /// Norse.
+    /// The framework Norse.
     Norse,
-    /// `SpikingJelly`.
+    /// The framework `SpikingJelly`.
     SpikingJelly,
-    /// Rockpool.
+    /// The framework Rockpool.
     Rockpool,
-    /// Sinabs.
+    /// The framework Sinabs.
     Sinabs,
     /// The reference program of the NIR project.
     Nir,

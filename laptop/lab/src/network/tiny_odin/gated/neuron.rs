@@ -3,7 +3,7 @@
 use super::shape::Shape;
 
 /// A neuron that compares once a step, and the weights that lead to it. Its potential is the one that it compares with
-/// its threshold, without what rungs add on the chip.
+/// its threshold. The offset that the chip's potential has during a step is left out.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
     /// The weight of each input; then, in a recurrent layer, that of each of its neurons. On the chip a weight is the

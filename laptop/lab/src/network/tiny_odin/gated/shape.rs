@@ -22,10 +22,11 @@ pub(super) struct Shape {
     /// to 0 before.
     pub above: u16,
     pub below: u16,
-    /// When all neurons leak, for each step of a repeating cycle: the numbers of lowering events after which a leak
-    /// comes.
+    /// The leaks of all neurons in each step: the number of lowering events that come before each leak. Steps take the
+    /// lists in turn.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of events that raise neurons again before the leaks of those that fired; 0 if spikes subtract.
+    /// Number of rungs that raise all neurons again, after they were lowered, before the leaks that only neurons that
+    /// fired receive. 0 if spikes subtract the threshold.
     pub lift: u16,
     /// Number of rungs between two leaks; 0 if leaks do not imitate a share of the potential.
     pub spacing: u16,
