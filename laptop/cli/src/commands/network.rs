@@ -212,7 +212,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let brought = match &converted {
         Converted::Chip(chip, trained) => {
             let chip = *chip;
-            bring(&Request { chip, trained, tuned, held_out, own, compare, progress })
+            bring(&Request { chip, trained, tuned, held_out, framework: own, compare, progress })
         }
         Converted::Controller(model) => {
             ensure!(
