@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-/// The mean and deviation of one cell of a table.
+/// The mean and standard deviation of one cell of a table.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Statistics {
     /// The mean.
     pub mean: f64,
-    /// The sample standard deviation (divided by N-1).
+    /// The sample standard deviation, with divisor N - 1.
     pub deviation: f64,
     /// The number of tests.
     pub count: usize,
@@ -22,8 +22,7 @@ impl Statistics {
         Self { mean, deviation: (squares / (count as f64 - 1.0)).sqrt(), count }
     }
 
-    /// Returns the standard error of the difference between this mean and one over `others` tests of the same
-    /// deviation.
+    /// Returns the standard error of the difference between this mean and the mean of `others` tests with the same deviation.
     pub fn error_against(&self, others: usize) -> f64 {
         self.deviation * (1.0 / self.count as f64 + 1.0 / others as f64).sqrt()
     }
