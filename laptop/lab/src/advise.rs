@@ -34,7 +34,8 @@ const PHASE: f64 = 20.0;
 /// a threshold that falls behind at 0.9 % of the samples flies; one that does at 3.9 % loses steps and flips.
 const STEEP: f64 = 0.02;
 
-/// Smallest sample rate in multiples of the loop's bandwidth. The Nyquist rate, a multiple of 2, is too small for control.
+/// Smallest sample rate that a control loop can work with, in multiples of the loop's bandwidth. The Nyquist rate, a
+/// multiple of 2, is too small.
 const FEWEST: f64 = 4.0;
 
 /// Returns the largest latency, in samples, that a loop of `bandwidth` Hz tolerates at `rate` samples a second.
@@ -44,7 +45,7 @@ fn borne(bandwidth: f64, rate: f64) -> f64 {
 
 /// The recordings to advise on, and limits on what a scheme may cost, for [`advise`].
 pub struct AdviseRequest {
-    /// The recordings, one a channel; each channel is also judged by itself.
+    /// The recordings, one for each channel; each channel is also judged by itself.
     pub recordings: Vec<Recording>,
     /// Sample type of the codecs.
     pub sample: SampleType,
@@ -52,8 +53,8 @@ pub struct AdviseRequest {
     pub max_rmse: Option<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
-    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. Codes that are too late
-    /// for the loop, or that cannot keep up with the signal, are not advised.
+    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate.
+    /// Codes that are too late for the loop, or that cannot keep up with the signal, are not advised.
     pub loop_bandwidth: Option<f64>,
     /// Share of frames that the link loses, in percent, 0 to 10. With a control loop, a code is not advised if a
     /// simulated drone flew badly on it at this loss.
@@ -103,7 +104,7 @@ pub struct Advice {
     reaching: Vec<Candidate>,
     /// The schemes that miss the allowed RMSE or break a limit, each with the reason.
     others: Vec<String>,
-    /// The schemes among `others` that flew badly in the simulator, which holds for every channel.
+    /// The schemes among `others` that flew badly in the simulator; they are the same for every channel.
     #[serde(skip)]
     unflown: Vec<String>,
     /// Whether a search stopped before it had scored all its settings.
@@ -121,7 +122,7 @@ pub struct Advice {
     is_one_of_many: bool,
 }
 
-/// A filter whose corner is possible at the recording's sample rate.
+/// A filter whose corner frequency is possible at the recording's sample rate.
 #[derive(Clone, Copy)]
 struct Filtered {
     filter: Filter,
@@ -150,7 +151,7 @@ impl Filtered {
 enum Tuning {
     /// Settings within the allowed RMSE.
     Reached(Box<Candidate>),
-    /// The reason that no settings are within it, in words that follow the scheme's name in a sentence.
+    /// The reason that no settings are within the allowed RMSE, in words that follow the scheme's name in a sentence.
     Missed(String),
 }
 
@@ -257,7 +258,8 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme briefly, unless it is known to fly badly.
+    /// Tunes a scheme briefly and keeps the outcome, or only the reason not to tune if the scheme flew badly in the
+    /// simulator.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -284,7 +286,7 @@ impl Advice {
         Ok(())
     }
 
-    /// Tunes a scheme briefly, with the parameters in `fixed` given.
+    /// Tunes a scheme briefly, while the parameters in `fixed` keep their values.
     fn tuned(
         &self,
         request: &AdviseRequest,
@@ -354,8 +356,8 @@ impl Advice {
         Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
     }
 
-    /// Returns the low-pass behind which the scheme flew in the simulated control loop. Returns `None` if no loop bandwidth was
-    /// given, or if the filter is not possible at the recording's sample rate.
+    /// Returns the low-pass behind which the scheme flew in the simulated control loop. Returns `None` if no loop
+    /// bandwidth was given, or if the filter is not possible at the recording's sample rate.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;
@@ -425,7 +427,8 @@ impl Advice {
         } else if self.objection.is_none() {
             lines.push(format!("  no scheme comes within an RMSE of {}", short(self.max_rmse)));
         }
-        // A bank's page lists the schemes that did not fly once for all channels.
+        // With several channels, the page of the bank lists the schemes that did not fly, and the channels' pages leave
+        // them out.
         let is_told = |own: &&String| !self.is_one_of_many || !self.unflown.contains(own);
         let others: Vec<&str> = self.others.iter().filter(is_told).map(String::as_str).collect();
         if !others.is_empty() {
@@ -486,8 +489,8 @@ impl Advice {
     }
 }
 
-/// Returns the number of bytes that a trial's events take on the crate's link, in full frames. A scheme whose decoder needs keyframes sends
-/// one a second.
+/// Returns the number of bytes that a trial's events take on the crate's link, in full frames. A scheme whose decoder
+/// needs keyframes sends one a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.

@@ -5,7 +5,8 @@ use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use catalogue::run::{Codec, Event, Settings};
 
-/// Codecs of one scheme, one for each channel. Neurons are numbered through: those of channel 1 follow those of channel 0.
+/// Codecs of one scheme, one for each channel. Neurons are numbered through: those of channel 1 follow those of channel
+/// 0.
 pub struct Bank {
     codecs: Vec<Codec>,
     neurons: u16,
@@ -14,8 +15,8 @@ pub struct Bank {
 }
 
 impl Bank {
-    /// Makes a codec for each channel, in the state in which a recording begins. A stochastic code gets a separate stream of random numbers
-    /// for each channel.
+    /// Makes a codec for each channel, in the state in which a recording begins. A stochastic code gets a separate
+    /// stream of random numbers for each channel.
     ///
     /// # Errors
     /// Returns an error if a parameter is invalid, or if there are too many neurons in all.

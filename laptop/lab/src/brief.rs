@@ -2,8 +2,8 @@
 
 use catalogue::run::Value;
 
-/// Formats parameters as `threshold=0.1, start=0.001`. Taps are given by their number and sum, other lists of over four numbers by their
-/// ends and length.
+/// Formats parameters as `threshold=0.1, start=0.001`. Taps are given by their number and sum, other lists of over four
+/// numbers by their ends and length.
 pub fn brief(parameters: &[(&'static str, Value)]) -> String {
     let words = parameters.iter().map(|(key, value)| match list(value) {
         Some(taps) if *key == "taps" => {

@@ -22,7 +22,7 @@ pub struct Coding {
 }
 
 impl Coding {
-    /// Makes the coding whose parameters complete to `settings`.
+    /// Makes the coding with all parameters of `settings`.
     pub fn of_settings(scheme: Scheme, settings: &Settings) -> Self {
         Self { scheme, sample: settings.sample, asked: settings.to_asked(scheme.info()) }
     }
@@ -105,8 +105,8 @@ impl Coding {
         Ok(coding)
     }
 
-    /// Builds the scheme once, which finds values that are invalid while their lines are known. Does nothing if a parameter is left to
-    /// options or to a recording.
+    /// Builds the scheme once, to report invalid values with their lines in the file. Does nothing if a parameter is
+    /// left to options or to a recording.
     fn built_alone(&self) -> Result<()> {
         let Self { scheme, sample, asked } = self;
         let is_open = |own: &Parameter| {

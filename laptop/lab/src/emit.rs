@@ -1,4 +1,5 @@
-//! Writes source code for firmware: a constant in Rust, a TOML file of parameters, or a crate that builds the C library.
+//! Writes source code for firmware: a constant in Rust, a TOML file of parameters, or a crate that builds the C
+//! library.
 
 use crate::coding::Coding;
 use crate::error::At;
@@ -49,8 +50,8 @@ pub struct Codec {
     pub coding: Coding,
 }
 
-/// Writes a crate into a new directory that builds a C library of exactly these codecs, with their parameters in flash. The crate depends
-/// on the checkout at `spikewire`, or on the published crates if `None`.
+/// Writes a crate into a new directory that builds a C library of exactly these codecs, with their parameters in flash.
+/// The crate depends on the checkout at `spikewire`, or on the published crates if `None`.
 ///
 /// # Errors
 /// Returns an error if a parameter is missing or invalid, if the library has no such scheme, if two codecs share a
@@ -72,8 +73,8 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     write(directory, "codecs", &files, spikewire).map_err(unwritten)
 }
 
-/// Writes a crate into a new directory that builds a C library of sender and receiver of each flight, under the name given with the flight.
-/// The crate depends on the checkout at `spikewire`, or on the published crates if `None`.
+/// Writes a crate into a new directory that builds a C library of sender and receiver of each flight, under the name
+/// given with the flight. The crate depends on the checkout at `spikewire`, or on the published crates if `None`.
 ///
 /// # Errors
 /// Returns an error if a scheme has no constant, if two flights share a name, or if the directory exists.
@@ -133,7 +134,8 @@ fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Const
     )
 }
 
-/// Writes a crate into a new directory: manifest, a library of the module `module`, and `files`, each a path and a text.
+/// Writes a crate into a new directory: the manifest, a library that contains the module `module`, and `files`, each
+/// given by path and text.
 fn write(
     directory: &Path,
     module: &str,

@@ -30,8 +30,8 @@ pub fn encode_flight(
     encode_from(&open, &input, (scheme, sample, &asked), format, output)
 }
 
-/// Encodes channels of a recording, in `format` or as a table if `None`. Opens the output last, once recording and parameters are known to
-/// be valid.
+/// Encodes channels of a recording to a log in `format`, or to a table of spikes if `None`. The output is opened last,
+/// once recording and parameters are known to be valid.
 ///
 /// Returns the output, which the caller must finish, and notes for the user, a line each.
 ///
@@ -184,7 +184,7 @@ fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
     }
 }
 
-/// Formats the numbers of samples and spikes, and the sample rate, as lines of notes.
+/// Formats the numbers of samples and spikes, and the clock's findings in the times, as lines of notes.
 fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<String> {
     let Summary { samples, rejected, events } = *summary;
     let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };

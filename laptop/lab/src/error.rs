@@ -1,5 +1,5 @@
-//! The library's errors, as values. A program matches on their kind; each front end (command line, Python, web page) words them with its
-//! own spelling of the settings.
+//! The library's errors, as values. A program matches on their kind; each front end (command line, Python, web page)
+//! words them with its own spelling of the settings.
 
 use crate::events::EventsKind;
 #[cfg(feature = "frames")]

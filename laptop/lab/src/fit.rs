@@ -142,7 +142,7 @@ pub fn rounding(settings: &Settings) -> Option<String> {
     (!words.is_empty()).then(|| format!("in {}, {}", settings.sample, words.join(", ")))
 }
 
-/// Adds to an error about settings, if the sample type cannot hold the column's steps, that fact as the reason.
+/// Adds a reason to an error about settings, if the sample type cannot hold the steps of the column `values`.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

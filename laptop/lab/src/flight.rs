@@ -1,4 +1,5 @@
-//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the frames of its link to values.
+//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the frames of its link to
+//! values.
 
 use crate::Result;
 use crate::coding::Coding;
@@ -30,8 +31,8 @@ impl Coding {
     }
 }
 
-/// Makes a flight of tuned channels, each with its name, scheme and settings, for samples of this type and rate. The flight sends 20
-/// keyframes a second.
+/// Makes a [`Flight`] of tuned channels, each with its name, scheme and settings, for samples of this type and rate.
+/// The flight sends 20 keyframes a second.
 ///
 /// # Errors
 /// Returns an error if there are no channels, if their schemes differ or they differ in more than numbers, or if the
@@ -47,10 +48,12 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
     of_settings(*scheme, sample, rate, rows.iter().map(asked))
 }
 
-/// Makes a flight of channels, each with its name and the parameters that are set. The flight sends 20 keyframes a second.
+/// Makes a [`Flight`] of channels, each with its name and the parameters that are set. The flight sends 20 keyframes a
+/// second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, if they differ in more than numbers, or if the rate's period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, if they differ in more than numbers, or if the rate's period cannot be
+/// expressed in whole µs.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,

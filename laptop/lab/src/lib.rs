@@ -1,4 +1,5 @@
-//! The library of the laptop programs: reads recordings, and makes spikes, scores, parameters, advice, pictures and networks of them.
+//! The library of the laptop programs: reads recordings, and makes spikes, scores, parameters, advice, pictures and
+//! networks of them.
 //!
 //! The library has no command line and prints nothing. The program `spikewire` and the Python bindings are built on it.
 

@@ -173,8 +173,8 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Estimates the standard deviation of the noise from second differences, averaged over the quietest tenth of the windows. The second
-/// differences of a slow signal are near 0; those of white noise have √6 times its deviation.
+/// Estimates the standard deviation of the noise from second differences, averaged over the quietest tenth of the
+/// windows. The second differences of a slow signal are near 0; those of white noise have √6 times its deviation.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));
@@ -208,8 +208,8 @@ fn flatness(values: &[f64]) -> f64 {
     if arithmetic > 0.0 { logarithm.exp() / arithmetic } else { 1.0 }
 }
 
-/// Returns for each window whether the channel is quiet there: whether its deviation is at most four times that of the quietest twentieth
-/// of the windows.
+/// Returns for each window whether the channel is quiet there: whether its deviation is at most four times that of the
+/// quietest twentieth of the windows.
 fn quiet(values: &[f64]) -> Vec<bool> {
     const QUIET: f64 = 4.0;
     let deviations: Vec<f64> = values.chunks(WINDOW).map(deviation).collect();
@@ -240,7 +240,8 @@ fn bandwidth(values: &[f64]) -> f64 {
     bin.unwrap_or_default() as f64 / values.len() as f64
 }
 
-/// Returns the standard deviation of the steps between `times`, which are in µs, as ms and without gaps, and the number of gaps.
+/// Returns the standard deviation, in ms, of the steps in `times` that are no gaps, and the number of gaps. `times` are
+/// in µs.
 fn steps(times: &[i64]) -> (Option<f64>, usize) {
     let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
     let mut sorted = steps.clone();
@@ -263,7 +264,8 @@ mod tests {
         (0..count).map(next).collect()
     }
 
-    /// Uniform noise of width 1, whose deviation is √(1/12), is measured within 25 %, both alone and on a slow wave of amplitude 40.
+    /// Uniform noise of width 1, whose deviation is √(1/12), is measured within 25 %, both alone and on a slow wave of
+    /// amplitude 40.
     #[test]
     fn noise_is_found_under_a_wave() {
         let noisy = white(6400);

@@ -71,7 +71,7 @@ impl Port {
         self.is_file
     }
 
-    /// Reads bytes that have arrived into the buffer. A serial port waits for them for at most 100 ms.
+    /// Reads into `buffer` the bytes that have arrived. On a serial port, waits for bytes for at most 100 ms.
     ///
     /// # Errors
     /// Returns an error if the port failed or was disconnected.

@@ -3,7 +3,8 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Largest share of its size by which rounding may change a step, on average. A sample type that changes steps more is said to lose them.
+/// Largest mean error that rounding may cause in the steps, as a share of their mean size. A sample type that causes
+/// more is said to lose the steps.
 const PART: f64 = 0.1;
 
 /// The steps from sample to sample of a column, and their errors in a sample type.
@@ -69,8 +70,8 @@ impl Resolution {
         self.off > 0.0
     }
 
-    /// Returns a sentence that describes the steps which the sample type loses, and names the types that hold them; `None` if the type
-    /// loses none.
+    /// Returns a sentence that describes the steps which the sample type loses, and names the types that hold them;
+    /// `None` if the type loses none.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -127,8 +128,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column's steps survive rounding to multiples of `step`. Half of `step` is taken as the error of each; the mean
-    /// error of the difference of two rounded values is a third.
+    /// Returns whether the column's steps survive rounding to multiples of `step`. Half of `step` is taken as the error
+    /// of a rounded column's step, whose mean is only a third.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }
@@ -165,7 +166,8 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// If a sample type loses the steps of a column, the types named in its place lose none, for columns of any size and step.
+    /// If a sample type loses the steps of a column, the types named in its place lose none, for columns of any size
+    /// and step.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {

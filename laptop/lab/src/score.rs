@@ -26,7 +26,7 @@ pub struct Figures {
     pub spikes_per_second: Option<f64>,
     /// The parameters that were used, by their keys.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// The signal's slope compared with the largest that the code can follow; `None` if the code can follow any.
+    /// The signal's slope compared with the largest that the code can follow; `None` if the code can follow any slope.
     pub slope: Option<Steep>,
     /// Notes for the user.
     pub notes: Vec<String>,

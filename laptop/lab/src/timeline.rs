@@ -11,7 +11,8 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// Starts without known times. Samples before the first known time and after the last will be spaced by `rate`, in samples a second.
+    /// Starts without known times. Samples before the first known time and after the last will be spaced by `rate`, in
+    /// samples a second.
     pub fn new(rate: Option<f64>) -> Self {
         Self { step: rate.map_or(0.0, |rate| 1e6 / rate), before: None, ahead: VecDeque::new() }
     }

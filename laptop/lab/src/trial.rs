@@ -14,8 +14,8 @@ use std::ops::Range;
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// The samples' times in µs; empty if no times were recorded. Where the recorder's clock restarted, later times are moved such that a
-    /// usual step lies between both segments.
+    /// The samples' times in µs; empty if no times were recorded. Where the recorder's clock restarted, the later
+    /// segment is moved to follow the earlier one after a usual step.
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
@@ -90,7 +90,8 @@ impl Recording {
             .collect()
     }
 
-    /// Returns the recording with each sample replaced by the filter's value for it. `start` makes a new filter for each segment.
+    /// Returns the recording with each sample replaced by the filter's value for it. `start` makes a new filter for
+    /// each segment.
     #[must_use]
     pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
         let mut values = self.values.clone();
@@ -138,15 +139,16 @@ impl Recording {
     }
 }
 
-/// Splits `samples` samples into segments; `bounds` holds the index of the first sample of each segment after the first.
+/// Splits `samples` samples into segments; `bounds` holds the index of the first sample of each segment after the
+/// first.
 fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.insert(0, 0);
     bounds.push(samples);
     bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-/// Moves the times of each segment after the first, such that `period` lies between the segment before it and its own earliest time. Times
-/// are in µs.
+/// Moves the times of each later segment: its earliest time follows the latest time of the segment before by `period`.
+/// Times are in µs.
 fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     let mut all: Vec<i64> = Vec::with_capacity(times.len());
     let mut latest: Option<i64> = None;

@@ -27,10 +27,11 @@ type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 pub struct Link {
     /// Length of the sub-timesteps in µs, if the code has any.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint that the sender's frames carry. If `None`, it is computed from the schemes; if one scheme stands for all channels, for
-    /// the number of channels that matches the sender's fingerprint.
+    /// Fingerprint that the sender's frames carry. If `None`, it is computed from the schemes; if one scheme stands for
+    /// all channels, for the number of channels that matches the sender's fingerprint.
     pub fingerprint: Option<Fingerprint>,
-    /// Largest deviation of the sample period from its nominal length, in parts per million; the receiver's default if `None`.
+    /// Largest deviation of the sample period from its nominal length, in parts per million; the receiver's default if
+    /// `None`.
     pub clock_ppm: Option<u32>,
 }
 
@@ -40,7 +41,8 @@ impl From<Option<u32>> for Link {
     }
 }
 
-/// Makes a receiver and passes it to `then`. `settings` holds one set for each channel, or a single set for all channels.
+/// Makes a receiver and passes it to `then`. `settings` holds one set for each channel, or a single set for all
+/// channels.
 ///
 /// # Errors
 /// Returns an error if a parameter is out of its range, if there are too many channels, or if `then` returns one.
@@ -222,7 +224,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     channels: usize,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Whether each channel has a value: from the start if keyframes resynchronize the code, otherwise from the channel's first event on.
+    /// Whether each channel has a value: from the start if keyframes resynchronize the code, otherwise from the
+    /// channel's first event on.
     has_fired: [bool; N],
     /// Tick one sample period after the last received event, at which the event's sample is over.
     end: Option<Tick>,
@@ -246,9 +249,9 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels keyframes of the sender's sample type with the decoders' type, which stands for all fixed-point types of one width.
-    /// Keyframes labelled with the decoders' type, if the sender has a different one, are relabelled too, which makes the receiver count
-    /// them as misfits.
+    /// Relabels keyframes of the sender's sample type with the decoders' type, which stands for all fixed-point types
+    /// of one width. Keyframes labelled with the decoders' type, if the sender has a different one, are relabelled too,
+    /// which makes the receiver count them as misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -278,11 +281,11 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Turns the decoded values into items and appends these; the first `keyframes` values are keyframes. `before` says which channels were
-    /// exact before the frame.
+    /// Turns the decoded values into items and appends these; the first `keyframes` values are keyframes. `before` says
+    /// which channels were exact before the frame.
     ///
-    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on, which keeps every
-    /// estimate unmarked.
+    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on,
+    /// which keeps every estimate unmarked.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
@@ -306,8 +309,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Returns the fingerprint that a sender with these schemes has in its sample type. If one scheme stands for all channels, their number
-    /// is unknown; each number is tried until one gives the fingerprint `sender`.
+    /// Returns the fingerprint that a sender with these schemes has in its sample type. If one scheme stands for all
+    /// channels, their number is unknown; each number is tried until one gives the fingerprint `sender`.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {

@@ -21,8 +21,9 @@ use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 /// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
 
-/// Seconds between keyframes if no frame is lost. A receiver that joins late waits up to this long.
-const ALONE: f64 = 1.0;
+/// Seconds between keyframes of a scheme that was not flown in a control loop. A receiver that joins late waits up to
+/// this long.
+const KEYFRAMES: f64 = 1.0;
 
 /// The advice on all channels together.
 #[derive(Debug, Serialize)]
@@ -49,7 +50,7 @@ struct Bank {
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
-    /// Whether the scheme flew behind a filter that is not possible at this rate.
+    /// Whether the scheme flew behind a filter that is not possible at the recordings' sample rate.
     lacks_filter: bool,
     /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code, if it flew.
     flown: Option<Error>,
@@ -66,7 +67,8 @@ struct BankChannel {
 }
 
 impl BankAdvice {
-    /// Finds the schemes that suit all channels fit for tuning, and ranks them by their bytes on the link.
+    /// Finds the schemes that suit all channels, leaving out channels unfit for tuning, and ranks them by bytes on the
+    /// link.
     ///
     /// # Errors
     /// Returns an error if the rate is unknown, or if its period cannot be expressed in whole µs.
@@ -182,7 +184,7 @@ impl BankAdvice {
     }
 }
 
-/// Makes a bank of the scheme for all channels. The inner error is the reason that there is none.
+/// Makes a bank: one scheme for all channels. The inner error is the reason that no bank can be made.
 fn bank(
     request: &AdviseRequest,
     scheme: Scheme,
@@ -193,7 +195,7 @@ fn bank(
 ) -> Result<Result<Bank, String>> {
     let in_loop = request.loop_bandwidth.is_some();
     let flown = flown(scheme.name()).filter(|_| in_loop);
-    let apart = flown.and_then(Flown::keyframes).unwrap_or(ALONE);
+    let apart = flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES);
     let shared = shared(scheme, rows);
     let mut channels = Vec::new();
     let mut parts = Vec::new();
@@ -291,8 +293,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// Returns the parameters that all channels of a bank must share: for a count, the largest of the channels' values; otherwise the first
-/// channel's value.
+/// Returns the parameters that all channels of a bank must share: for a count, the largest of the channels' values;
+/// otherwise the first channel's value.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;
@@ -310,8 +312,8 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     shared
 }
 
-/// Returns the number of events of all channels, and of their bytes on the link. In a control loop, each sample's frame is sent at once;
-/// otherwise frames are filled first.
+/// Returns the number of events of all channels, and of their bytes on the link. In a control loop, each sample's frame
+/// is sent at once; otherwise frames are filled first.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

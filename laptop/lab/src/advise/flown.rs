@@ -1,13 +1,13 @@
-//! Results of flying simulated drones, whose rotors shake the sensor, on each code: the figures of `docs/loop.md`, measured by `cargo xtask
-//! write loop`.
+//! Results of flying simulated drones, whose rotors shake the sensor, on each code: the figures of `docs/loop.md`,
+//! measured by `cargo xtask write loop`.
 
 use crate::flight::Filter;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The measured figures, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`, because a source package contains only
-/// files of its own directory.
+/// The measured figures, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`, because a source
+/// package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
 /// A code counts as flying if its error is at most this many times the error without a code.
@@ -33,7 +33,7 @@ pub(crate) struct Flown {
     /// Flights of the drone and controller of `here`, with 10 % of the frames lost.
     #[serde(rename = "every tenth frame lost")]
     tenth: Flights,
-    /// Flights of several drones and controllers at several sample rates, by simulator, controller and rate.
+    /// Flights of several drones and controllers at several sample rates. A key names simulator, controller and rate.
     everywhere: BTreeMap<String, Flights>,
 }
 
@@ -117,7 +117,8 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of the errors to those of `other`, over the entries of `everywhere` in which both have an error.
+    /// Returns the mean ratio of the errors to those of `other`, over the entries of `everywhere` in which both have an
+    /// error.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

@@ -61,8 +61,8 @@ pub const RMSE: Table = Table {
     deviations: [
         [0.39, 0.24, 0.01, 0.04, 0.05, 0.03],
         [0.68, 0.54, 0.01, 0.02, 0.03, 0.01],
-        // 0.06 does not fit its column. The comments of the toolbox's Benchmark.m, which hold the same tables to four decimals, have
-        // 0.0059 here.
+        // 0.06 does not fit its column. The comments of the toolbox's Benchmark.m, which hold the same tables to four
+        // decimals, have 0.0059 here.
         [1.17, 0.86, 0.00, 0.01, 0.02, 0.06],
         [2.00, 1.57, 0.00, 0.00, 0.01, 0.00],
         [2.98, 2.17, 0.00, 0.00, 0.01, 0.00],

@@ -7,9 +7,10 @@ use serde::Serialize;
 use serde_json::{Value, json as object};
 use std::fmt::Write;
 
-/// Largest difference of a measured mean from the paper's, in standard errors.
+/// Largest difference of a measured mean from the paper's that counts as agreement, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
-/// Largest difference of a measured standard deviation from the paper's, as a share of the paper's.
+/// Largest difference of a measured standard deviation from the paper's that counts as agreement, as a share of the
+/// paper's.
 const DEVIATION_PART: f64 = 0.15;
 
 /// A measured cell, and the paper's figures for it.
@@ -95,7 +96,8 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// Returns the largest difference that sampling error could hide, as a share of the paper's mean, and the name of its cell.
+/// Returns the largest difference that sampling error could hide, as a share of the paper's mean, and the name of its
+/// cell.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {

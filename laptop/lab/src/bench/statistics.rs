@@ -1,4 +1,4 @@
-//! Mean and standard deviation over tests.
+//! Mean and standard deviation of a figure over the tests of a case.
 
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Computes the statistics of these values.
+    /// Computes the statistics of two or more values.
     pub fn new(values: impl ExactSizeIterator<Item = f64> + Clone) -> Self {
         let count = values.len();
         let mean = values.clone().sum::<f64>() / count as f64;
@@ -22,7 +22,8 @@ impl Statistics {
         Self { mean, deviation: (squares / (count as f64 - 1.0)).sqrt(), count }
     }
 
-    /// Returns the standard error of the difference between this mean and the mean of `others` tests with the same deviation.
+    /// Returns the standard error of the difference between this mean and the mean of `others` tests with the same
+    /// deviation.
     pub fn error_against(&self, others: usize) -> f64 {
         self.deviation * (1.0 / self.count as f64 + 1.0 / others as f64).sqrt()
     }

@@ -10,7 +10,7 @@ use std::io::Write;
 pub(super) const HEADER: &str = "tick,address,polarity";
 const VALUES: &str = "tick,address,value,known";
 
-/// Reads a table of events, or a spike file whose spikes have times.
+/// Reads a table of events, or a file of spikes that have times.
 pub(super) struct Reader {
     file: String,
     /// The bytes of the unfinished line.
@@ -22,7 +22,7 @@ pub(super) struct Reader {
     /// Number of ticks that did not fit in 32 bits.
     long_ticks: u64,
     is_file_of_spikes: bool,
-    /// Number of events that the last line of a spike file declares.
+    /// Number of events that the last line of a file of spikes declares.
     declared_events: Option<u64>,
 }
 

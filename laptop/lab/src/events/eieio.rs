@@ -1,4 +1,5 @@
-//! EIEIO, the datagrams of SpiNNaker boards: reads and writes their payloads one after the other, as recordings hold them.
+//! EIEIO, the datagrams of SpiNNaker boards: reads and writes their payloads one after the other, as recordings hold
+//! them.
 
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
@@ -61,8 +62,8 @@ impl Reader {
         Self { board, waiting: Vec::new(), time: Tick::from_micros(0), skipped: 0 }
     }
 
-    /// Reads whole datagrams from the front of the buffer, and skips bytes that cannot begin one. At the end of the recording, a partial
-    /// datagram is skipped too.
+    /// Reads whole datagrams from the front of the buffer, and skips bytes that cannot begin one. At the end of the
+    /// recording, a partial datagram is skipped too.
     fn datagrams(&mut self, is_end: bool, items: &mut Vec<Item>) {
         let Self { board, waiting, time, skipped } = self;
         let mut bytes = waiting.as_slice();
@@ -91,7 +92,7 @@ impl Reader {
     }
 }
 
-/// Returns whether `bytes`, or what may follow them, could be a datagram of a kind that [`eieio`] decodes.
+/// Returns whether a datagram of a kind that [`eieio`] decodes could begin with `bytes`.
 fn begins(bytes: &[u8]) -> bool {
     let padded: Vec<u8> = bytes.iter().copied().chain([0; LONGEST]).collect();
     bytes.len() < 2 || eieio::decode(&padded).is_some()

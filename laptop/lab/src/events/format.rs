@@ -88,7 +88,7 @@ impl Format {
     }
 }
 
-/// Makes a writer of tables of decoded values, which have the sample type `sample`.
+/// Makes a writer of a table of decoded values; `sample` is their sample type.
 pub fn values_writer(sample: SampleType) -> Box<dyn EventWriter> {
     Box::new(csv::Writer::new(Some(sample)))
 }

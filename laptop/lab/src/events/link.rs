@@ -43,8 +43,8 @@ impl EventReader for LinkReader<'_> {
         }
     }
 
-    /// Appends zeros to the input. Without them, a frame whose length was damaged would hold back the frames after it, because the reader
-    /// would wait for the longest possible frame.
+    /// Appends zeros to the input. Without them, a frame whose length was damaged would hold back the frames after it,
+    /// because the reader would wait for the longest possible frame.
     fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
         self.read(&[0; MAX_FRAME], items)?;
         self.padding = MAX_FRAME as u64;
@@ -88,7 +88,7 @@ fn take(
         tally.after_loss += 1;
         items.push(Item::LostEvents);
     }
-    // A session heard from its middle on did not start at its first frame.
+    // If the first frame received is from the middle of a session, the sender did not start there.
     if *is_start && (!is_first || frame.is_first()) {
         tally.restarts += 1;
         items.push(Item::Restart);

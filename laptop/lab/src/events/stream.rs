@@ -50,7 +50,8 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Converts bytes, which may be cut anywhere. `arrival` is their time of arrival, for formats whose events have no times.
+    /// Converts bytes, which may be cut anywhere. `arrival` is their time of arrival, for formats whose events have no
+    /// times.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read, or if their items cannot be written.

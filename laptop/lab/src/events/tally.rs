@@ -50,12 +50,13 @@ pub struct LinkTally {
     pub withheld: Option<Withheld>,
 }
 
-/// Comparison of keyframes with the values that a decoder held when they came. For a code without loss, both are equal.
+/// Comparison of keyframes with the values that the decoder held when they came, for codes whose decoder should already
+/// hold the keyframe's value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
     /// Number of keyframes that followed an exact value.
     pub compared: u64,
-    /// Number of these keyframes that differed from the exact value.
+    /// Number of keyframes that followed an exact value and differed from it.
     pub contradicted: u64,
 }
 

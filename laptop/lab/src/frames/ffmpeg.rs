@@ -10,8 +10,8 @@ use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::thread::JoinHandle;
 
-/// Pixel format that `ffmpeg` is asked for: 8 bits of full-range brightness. Grey and full-range sources pass unchanged; a limited range is
-/// expanded, as by [`Y4m`].
+/// Pixel format that `ffmpeg` is asked for: 8 bits of full-range brightness. Grey and full-range sources pass
+/// unchanged; a limited range is expanded, as by [`Y4m`].
 const GREY: &str = "gray";
 
 /// The frames into which `ffmpeg` converts a file.
@@ -69,7 +69,8 @@ impl Converted {
     }
 }
 
-/// Returns all messages of `ffmpeg`, joined to one line. Waits for the program's end; a second call returns an empty text.
+/// Returns all messages of `ffmpeg`, joined to one line. Waits for the program's end; a second call returns an empty
+/// text.
 fn words(said: &mut Option<JoinHandle<String>>) -> String {
     let text = said.take().and_then(|said| said.join().ok()).unwrap_or_default();
     text.lines().collect::<Vec<_>>().join("; ")

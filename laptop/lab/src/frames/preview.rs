@@ -1,4 +1,5 @@
-//! Draws a video and its events side by side, in the layout of the paper's figures: the frame, then a panel for each threshold.
+//! Draws a video and its events side by side, in the layout of the paper's figures: the frame, then a panel for each
+//! threshold.
 
 use super::FramesKind;
 use super::video::Rate;
@@ -42,7 +43,8 @@ enum Kind {
 }
 
 impl Preview {
-    /// Opens the file, `.png` or `.gif`. `thresholds`, in grey levels, have a panel each; `last` is the index of the last frame to draw.
+    /// Opens the preview's file, `.png` or `.gif`. Each of `thresholds`, in grey levels, gets a panel; `last` is the
+    /// index of the last frame to draw.
     ///
     /// # Errors
     /// Returns an error if the file's name has a different ending, or if a threshold is 0 or 255.
@@ -135,7 +137,7 @@ impl Preview {
         }
     }
 
-    /// Finishes the file and moves it from its temporary name to its own.
+    /// Finishes the file, and renames it from its temporary name to its final one.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.

@@ -1,7 +1,7 @@
 //! Reads the brightness of YUV4MPEG2 videos, in full range: black is 0 and white 255.
 //!
-//! Grey videos are read as full range, and colour videos as limited range, 16 to 235, unless a colour video's header says
-//! `XCOLORRANGE=FULL`.
+//! Grey videos are read as full range, and colour videos as limited range, 16 to 235, unless a colour video's header
+//! says `XCOLORRANGE=FULL`.
 
 use super::FramesKind;
 use super::video::{Rate, Video};
@@ -14,7 +14,7 @@ use y4m::{Decoder, Error};
 /// The first bytes of a YUV4MPEG2 file.
 pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
 
-/// Maximum length of the header in bytes, which is also the decoder's.
+/// Maximum length of the header in bytes; the decoder has the same limit.
 const LONGEST_HEADER: usize = 1024;
 
 /// A reader that counts the bytes read through it.
@@ -34,8 +34,8 @@ impl<R: Read> Read for Counting<R> {
 /// A reader of the header, which is in memory, and then of the frames.
 type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
 
-/// Reads the header and checks its numbers of columns and rows, because the decoder multiplies them unchecked. Returns a reader of the
-/// header and the frames.
+/// Reads the header and checks its numbers of columns and rows, because the decoder multiplies them unchecked. Returns
+/// a reader of the header and the frames.
 fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
     let mut header = Vec::new();
     while !header.ends_with(b"\n") && header.len() < LONGEST_HEADER {

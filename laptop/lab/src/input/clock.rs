@@ -9,7 +9,8 @@ pub enum Kind {
     Gap,
     /// The step goes back: samples are out of order.
     Backward,
-    /// The step goes back so far that the recorder's clock must have restarted, as after a reboot: a new segment begins.
+    /// The step goes back so far that the recorder's clock must have restarted, as after a reboot: a new segment
+    /// begins.
     Restart,
 }
 
@@ -64,7 +65,7 @@ pub struct Clock {
     span: Option<(i64, i64)>,
     /// Total length of the segments before the current one, in µs.
     before: i64,
-    /// The latest times, at most [`RUN`] steps of them.
+    /// The latest times in µs, over at most [`RUN`] steps.
     run: Vec<i64>,
     /// Time between samples in µs, as measured when the rate last jumped.
     run_step: f64,
@@ -93,8 +94,8 @@ impl<T> Default for Listed<T> {
 }
 
 impl Clock {
-    /// Makes a clock whose usual step is that of `first_times` or, without times, that of `rate` in samples a second. A step longer than
-    /// `steps` usual ones counts as a gap.
+    /// Makes a clock whose usual step is that of `first_times` or, without times, that of `rate` in samples a second. A
+    /// step longer than `steps` usual ones counts as a gap.
     pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
         let are_sorted = !is_disordered(first_times);
         let usual = if are_sorted {
@@ -190,8 +191,8 @@ impl Clock {
         steps
     }
 
-    /// Measures the rate of a run, and notes a jump if both the median and the mean of its steps have changed. A gap changes only the mean,
-    /// and steps that alternate between two lengths change only the median.
+    /// Measures the rate of a run, and notes a jump if both the median and the mean of its steps have changed. A gap
+    /// changes only the mean, and steps that alternate between two lengths change only the median.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {
@@ -266,7 +267,8 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Returns whether times are out of order: more than two of their steps go back, and more than a tenth of the steps that are not 0.
+/// Returns whether times are out of order: more than two of their steps go back, and more than a tenth of the steps
+/// that are not 0.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();
@@ -340,7 +342,7 @@ mod tests {
         assert_eq!(jumps_of(&[(321, 1000), (200, 500), (300, 1000)]).as_deref(), Some(jumps));
         let slower = "the rate jumps 1 times: 400.00 Hz from about sample 640";
         assert_eq!(jumps_of(&[(640, 1000), (100, 2500)]).as_deref(), Some(slower));
-        // The rate changes too briefly, the rate changes too little, and a gap.
+        // Without a jump: a change that is too short, a change that is too small, and a gap.
         for steady in
             [[(500, 1000), (20, 500)], [(500, 1000), (200, 1400)], [(500, 1000), (1, 1_000_000)]]
         {

@@ -305,7 +305,7 @@ pub(super) fn is_missing(field: &[u8]) -> bool {
 /// The rows of a table, and the lines at which they begin.
 struct Rows {
     reader: Reader<Box<dyn Read>>,
-    /// Whether lines end in CR and LF, where the CSV reader counts the LF as part of the next line.
+    /// Whether lines end in CR and LF. If so, the CSV reader counts the LF as part of the next line.
     is_of_windows: bool,
 }
 
@@ -332,8 +332,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the line at which `record`, the row read last, begins. The line is counted back from the reader's position, because the
-    /// record's own position is that of the comments before it.
+    /// Returns the line at which `record`, the row read last, begins. The line is counted back from the reader's
+    /// position, because the record's own position is that of the comments before it.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
@@ -375,7 +375,7 @@ fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     Ok(records)
 }
 
-/// Returns the line at which a row begins that [`ahead`] has read.
+/// Returns the line at which a row begins, for a row that [`ahead`] has read.
 fn line(record: &ByteRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
 }

@@ -1,4 +1,5 @@
-//! Finds the header of a table: its first line, or a comment above its first row, where `EuRoC`, TUM-VI and `NumPy` write it.
+//! Finds the header of a table: its first line, or a comment above its first row, where `EuRoC`, TUM-VI and `NumPy`
+//! write it.
 
 use super::csv::is_missing;
 use super::text::name;
@@ -49,8 +50,8 @@ impl Start {
         delimiter(&self.text[self.line..])
     }
 
-    /// Returns the header if a comment holds it: the last comment that has as many fields as the line after the comments, if that line
-    /// contains a number and the comment none. `asked` is the delimiter, if the user gave one.
+    /// Returns the header if a comment holds it: the last comment that has as many fields as the line after the
+    /// comments, if that line contains a number and the comment none. `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = self.text.split_at(self.line);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));

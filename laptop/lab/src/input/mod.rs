@@ -36,8 +36,8 @@ pub const CHUNK: usize = 8192;
 /// The file of a recording, and options for reading it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// CSV table with a header, or a log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or 2, MCAP,
-    /// Betaflight's blackbox; plain or compressed. `-` reads a CSV table from standard input.
+    /// CSV table with a header, or a log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS
+    /// 1 or 2, MCAP, Betaflight's blackbox; plain or compressed. `-` reads a CSV table from standard input.
     pub input: PathBuf,
     /// The channels to read.
     pub channel: ChannelOptions,
@@ -58,8 +58,9 @@ pub struct ChannelOptions {
     pub column: Vec<String>,
     /// Columns of a CSV table, such as `gyro_x`, or `all`; for a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
-    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column is found by the names
-    /// that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a log's messages have the time at which they were recorded.
+    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
+    /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a log's messages have the time
+    /// at which they were recorded.
     pub time: Option<String>,
     /// Unit of the time column; by default taken from its name, such as `time (us)` or `stamp_ns`, or from its values.
     pub time_unit: Option<TimeUnit>,
@@ -75,7 +76,8 @@ pub struct ChannelOptions {
     pub rate: Option<f64>,
     /// Longest step in time that is not yet a gap, in usual steps.
     pub gap: f64,
-    /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a row is an error.
+    /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
+    /// row is an error.
     pub skip_non_finite: bool,
     /// Whether a log that is cut short or damaged is read without its damaged parts. Otherwise, damage is an error.
     pub accept_cut: bool,
@@ -255,8 +257,8 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Returns the options with columns such as `TOPIC.FIELD` split into their common topic and fields; `None` if a column has no such
-    /// form, if the topics differ, or if a topic or field is chosen already.
+    /// Returns the options with columns such as `TOPIC.FIELD` split into their common topic and fields; `None` if a
+    /// column has no such form, if the topics differ, or if a topic or field is chosen already.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
@@ -308,7 +310,7 @@ impl InputOptions {
         self.field.iter().chain(&self.fields).map(String::as_str)
     }
 
-    /// Checks that at most one channel is chosen, on behalf of `command`.
+    /// Checks that at most one channel is chosen; `command` is the command's name in the error.
     ///
     /// # Errors
     /// Returns an error if several channels are chosen.

@@ -9,7 +9,8 @@ const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
 /// Longest step over which a clock may wrap around, in µs, unless [`STEPS`] allows a longer one.
 const SECOND: i64 = 1_000_000;
-/// Longest step over which a clock may wrap around, in multiples of the latest step forward, if that is above [`SECOND`].
+/// Longest step over which a clock may wrap around, in multiples of the latest step forward, if that is above
+/// [`SECOND`].
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.

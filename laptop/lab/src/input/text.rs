@@ -11,7 +11,8 @@ use std::io::{self, BufReader, Cursor, Read};
 /// Number of bytes at the start of a file by which its kind is recognised.
 const HEAD: usize = 16;
 
-/// Kinds of files that are not tables: their first bytes, and words for the user that name the kind and a way out.
+/// Kinds of files that are not tables: their first bytes, and words for the user that name the kind and suggest what to
+/// do.
 const OTHERS: [(&[u8], &str); 11] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
@@ -26,8 +27,8 @@ const OTHERS: [(&[u8], &str); 11] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8; text in other encodings that
-/// extend ASCII passes unchanged. `name` is the file's name in errors.
+/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8; text in
+/// other encodings that extend ASCII passes unchanged. `name` is the file's name in errors.
 ///
 /// # Errors
 /// Returns an error if the file is not text.
@@ -53,8 +54,8 @@ pub(super) fn name(bytes: &[u8]) -> String {
     }
 }
 
-/// Formats bytes for a message: bytes that are not UTF-8 and control characters are escaped, and only the first of many
-/// are shown.
+/// Formats bytes for a message. Bytes that are not UTF-8 and control characters are escaped; a long text is cut after
+/// 60 characters.
 pub fn shown(bytes: &[u8]) -> String {
     const MOST: usize = 60;
     let mut text = String::new();
@@ -126,8 +127,8 @@ mod encoding {
     }
 }
 
-/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them; the tables of all
-/// encodings would make up a tenth of the page.
+/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them;
+/// the tables of all encodings would make up a tenth of the page.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

@@ -83,8 +83,8 @@ pub(super) enum Named {
     Dates,
 }
 
-/// Interprets a column's name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. Returns `None` if the name is not that of a
-/// time.
+/// Interprets a column's name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. Returns `None` if the
+/// name is not that of a time.
 pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
@@ -114,7 +114,8 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
-/// Interprets the name of a column that the user chose as the time. If it names no unit, the values decide, by default for seconds.
+/// Interprets the name of a column that the user chose as the time. If the name has no unit, it is seconds, unless the
+/// values say otherwise.
 pub(super) fn of_given(name: &str) -> Named {
     match of_name(name) {
         Some(named @ (Named::In(_) | Named::Whole(_))) => named,
@@ -165,8 +166,8 @@ pub(super) enum Reading {
 }
 
 impl Reading {
-    /// Finds the format of a column's times by the information in its name and by its first fields. Returns `None` if the fields are not
-    /// times.
+    /// Finds the format of a column's times by the information in its name and by its first fields. Returns `None` if
+    /// the fields are not times.
     pub(super) fn new(named: Named, first: &[&[u8]], has_commas: bool) -> Option<Self> {
         let numbers: Option<Vec<f64>> =
             first.iter().map(|field| number(field, has_commas)).collect();
@@ -210,8 +211,8 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp count, where a float keeps only 15.
-/// Returns `None` if there is an exponent or any other character.
+/// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp count, where a float
+/// keeps only 15. Returns `None` if there is an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
     /// Maximum number of digits before the decimal point, which keeps the sum within 128 bits.
     const MOST: usize = 24;
@@ -249,8 +250,8 @@ fn text(field: &[u8]) -> Option<&str> {
     text.contains(':').then_some(text)
 }
 
-/// Guesses the unit of numbers: large ones count from 1970, in a unit that shows in their size; fractions are in seconds; all others are in
-/// `whole`.
+/// Guesses the unit of numbers: large ones count from 1970, in a unit that shows in their size; fractions are in
+/// seconds; all others are in `whole`.
 fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     let size = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     match size {
@@ -262,7 +263,8 @@ fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     }
 }
 
-/// Returns a note if the first times, in ps, are all equal, or if their usual step is shorter or longer than any flight recorder's.
+/// Returns a note if the first times, in ps, are all equal, or if their usual step is shorter or longer than any flight
+/// recorder's.
 pub(super) fn implausible(times: &[i128]) -> Option<String> {
     const SHORTEST: f64 = 1e-3;
     const LONGEST: f64 = 60e6;
@@ -284,8 +286,8 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// A name is that of a time if it ends in a unit and the rest means a time. The names in common exports are tested with the
-    /// command-line program.
+    /// A name is that of a time if it ends in a unit and the rest means a time. The names in common exports are tested
+    /// with the command-line program.
     #[test]
     fn names_that_are_no_times() {
         let is = |unit| Some(Named::In(unit));
@@ -332,7 +334,8 @@ mod tests {
         assert_eq!(microseconds(duration), 86_400_005_000);
     }
 
-    /// All digits of a time stamp count. As a float, 1520530308199447453 ns would be 48 ns later, and be rounded to the next µs.
+    /// All digits of a time stamp count. As a float, 1520530308199447453 ns would be 48 ns later, and be rounded to the
+    /// next µs.
     #[test]
     fn all_digits_of_a_stamp_count() {
         for (text, unit, commas, time) in [

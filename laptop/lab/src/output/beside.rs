@@ -1,4 +1,4 @@
-//! Writes files under a temporary name beside their own, and gives them their own name once they are complete.
+//! Writes files under a temporary name in the same directory, and renames them once they are complete.
 
 use same_file::Handle;
 use std::fs;
@@ -14,12 +14,12 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Deletes all unfinished files, for a program that is being ended. The program must end at once: from now on, starting or finishing a file
-/// blocks forever, which keeps files from appearing after the deletion.
+/// Deletes all unfinished files, for a program that is being ended. The program must end at once: from now on, starting
+/// or finishing a file blocks forever, which keeps files from appearing after the deletion.
 pub fn abandon() {
     let files = unfinished();
     for file in files.iter() {
-        // The file may already have its own name, or its directory may be gone.
+        // The file may already have its final name, or its directory may be gone.
         let _ = fs::remove_file(file);
     }
     std::mem::forget(files);
@@ -62,7 +62,7 @@ impl Beside {
         Ok(())
     }
 
-    /// Writes buffered bytes, and gives the file its own name.
+    /// Writes buffered bytes, and renames the file to its final one.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.

@@ -14,7 +14,7 @@ use std::io::BufWriter;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Standard output, a file that gets its own name once it is complete, or memory.
+/// Standard output, a file that gets its final name once it is complete, or memory.
 pub struct Output {
     /// Name of the output in errors.
     name: String,
@@ -33,8 +33,8 @@ enum Place {
     Memory(Vec<u8>),
 }
 
-/// Checks that a path has an ending of tables, `.csv`, `.txt` or none, because other programs go by the ending. A device may have any name.
-/// The error lists the endings of tables, followed by `others`.
+/// Checks that a path has an ending of tables, `.csv`, `.txt` or none, because other programs go by the ending. A
+/// device may have any name. The error lists the endings of tables, followed by `others`.
 ///
 /// # Errors
 /// Returns an error if the path has a different ending.
@@ -147,7 +147,7 @@ impl Output {
         Ok(())
     }
 
-    /// Writes buffered bytes, and gives a file its own name.
+    /// Writes buffered bytes, and gives a file its final name.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.

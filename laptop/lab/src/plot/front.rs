@@ -1,5 +1,6 @@
-//! Draws Pareto fronts of spikes against error: of each scheme, the settings that no other setting beats in both. A scheme that forms part
-//! of the common front of all schemes has a colour and a name beside its line; other schemes are grey.
+//! Draws Pareto fronts of spikes against error: of each scheme, the settings that no other setting beats in both. A
+//! scheme that forms part of the common front of all schemes has a colour and a name beside its line; other schemes are
+//! grey.
 
 use super::FONT;
 use super::palette::{DISTINCT, GRID, INK, OTHERS};
@@ -29,37 +30,38 @@ const LABELS: u32 = 84;
 const LINE: i32 = 28;
 /// Lower end of the efficiency axis, in percent. Population codes with several spikes a sample lie below it.
 const LOWEST: f64 = -100.0;
-/// Number of intervals on the efficiency axis, at whose ends schemes are compared.
-const PLACES: usize = 400;
+/// Number of steps into which the efficiency axis is divided to compare schemes.
+const STEPS: usize = 400;
 
 /// A scheme that forms a part of the common front, and the colour of its line.
 pub(super) type Named = (Scheme, RGBColor);
 
-/// Returns the efficiency, in percent, at the end `number` of the axis' intervals, counted from 0.
-fn place(number: usize) -> f64 {
-    let part = number as f64 / PLACES as f64;
+/// Returns the efficiency, in percent, at the given step along the axis, from 0 to [`STEPS`].
+fn efficiency_at(step: usize) -> f64 {
+    let part = step as f64 / STEPS as f64;
     LOWEST + part * (100.0 - LOWEST)
 }
 
 impl Panel {
-    /// Returns the common front: for each end of an interval of the efficiency axis, the scheme with the least error at that efficiency or
-    /// above, and the efficiency and error of its setting.
+    /// Returns the common front: for each step along the efficiency axis, the scheme with the least error at that
+    /// efficiency or above, with the efficiency and error of its setting.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
-        let best = |number| {
-            let at = place(number);
+        let best = |step| {
+            let at = efficiency_at(step);
             let points = self.curves.iter().flat_map(|curve| {
                 let allowed = curve.points.iter().filter(move |point| point.0 >= at);
                 allowed.map(move |point| (curve.scheme, point.0, point.1))
             });
             points.filter(|point| point.2 > 0.0).min_by(|a, b| a.2.total_cmp(&b.2))
         };
-        (0..=PLACES).map(best).collect()
+        (0..=STEPS).map(best).collect()
     }
 }
 
-/// Returns the schemes that form most of the common fronts, the one with the largest share first, at most as many as there are colours.
+/// Returns the schemes that form most of the common fronts, the one with the largest share first, at most as many as
+/// there are colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// Smallest share of all fronts for which a scheme gets a name and a colour.
+    /// Smallest share of all fronts that gives a scheme a name and a colour.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {
@@ -180,7 +182,8 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the middle point of that part of a panel's common front which a scheme forms at efficiencies from `left`, if it forms any.
+/// Returns the middle point of that part of a panel's common front which a scheme forms at efficiencies from `left`, if
+/// it forms any.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

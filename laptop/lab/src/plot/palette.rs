@@ -1,4 +1,5 @@
-//! The colours of pictures: the paper's blue for the signal and orange for the reconstruction, and the catalogue's colours of the schemes.
+//! The colours of pictures: the paper's blue for the signal and orange for the reconstruction, and the catalogue's
+//! colours of the schemes.
 
 use crate::scheme::Scheme;
 use plotters::style::RGBColor;

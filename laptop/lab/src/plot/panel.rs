@@ -161,8 +161,8 @@ fn y_label(picture: &Picture) -> String {
     picture.unit.map_or(name.clone(), |unit| format!("{name}, {unit}"))
 }
 
-/// Returns the function from a sample's index to its position on the time axis: seconds from the start, or the index itself if neither
-/// times nor a rate are known.
+/// Returns the function from a sample's index to its position on the time axis: seconds from the start, or the index
+/// itself if neither times nor a rate are known.
 fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     let recording = picture.recording;
     move |sample| match (recording.times.get(sample), recording.times.first(), recording.rate) {

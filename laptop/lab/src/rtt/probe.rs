@@ -30,7 +30,7 @@ pub fn with_channel(
     board: &Board,
     use_it: impl FnOnce(&mut dyn Channel) -> Result<()>,
 ) -> Result<()> {
-    /// Longest search for the control block, which a board that has just started must first set up.
+    /// Longest time to search for the control block; a board that has just started must first set the block up.
     const PATIENCE: Duration = Duration::from_secs(2);
     let Board { chip, probe, channel: number, address } = board;
     let target = Registry::from_builtin_families()

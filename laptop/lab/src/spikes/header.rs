@@ -22,7 +22,8 @@ pub struct Header {
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters of a scheme that are only notes in a file of spikes, because decoding needs others that were derived from them.
+/// Lists the parameters of a scheme that are only notes in a file of spikes, because decoding needs others that were
+/// derived from them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =
@@ -53,8 +54,8 @@ impl Header {
         lines
     }
 
-    /// Returns the header's keys and values, in their order in the file. A key whose value differs between channels ends in `@` and the
-    /// channel's number, such as `start@1`.
+    /// Returns the header's keys and values, in their order in the file. A key whose value differs between channels
+    /// ends in `@` and the channel's number, such as `start@1`.
     pub fn lines(&self) -> Vec<(String, String)> {
         let texts = |own: &Settings| -> Vec<(&'static str, String)> {
             own.entries().iter().map(|(name, value)| (*name, value.to_string())).collect()

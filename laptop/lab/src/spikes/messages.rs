@@ -22,14 +22,15 @@ pub struct Messages {
     /// Number of sub-timesteps of each sample.
     slots: usize,
     is_signed: bool,
-    /// Whether the log has a header, as this library writes it. In such a log, a message whose input is missing or NaN stands for a sample
-    /// that was not encoded.
+    /// Whether the log has a header, as this library writes it. In such a log, a message whose input is missing or NaN
+    /// stands for a sample that was not encoded.
     has_header: bool,
     items: VecDeque<Item>,
 }
 
 impl Messages {
-    /// Opens a log, and makes the header of its spikes: from the header in the log or, if there is none, from all messages.
+    /// Opens a log, and makes the header of its spikes: from the header in the log or, if there is none, from all
+    /// messages.
     ///
     /// # Errors
     /// Returns an error if the log has no spikes, or if its messages lack a parameter that decoding needs.
@@ -121,8 +122,8 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike from a message: from the field `spike` of a single neuron, or from element `place` of the array `spike`. Returns
-/// `None` beyond the array's end.
+/// Reads a neuron's spike from a message: from the field `spike` of a single neuron, or from element `place` of the
+/// array `spike`. Returns `None` beyond the array's end.
 ///
 /// # Errors
 /// Returns an error if the message has no field `spike`.
@@ -147,7 +148,7 @@ struct Found {
     range: (f64, f64),
     neurons: usize,
     first: i64,
-    /// Sum of the thresholds in all messages, with whose mean the toolbox decodes.
+    /// Sum of the thresholds in all messages. The toolbox decodes with their mean.
     thresholds: f64,
     samples: u64,
     last: i64,
@@ -262,8 +263,8 @@ const MOST: usize = 1 << 16;
 mod tests {
     use super::Found;
 
-    /// The range of the toolbox's Gaussian fields is moved down by one field, because neuron 7 of the toolbox has the centre of this
-    /// crate's neuron 6. The range of GRF stays.
+    /// The range of the toolbox's Gaussian fields is moved down by one field, because neuron 7 of the toolbox has the
+    /// centre of this crate's neuron 6. The range of GRF stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

@@ -1,10 +1,11 @@
 //! Files of spikes: a table `index,address,polarity`, below lines `# key=value` with everything that decoding needs.
 //!
-//! `index` is the sample or, with sub-timesteps, the sample times the number of slots, plus the slot. Neurons are numbered through all
-//! channels: those of channel 1 follow those of channel 0.
+//! `index` is the sample or, with sub-timesteps, the sample times the number of slots, plus the slot. Neurons are
+//! numbered through all channels: those of channel 1 follow those of channel 0.
 //!
-//! Comments between the events report values that were not finite and gaps in time, each where it occurs, and the time before each gap and
-//! at the first and last sample. The last lines give the numbers of samples and events, by which a truncated file is noticed.
+//! Comments between the events report values that were not finite and gaps in time, each where it occurs, and the time
+//! before each gap and at the first and last sample. The last lines give the numbers of samples and events, by which a
+//! truncated file is noticed.
 
 mod bag;
 mod header;
@@ -30,8 +31,8 @@ use catalogue::run::Event;
 
 /// A file in any format, to which spikes are written.
 pub trait Record {
-    /// Notes the next samples and the unusual steps in their times, and removes from `chunk` the rows that are not finite, which must not
-    /// be encoded.
+    /// Notes the next samples and the unusual steps in their times, and removes from `chunk` the rows that are not
+    /// finite, which must not be encoded.
     ///
     /// # Errors
     /// Returns an error if the file cannot hold the samples.

@@ -13,7 +13,7 @@ use std::io::{BufRead, Read};
 pub enum Item {
     /// A spike.
     Event {
-        /// The event.
+        /// The spike. Its sample is counted as in the file, samples that are not finite included.
         event: Event,
         /// The time of the event's sample in µs, if events have times.
         time: Option<i64>,

@@ -1,8 +1,8 @@
-//! Records spikes as messages in a ROS 1 bag or an MCAP file: on the topic `event`, one message for each sample, as the paper's toolbox
-//! does.
+//! Records spikes as messages in a ROS 1 bag or an MCAP file: on the topic `event`, one message for each sample, as the
+//! paper's toolbox does.
 //!
-//! A single message on the topic `event_header` holds the header of a file of spikes as text, which lets every scheme be decoded. The
-//! channels after the first are on the topics `event_1`, `event_2` and so on.
+//! A single message on the topic `event_header` holds the header of a file of spikes as text, which lets every scheme
+//! be decoded. The channels after the first are on the topics `event_1`, `event_2` and so on.
 
 use super::bag::Bag;
 use super::mcap::Mcap;

@@ -6,7 +6,8 @@ use std::time::Duration;
 /// The toolbox's message of one sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
-    /// Number of spikes of each neuron, negative for spikes down. All neurons' numbers in one sub-timestep precede those in the next.
+    /// Number of spikes of each neuron, negative for spikes down. All neurons' numbers in one sub-timestep precede
+    /// those in the next.
     pub spikes: Vec<i8>,
     /// Value from which decoding starts.
     pub start: f32,
@@ -33,7 +34,7 @@ pub(crate) enum Kind {
     String,
 }
 
-/// Definition of the fields after the spikes, as ROS writes it.
+/// Definition of the fields after the spikes, in the language of ROS messages.
 const FIELDS: &str = "float32 start
 float32 min_input
 float32 max_input
@@ -93,8 +94,8 @@ impl Kind {
 }
 
 impl Spyke {
-    /// Encodes the message for ROS 1, or for ROS 2 as CDR: after a prefix of four bytes, numbers are aligned to four bytes and strings end
-    /// with NUL.
+    /// Encodes the message for ROS 1, or for ROS 2 as CDR: after a prefix of four bytes, numbers are aligned to four
+    /// bytes and strings end with NUL.
     pub(crate) fn bytes(&self, kind: Kind, format: Format) -> Vec<u8> {
         let mut bytes = start(format);
         if kind == Kind::SpykeArray {

@@ -11,8 +11,8 @@ use std::io::Write;
 
 /// A file of spikes that is being written.
 ///
-/// Encoders see and count finite samples only, while the file counts all. If an encoder looks ahead, its events come late, and the writer
-/// holds notes on later samples back until these events are written.
+/// Encoders see and count finite samples only, while the file counts all. If an encoder looks ahead, its events come
+/// late, and the writer holds notes on later samples back until these events are written.
 pub struct Writer {
     output: Output,
     slots: u64,

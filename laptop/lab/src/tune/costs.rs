@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The measured counts, as JSON, which `cargo bench-target --baseline` writes and `cargo verify` checks. The file is a symbolic link,
-/// because a source package contains only files of its own directory.
+/// The measured counts, as JSON, which `cargo bench-target --baseline` writes and `cargo verify` checks. The file is a
+/// symbolic link, because a source package contains only files of its own directory.
 const COUNTS: &str = include_str!("baseline.json");
 
 #[derive(Deserialize)]

@@ -5,8 +5,8 @@ use crate::coding::Coding;
 use crate::scheme::Scheme;
 use catalogue::run::{Constant, Settings};
 
-/// Writes settings as a Rust constant, with `comments` before it. The constant is named after the channel, and compiles where the crate
-/// `spikewire` is a dependency.
+/// Writes settings as a Rust constant, with `comments` before it. The constant is named after the channel, and compiles
+/// where the crate `spikewire` is a dependency.
 ///
 /// # Errors
 /// Returns an error if the scheme cannot be written as a constant.

@@ -26,8 +26,8 @@ impl End {
     }
 }
 
-/// Returns the bounds of the search at which the settings `best` lie. A bound is left out if no value beyond it can be built, because it is
-/// then the scheme's and not the search's.
+/// Returns the bounds of the search at which the settings `best` lie. A bound is left out if no value beyond it can be
+/// built, because such a bound is the scheme's and not the search's.
 pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
     /// Distance from a bound, as a share of the axis, within which a value lies at the bound.
     const NEAR: f64 = 0.02;
@@ -57,7 +57,8 @@ pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
     found
 }
 
-/// Returns the value that `options` give to the parameter of an axis; `None` if the bounds of such an axis mean nothing to a user.
+/// Returns the value that `options` give to the parameter of an axis; `None` if the bounds of such an axis mean nothing
+/// to a user.
 fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     match axis.role {
         Role::Log(_) | Role::Around(..) | Role::Whole | Role::Most => options.number(axis.name),
@@ -74,7 +75,8 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
     }
 }
 
-/// Returns a number just beyond a bound of an axis: the next whole number, or on other axes a number a fiftieth of the axis away.
+/// Returns a number just beyond a bound of an axis: the next whole number, or on other axes a number a fiftieth of the
+/// axis away.
 fn further(axis: &Axis, is_high: bool) -> f64 {
     let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
     match axis.role {

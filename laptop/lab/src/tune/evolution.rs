@@ -1,7 +1,7 @@
 //! Adaptive differential evolution with a shrinking number of parents: L-SHADE, after Tanabe and Fukunaga (2014).
 //!
-//! The caller passes the share of its budget that is spent, by which the number of parents shrinks: even a small budget converges as far as
-//! it can. Points lie in the unit cube.
+//! The caller passes the share of its budget that is spent, by which the number of parents shrinks: even a small budget
+//! converges as far as it can. Points lie in the unit cube.
 
 use super::chance::Chance;
 
@@ -90,10 +90,11 @@ impl Evolution {
         point
     }
 
-    /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may leave the last ones
-    /// out.
+    /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may
+    /// leave the last ones out.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Largest gain that counts. Settings that break a limit have values far apart, and such a gain would outweigh all others.
+        /// Largest gain that counts. Settings that break a limit have values far apart, and such a gain would outweigh
+        /// all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);
@@ -127,7 +128,8 @@ impl Evolution {
 mod tests {
     use super::{Chance, Evolution};
 
-    /// In a bowl of five dimensions, 400 points come within a squared distance of 1e-3 of the minimum; as many random points would not.
+    /// In a bowl of five dimensions, 400 points come within a squared distance of 1e-3 of the minimum; as many random
+    /// points would not.
     #[test]
     fn a_bowl_is_descended() {
         let value = |point: &[f64]| point.iter().map(|own| (own - 0.3).powi(2)).sum::<f64>();

@@ -24,7 +24,7 @@ pub struct Figures {
     pub worst: f64,
     /// Delay of the decoded values in samples, besides the code's latency: the lag with the highest correlation.
     pub lag: i64,
-    /// RMSE of the errors' part below the band limit, if there is a limit.
+    /// RMSE after a low-pass of the errors at the band limit, if there is a limit.
     pub below: Option<f64>,
     /// Events a second, if the rate is known.
     pub events_per_second: Option<f64>,
@@ -151,7 +151,8 @@ fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>,
     *codes.entry(Vec::new()).or_default() += silent;
 }
 
-/// Adds the correlation of a stretch with its decoded values to each lag's sum. The lags go from `-FARTHEST` to `FARTHEST` samples.
+/// Adds the correlation of a stretch with its decoded values to each lag's sum. The lags go from `-FARTHEST` to
+/// `FARTHEST` samples.
 fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let (center, middle) = (mean(values), mean(decoded));

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 const SMALLEST: f64 = 1e-3;
 /// Maximum number of samples that are processed to list outcomes, which bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Maximum number of samples that are processed to list outcomes for each setting of the budget, which makes a search of a small budget
-/// short.
+/// Maximum number of samples that are processed to list outcomes for each setting of the budget, which makes a search
+/// of a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
 /// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
 const NEIGHBOURHOODS: usize = 24;
@@ -35,7 +35,8 @@ impl Run<'_> {
         }
         let Some((combinations, mut all)) = self.listed(space) else { return false };
         let samples: usize = problem.train.iter().map(|stretch| stretch.values.len()).sum();
-        // The best by the goal, several because rounding may move one over a limit, and then a selection of the Pareto front.
+        // The best by the goal, several because rounding may move one over a limit, and then a selection of the Pareto
+        // front.
         let most = MOST_SCORED.min(self.budget.evaluations - self.found.evaluated);
         let best = if problem.goal == Goal::Front { 0 } else { most.div_ceil(2) };
         let in_order = self.in_order(samples);
@@ -54,8 +55,8 @@ impl Run<'_> {
             let scored = self.try_all(batch).into_iter().flatten();
             first = first.or_else(|| scored.into_iter().find(Scored::is_allowed));
         }
-        // A step that is fitted to these stretches scores too well on them. The list is sorted by the error to expect on other stretches,
-        // so its first allowed setting is the best.
+        // A step that is fitted to these stretches scores too well on them. The list is sorted by the error to expect
+        // on other stretches, so its first allowed setting is the best.
         let is_fitted = |(own, _): &(Outcome, usize)| own.apart != own.squares;
         if chosen.first().is_some_and(is_fitted) && matches!(problem.goal, Goal::LeastError(_)) {
             self.found.best = first.or_else(|| self.found.best.take());
@@ -63,7 +64,8 @@ impl Run<'_> {
         true
     }
 
-    /// Lists the outcomes worth scoring, for all combinations of integer parameters; `None` if the scheme has no such list.
+    /// Lists the outcomes worth scoring, for all combinations of integer parameters; `None` if the scheme has no such
+    /// list.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
         let rounded = self.rounded;
@@ -160,7 +162,8 @@ fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     });
 }
 
-/// Returns the ranges of thresholds around the best outcomes, each from the next lower to the next higher threshold in `list`.
+/// Returns the ranges of thresholds around the best outcomes, each from the next lower to the next higher threshold in
+/// `list`.
 fn neighbourhoods(list: &[Outcome], in_order: &impl Fn(&Outcome) -> f64) -> Vec<(f64, f64)> {
     let mut thresholds: Vec<f64> = list.iter().map(|own| own.threshold).collect();
     thresholds.sort_by(f64::total_cmp);

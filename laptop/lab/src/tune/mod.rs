@@ -1,5 +1,5 @@
-//! Finds parameters of a scheme that meet a goal. The modules define the score of settings, the space in which settings lie, and the
-//! search.
+//! Finds parameters of a scheme that meet a goal. The modules define the score of settings, the space in which settings
+//! lie, and the search.
 
 mod chance;
 pub mod costs;

@@ -100,7 +100,7 @@ pub struct Excess {
     pub value: f64,
     /// Value of the quantity that the limit allows.
     pub allowed: f64,
-    /// Difference of both values, as a share of the one allowed.
+    /// Amount by which the limit is exceeded, as a share of the limit.
     pub part: f64,
 }
 
@@ -300,7 +300,8 @@ impl<'a> Problem<'a> {
         excess
     }
 
-    /// Returns the value of scored settings for a goal. Smaller is better; settings that break a limit are worse than all others.
+    /// Returns the value of scored settings for a goal. Smaller is better; settings that break a limit are worse than
+    /// all others.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, squares, .. } = scored.tally;
         let limits = scored
@@ -312,7 +313,8 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// Returns the value of a number of spikes and a sum of squared errors for a goal, regardless of the limits; smaller is better.
+    /// Returns the value of a number of spikes and a sum of squared errors for a goal, regardless of the limits;
+    /// smaller is better.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();
@@ -339,8 +341,8 @@ impl<'a> Problem<'a> {
 /// Smallest value of settings that break a limit.
 const NOT_ALLOWED: f64 = 1e12;
 
-/// Returns the largest number of spikes at which the efficiency is at least `efficiency` percent. If the percentage was computed from a
-/// number of spikes, returns exactly that number.
+/// Returns the largest number of spikes at which the efficiency is at least `efficiency` percent. If the percentage was
+/// computed from a number of spikes, returns exactly that number.
 pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     let spikes = (100.0 - efficiency) / 100.0 * samples as f64;
     let nearest = spikes.round();

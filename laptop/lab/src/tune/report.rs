@@ -47,7 +47,7 @@ pub struct Row {
     pub paper: Option<Paper>,
     /// Costs on a flight controller.
     pub costs: Costs,
-    /// Change of the RMSE from `f32` to the sample type, in percent; `None` if that is `f32`.
+    /// Change of the RMSE from `f32` to the sample type, in percent; `None` in `f32`.
     pub quantisation: Option<f64>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
@@ -76,7 +76,8 @@ pub struct Paper {
 }
 
 impl Row {
-    /// Reports on settings that a search has found; `below` is the frequency in Hz below which the error is also reported.
+    /// Reports on settings that a search has found; `below` is the frequency in Hz below which the error is also
+    /// reported.
     ///
     /// # Errors
     /// Returns an error if the settings are invalid; those that a search has found are valid.
@@ -240,8 +241,8 @@ impl Row {
     }
 }
 
-/// Formats the table of all rows, and below it details of each row. `core` is the core of the instruction counts, `below` the frequency in
-/// Hz below which the error is also reported.
+/// Formats the table of all rows, and below it details of each row. `core` is the core of the instruction counts,
+/// `below` the frequency in Hz below which the error is also reported.
 pub fn print(rows: &[&Row], core: &str, below: Option<f64>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.

@@ -177,7 +177,8 @@ pub struct Curve {
     pub paper: Option<(f64, f64)>,
 }
 
-/// Searches the parameters of schemes on the channels of logs. If a scheme misses the goal, [`Tuned::missed`] gives the reason.
+/// Searches the parameters of schemes on the channels of logs. If a scheme misses the goal, [`Tuned::missed`] gives the
+/// reason.
 ///
 /// # Errors
 /// Returns an error if the request is invalid, or if a recording is unfit for tuning.

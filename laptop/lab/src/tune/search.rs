@@ -1,6 +1,7 @@
 //! Searches settings: exactly if the scheme can list its outcomes, otherwise by evolution.
 //!
-//! The length of a search is counted in settings that are scored with the codec, which makes the result the same on every machine.
+//! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
+//! every machine.
 
 use super::End;
 use super::ends::ends;
@@ -132,8 +133,8 @@ impl Run<'_> {
         self.found.is_cut_short
     }
 
-    /// Scores options, as many as the budget has left, and keeps the best and the Pareto front. Returns each score, `None` for invalid
-    /// options.
+    /// Scores options, as many as the budget has left, and keeps the best and the Pareto front. Returns each score,
+    /// `None` for invalid options.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;
@@ -150,7 +151,7 @@ impl Run<'_> {
                 self.found.front.push(own.clone());
             }
         }
-        // From time to time the list is reduced to its front.
+        // Whenever the list grows long, it is reduced to its Pareto front.
         if self.found.front.len() > 4000 {
             self.found.front = front(std::mem::take(&mut self.found.front));
         }
@@ -197,9 +198,9 @@ impl Run<'_> {
         }
     }
 
-    /// Moves each point along one axis to the best of several values, which the scheme compares in a single pass over the signal. The
-    /// values span the whole axis, or the share `width` of the axis around the point's own value. Leaves the points as they are if the
-    /// scheme cannot compare values so.
+    /// Moves each point along one axis to the best of several values, which the scheme compares in a single pass over
+    /// the signal. The values span the whole axis, or the share `width` of the axis around the point's own value.
+    /// Leaves the points as they are if the scheme cannot compare values in this way.
     fn swept(
         &self,
         space: &Space,
@@ -247,9 +248,9 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample, to twice the number that the signal needs,
-    /// because a higher maximum costs time. The maximum stays at [`ROOM`] or above, because held-out blocks and other recordings may jump
-    /// further.
+    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample, to twice the number that
+    /// the signal needs, because a higher maximum costs time. The maximum stays at [`ROOM`] or above, because held-out
+    /// blocks and other recordings may jump further.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;

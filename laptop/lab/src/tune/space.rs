@@ -50,8 +50,9 @@ pub(super) enum Role {
     Length,
     Shape,
     Alpha,
-    /// Logarithm of the filter's sum, in units of the height of the signal's mean above the shift. In this unit, the sum
-    /// is the number of samples for each spike while the signal is at its mean. The two values bound the sum itself.
+    /// Logarithm of the filter's sum, in units of the height of the signal's mean above the shift. In this unit, the
+    /// sum is the number of samples for each spike while the signal is at its mean. The two values bound the sum
+    /// itself.
     Sum(f64, f64),
     /// A tap of the filter, in multiples of the given unit.
     Tap(f64),
@@ -91,8 +92,8 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// Returns the space in which the filter's single taps replace its shape, length and sum, and integer parameters keep their values in
-    /// `found`.
+    /// Returns the space in which the filter's single taps replace its shape, length and sum, and integer parameters
+    /// keep their values in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -143,9 +144,9 @@ impl Space {
         Some(Inner { axis, is_factor: !has_threshold })
     }
 
-    /// Returns `count` points to start from, spread over each axis, for a code that may spike at the share `share` of the samples. The sums
-    /// of filters are such that the code reaches the largest sample if it spikes at every sample, and reaches the mean with as many spikes
-    /// as allowed.
+    /// Returns `count` points to start from, spread over each axis, for a code that may spike at the share `share` of
+    /// the samples. The sums of filters are such that the code reaches the largest sample if it spikes at every sample,
+    /// and reaches the mean with as many spikes as allowed.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);
@@ -254,7 +255,8 @@ impl Space {
         options
     }
 
-    /// Returns the height of the signal's mean above a shift, or above the signal's minimum if `None`; at least 1 % of the signal's range.
+    /// Returns the height of the signal's mean above a shift, or above the signal's minimum if `None`; at least 1 % of
+    /// the signal's range.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())

@@ -66,7 +66,8 @@ pub struct HoldOut {
 /// Fewest samples in a block.
 const SHORTEST: usize = 20;
 
-/// Offset of the held-out blocks, which are spread evenly. With this offset, neither the first nor the last block is held out.
+/// Offset of the held-out blocks, which are spread evenly. With this offset, neither the first nor the last block is
+/// held out.
 const OFFSET: f64 = 0.35;
 
 /// Cuts a recording into blocks; returns the stretches to tune on, and those whose held-out blocks are scored.

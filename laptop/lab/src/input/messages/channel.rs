@@ -162,7 +162,8 @@ impl Channel {
     }
 }
 
-/// Appends the values of a message's fields, NaN for those beyond the end of a short array, and returns the message's time in µs.
+/// Appends the values of a message's fields, NaN for those beyond the end of a short array, and returns the message's
+/// time in µs.
 fn read(
     topic: &Topic,
     plan: &Plan,
