@@ -3,6 +3,7 @@
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
+use crate::network::NetworkKind;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -188,12 +189,12 @@ impl Original {
     fn fire(&mut self, own: &Trains) -> Result<()> {
         if let (None, Some(last)) = (&self.readout, self.fired.last_mut()) {
             let (steps, given) = (last.len(), own.len());
-            ensure!(steps == given, "spikes of {given} steps, where the recording has {steps}");
+            ensure!(steps == given, NetworkKind::SpikeSteps { given, steps });
             let outputs = self.layers.last().map_or(0, |(_, neurons)| *neurons);
             let highest = own.iter().flatten().max().copied().unwrap_or(0);
             ensure!(
                 usize::from(highest) < outputs,
-                "spikes of output {highest}, of {outputs} outputs"
+                NetworkKind::SpikeOutput { output: highest, outputs }
             );
             last.clone_from(own);
         }
