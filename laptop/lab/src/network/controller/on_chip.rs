@@ -67,8 +67,7 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     for neuron in neurons {
         check_current(&neuron)?;
         let Neuron { decay: keep, bias, inner, spike, .. } = neuron;
-        let Spike { threshold, reset } =
-            spike.ok_or(FitKind::SilentInside)?;
+        let Spike { threshold, reset } = spike.ok_or(FitKind::SilentInside)?;
         // On the chips a spike resets neurons to 0, so potentials are counted from the reset value.
         let zero = if rule.reset.subtracts() { 0.0 } else { reset };
         let bias = bias + inner - (1.0 - keep) * zero;

@@ -3,8 +3,8 @@
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
-use crate::network::Fires;
 use crate::Spot;
+use crate::network::Fires;
 use crate::network::fault::{FitKind, Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
@@ -162,10 +162,7 @@ pub(super) fn quantise(
         FitKind::MixedResets
     );
     let mut neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
-    ensure!(
-        neurons.all(|neuron| neuron.leak == 0.0),
-        FitKind::LeakByAmount { owner: "ReckOn's" }
-    );
+    ensure!(neurons.all(|neuron| neuron.leak == 0.0), FitKind::LeakByAmount { owner: "ReckOn's" });
     let at = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
     let peaks = peaks(trained, inputs, fired);
     let pairs: Vec<Vec<Source>> = places
