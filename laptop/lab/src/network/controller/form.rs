@@ -138,8 +138,8 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Converts recurrent weights from one row for each receiving neuron. If neurons lead only to themselves, keeps the
-/// diagonal only.
+/// Converts recurrent weights from one row for each receiving neuron. If no weight leads from a neuron to another,
+/// keeps the diagonal only.
 fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
