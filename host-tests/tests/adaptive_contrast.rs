@@ -1,8 +1,9 @@
 //! Adaptive contrast, by hand and beside plain contrast.
 
+use crate::common::refused;
 use proptest::prelude::*;
 use spikewire::temporal::{AdaptiveContrast, TemporalContrast};
-use spikewire::{ConfigError, Scheme, Spike, Start};
+use spikewire::{Scheme, Spike, Start};
 
 type Atbr = AdaptiveContrast<i16>;
 
@@ -27,15 +28,9 @@ fn the_threshold_follows_the_spikes() {
 
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
-    let parameter = |scheme: Result<Atbr, ConfigError>| match scheme.unwrap_err() {
-        ConfigError::NotPositive { parameter, .. } | ConfigError::OutOfRange { parameter, .. } => {
-            parameter
-        }
-        error => panic!("{error}"),
-    };
-    assert_eq!(parameter(Atbr::try_new(0, 4)), "threshold");
-    assert_eq!(parameter(Atbr::try_new(1, 16)), "doublings");
-    assert_eq!(parameter(Atbr::try_new(1, 15)), "largest threshold");
+    assert_eq!(refused(Atbr::try_new(0, 4)), "threshold");
+    assert_eq!(refused(Atbr::try_new(1, 16)), "doublings");
+    assert_eq!(refused(Atbr::try_new(1, 15)), "largest threshold");
     assert!(Atbr::try_new(1, 14).is_ok() && Atbr::try_new(16_384, 1).is_err());
     assert!(AdaptiveContrast::<f32>::try_new(1e31, 1).is_err());
     assert!(AdaptiveContrast::<f32>::try_new(f32::NAN, 1).is_err());

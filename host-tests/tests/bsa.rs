@@ -4,7 +4,7 @@
 use crate::common::rate::{
     all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
 };
-use crate::common::{Drawn, flight_channels, hostile_recordings};
+use crate::common::{Drawn, between, flight_channels, hostile_recordings};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, decode, encode, reals, signs_of};
 use host_tests::reference::{ben_multiplicative, ben_subtractive};
@@ -124,7 +124,7 @@ fn thresholds<S: Wire + Drawn>() -> impl Strategy<Value = S> {
 /// Any ratio that is allowed, exact multiples of 2⁻¹⁴ and halves between them often.
 fn ratios() -> impl Strategy<Value = f32> {
     let grid = (2..131_070_u32).prop_map(|halves| halves as f32 / 32_768.0);
-    prop_oneof![grid, crate::common::between(0.1, 1.5), crate::common::between(0.000_062, 3.999)]
+    prop_oneof![grid, between(0.1, 1.5), between(0.000_062, 3.999)]
 }
 
 drawn_recordings!(check, 96, threshold: thresholds::<S>(), ratio: ratios());

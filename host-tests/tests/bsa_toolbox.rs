@@ -4,7 +4,7 @@
 use crate::common::rate::{
     all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
 };
-use crate::common::{flight_channels, hostile_recordings};
+use crate::common::{between, flight_channels, hostile_recordings};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::ben_toolbox;
@@ -81,8 +81,8 @@ fn hostile() {
 }
 
 fn thresholds() -> impl Strategy<Value = f32> {
-    let all = crate::common::between(0.000_062, 3.999);
-    prop_oneof![crate::common::between(0.1, 1.5), all, Just(1.0_f32)]
+    let all = between(0.000_062, 3.999);
+    prop_oneof![between(0.1, 1.5), all, Just(1.0_f32)]
 }
 
 drawn_recordings!(check, 128, threshold: thresholds());

@@ -1,6 +1,8 @@
 //! Filters before a code: the laws bit by bit, the textbook's response, and a filtered scheme end to end.
 
-use crate::common::{Drawn, between, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::{
+    between, drawn_recordings, flight_channels, hostile_recordings, in_every_type,
+};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, assert_same_values, encode};
 use host_tests::reference::{
@@ -445,17 +447,7 @@ fn kinds() -> impl Strategy<Value = Kind> {
     ]
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let (cases, corners) = (&cases(128), || between(1.0, 490.0));
-    proptest!(cases, |((x, kind, corner) in (S::recordings(), kinds(), corners()))| {
-        check(kind, corner, &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Wire, 128, (x in S::recordings(), kind in kinds(), corner in between(1.0, 490.0)) => check(kind, corner, &x));
 
 /// The codes of a filtered scheme are those of the scheme on filtered samples.
 fn filtered_of<S: Wire, P>(scheme: P, samples: &[S])

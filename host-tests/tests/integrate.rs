@@ -1,10 +1,11 @@
 //! Integrate-and-fire against its transcription, and its laws.
 
+use crate::common::refused;
 use fixed::types::{I8F8, I16F16};
 use proptest::prelude::*;
 use spikewire::rate::IntegrateAndFire;
 use spikewire::temporal::Steps;
-use spikewire::{ConfigError, Sample, Scheme};
+use spikewire::{Sample, Scheme};
 
 use catalogue::plain::Plain;
 use catalogue::schemes::integrate::{transcribed, transcribed_decoder};
@@ -113,18 +114,12 @@ fn integers_do_not_wrap() {
 
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
-    let parameter = |scheme: Result<Neuron<f32, 4>, ConfigError>| match scheme.unwrap_err() {
-        ConfigError::NotPositive { parameter, .. }
-        | ConfigError::NotFinite { parameter, .. }
-        | ConfigError::OutOfRange { parameter, .. } => parameter,
-        error => panic!("{error}"),
-    };
-    assert_eq!(parameter(Neuron::try_new(0.0, 3)), "threshold");
-    assert_eq!(parameter(Neuron::try_new(1e32, 3)), "threshold");
-    assert_eq!(parameter(Neuron::try_new(1.0, 0)), "power of the mean");
-    assert_eq!(parameter(Neuron::try_new(1.0, 16)), "power of the mean");
-    assert_eq!(parameter(Neuron::new(1.0, 3).try_with_reference(f32::NAN)), "reference");
-    assert_eq!(parameter(Neuron::new(1.0, 3).try_with_most(5)), "most spikes a sample");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(0.0, 3)), "threshold");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(1e32, 3)), "threshold");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(1.0, 0)), "power of the mean");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(1.0, 16)), "power of the mean");
+    assert_eq!(refused(Neuron::<_, 4>::new(1.0, 3).try_with_reference(f32::NAN)), "reference");
+    assert_eq!(refused(Neuron::<f32, 4>::new(1.0, 3).try_with_most(5)), "most spikes a sample");
 }
 
 proptest! {

@@ -1,7 +1,8 @@
 //! Rank order coding: the nearest neurons fire, the nearest first.
 
-use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use crate::common::{
+    Drawn, cases, flight_channels, float, hostile_recordings, in_every_integer, ranges,
+};
 use host_tests::compare::{assert_same_values, decode, encode};
 use host_tests::reference::{nearest_first, rank_order_value};
 use proptest::prelude::*;
@@ -191,15 +192,13 @@ fn check_centres<S: host_tests::compare::Wire, const K: usize>(centres: [S; 7], 
 
 fn drawn<S: host_tests::compare::Wire + Drawn + Ord>() {
     let list = proptest::collection::btree_set(S::value(), 7);
-    proptest!(cases(96), |(set in list, x in S::recordings(), a in S::value(), b in S::value())| {
+    proptest!(cases(96), |(set in list, mut x in S::recordings(), [min, max] in ranges::<S>())| {
         let list: Vec<_> = set.into_iter().collect();
         let centres: [S; 7] = list.try_into().unwrap();
-        let mut x = x;
         x.extend(centres);
         check_centres::<S, 1>(centres, &x);
         check_centres::<S, 4>(centres, &x);
         check_centres::<S, 7>(centres, &x);
-        let (min, max) = (a.min(b), a.max(b));
         if let Ok(scheme) = RankOrder::<S, 15, 3>::try_linear(min..=max) {
             check(&scheme, min, max, &x);
         }
@@ -208,11 +207,7 @@ fn drawn<S: host_tests::compare::Wire + Drawn + Ord>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_integer!(drawn);
 }
 
 #[test]

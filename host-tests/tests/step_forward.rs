@@ -1,8 +1,8 @@
 //! SF, step forward: a spike when the sample leaves `base ± threshold`, and the base follows by one
 //! threshold.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{drawn_recordings, flights, hostile_recordings};
+use fixed::types::{I8F8};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, saturated, signs_of,
 };
@@ -96,20 +96,9 @@ fn a_rejected_priming_value_is_counted_and_ignored() {
     assert_eq!(encoder.encode(7.0), Spike::Up);
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        for threshold in [0.01_f32, 0.15, 0.5] {
-            check(&channel, threshold, channel[0] + 1.0);
-            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-            check(&fixed, I16F16::from_num(threshold), fixed[0]);
-            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-            check(&fixed, I8F8::from_num(threshold), fixed[0]);
-            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-            check(&counts, (threshold * 100.0) as i16, counts[0]);
-        }
-    }
-}
+flights!(S: Wire, |x, unit| for threshold in [0.01, 0.15, 0.5] {
+    check(&x, S::from_f64(threshold * unit), x[0]);
+});
 
 #[test]
 fn hostile() {
@@ -131,17 +120,9 @@ fn largest_bands() {
     }
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let cases = &cases(256);
-    proptest!(cases, |((x, threshold, primed) in (S::recordings(), S::positive(), S::value()))| {
-        check(&x, threshold, primed);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Wire, 256, (x in S::recordings(), threshold in S::positive(), primed in S::value()) => {
+    check(&x, threshold, primed);
+});
 
 /// All pairs of base and sample within 8 bits, in the middle and at both ends of the type: the spike
 /// and the base that it leaves.

@@ -1,7 +1,7 @@
 //! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{drawn_recordings, flights, hostile_recordings};
+use fixed::types::{I8F8};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, signs_of,
 };
@@ -99,21 +99,10 @@ fn the_keyframe_is_the_last_sample() {
     }
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        for threshold in [0.01_f32, 0.15, 0.5] {
-            check(&channel, threshold, 2.0 * threshold, channel[0]);
-            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-            check(&fixed, I16F16::from_num(threshold), I16F16::from_num(threshold), fixed[0]);
-            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-            check(&fixed, I8F8::from_num(threshold), I8F8::from_num(threshold), fixed[0]);
-            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-            let threshold = (threshold * 100.0) as i16;
-            check(&counts, threshold, threshold, counts[0]);
-        }
-    }
-}
+flights!(S: Wire, |x, unit| for threshold in [0.01, 0.15, 0.5] {
+    let [threshold, step] = [1.0, 2.0].map(|times| S::from_f64(times * threshold * unit));
+    check(&x, threshold, step, x[0]);
+});
 
 #[test]
 fn hostile() {
@@ -124,18 +113,9 @@ fn hostile() {
     }
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let cases = &cases(256);
-    let parameters = (S::recordings(), S::positive(), S::positive(), S::value());
-    proptest!(cases, |((x, threshold, step, primed) in parameters)| {
-        check(&x, threshold, step, primed);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Wire, 256, (x in S::recordings(), threshold in S::positive(), step in S::positive(), primed in S::value()) => {
+    check(&x, threshold, step, primed);
+});
 
 /// All pairs of predecessor and sample within 8 bits, in the middle and at both ends of the type.
 #[test]

@@ -4,7 +4,7 @@
 use crate::common::rate::{
     all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
 };
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
+use crate::common::{Drawn, between, cases, flight_channels, hostile_recordings};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::threshold_hough;
@@ -98,7 +98,7 @@ drawn_recordings!(check, 128, threshold: thresholds::<S>());
 /// order of the sum would decide some of them otherwise.
 #[test]
 fn at_the_limit() {
-    let taps = proptest::array::uniform8(crate::common::between(0.1, 1.0));
+    let taps = proptest::array::uniform8(between(0.1, 1.0));
     let x = proptest::collection::vec(-1.0_f32..1.5, 8..40);
     proptest!(cases(512), |(x in x, taps in taps, window in any::<prop::sample::Index>())| {
         let window = &x[window.index(x.len() - 7)..][..8];

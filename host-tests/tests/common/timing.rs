@@ -126,11 +126,6 @@ pub(crate) fn assert_law<P>(
     }
 }
 
-/// Ranges of drawn ends, those that rise.
-pub(crate) fn rising<S: Lined>(a: S, b: S) -> [S; 2] {
-    if a < b { [a, b] } else { [b, a] }
-}
-
 /// Samples close to each of these lines, in `f32`.
 pub(crate) fn beside(edges: impl Iterator<Item = f64>) -> Vec<f32> {
     edges.map(|edge| edge as f32).flat_map(|x| [x.next_down(), x, x.next_up()]).collect()
