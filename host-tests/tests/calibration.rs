@@ -5,7 +5,7 @@
 //! bound: the variance may differ by the rounding of the two sums, a few 2⁻⁵³ of the mean square.
 
 use crate::common::{drawn_recordings, flight_channels, flights, hostile_recordings};
-use fixed::types::{I16F16};
+use fixed::types::I16F16;
 use host_tests::compare::{Wire, finite};
 use host_tests::flight::calibrated;
 use host_tests::reference::{Moments, calibrate};

@@ -1,7 +1,7 @@
 //! Histogram and quantiles.
 
 use crate::common::{HOSTILE, drawn_recordings, flights, ranges};
-use fixed::types::{I8F8};
+use fixed::types::I8F8;
 use host_tests::compare::{Wire, finite};
 use host_tests::reference::{even_cell, histogram, quantile_centres};
 use proptest::prelude::*;

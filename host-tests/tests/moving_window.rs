@@ -262,25 +262,3 @@ fn does_not_drift() {
 drawn_recordings!(S: Wire, 96, (x in S::recordings(), threshold in S::positive(), fill in proptest::collection::vec(S::value(), 0..7)) => {
     check_all(&x, threshold, &fill);
 });
-
-/// All sums of a window of two within 8 bits, with all samples, in the middle and at both ends of
-/// the type.
-#[test]
-fn all_pairs_of_8_bits() {
-    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
-        for threshold in [1, 100, i16::MAX] {
-            let scheme = MovingWindow::<I8F8, 2>::try_new(I8F8::from_bits(threshold)).unwrap();
-            let mut encoder = scheme.encoder();
-            let pairs = (from..to).map(|a| (a, a)).chain((from..to).map(|a| (a, a + 1)));
-            for window in pairs.map(|(a, b)| [a, b].map(I8F8::from_bits)) {
-                let before = window.map(Wire::real);
-                for x in (from..=to).map(I8F8::from_bits) {
-                    let expected =
-                        moving_window(&[x.real()], 2, scheme.threshold().real(), Some(&before));
-                    encoder.prime(&window);
-                    assert_eq!([encoder.encode(x).sign()], *expected, "{x} after {window:?}");
-                }
-            }
-        }
-    }
-}

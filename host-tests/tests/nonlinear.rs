@@ -5,7 +5,9 @@ use crate::common::{
     positive_float,
 };
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
-use host_tests::compare::{Wire, assert_same_values, check_position, decode, encode, finite};
+use host_tests::compare::{
+    Wire, assert_same_values, check_position, decode, encode, finite, whole,
+};
 use host_tests::reference::{
     companded_centres, field_edges, fields_are_regions, float_levels, integer_levels,
     integer_weighted_mean, level_radii, slots_decode, slots_of_levels, spacing_widths, strongest,
@@ -69,15 +71,12 @@ macro_rules! fields {
             fn levels(self, centres: &[Self], sigmas: &[f64], n: u16) -> Vec<u16> {
                 let unit = unit::<Self>();
                 let sigmas: Vec<f64> = sigmas.iter().map(|sigma| sigma / unit).collect();
-                let whole = |value: Self| (value.to_f64() / unit) as i64;
                 let centres: Vec<i64> = centres.iter().copied().map(whole).collect();
                 integer_levels(whole(self), &centres, &sigmas, n)
             }
             fn mean(levels: &[u16], centres: &[Self], _: u16) -> Option<Self> {
-                let unit = unit::<Self>();
-                let whole = |value: &Self| (value.to_f64() / unit) as i64;
-                let centres: Vec<i64> = centres.iter().map(whole).collect();
-                integer_weighted_mean(levels, &centres).map(|mean| Self::nearest(mean as f64 * unit))
+                let centres: Vec<i64> = centres.iter().copied().map(whole).collect();
+                integer_weighted_mean(levels, &centres).map(|mean| Self::from_bits32(mean as u32))
             }
             const ROUNDED: f64 = 0.0;
         }

@@ -3,11 +3,11 @@
 use crate::common::{
     Drawn, cases, flight_channels, float, hostile_recordings, in_every_integer, ranges,
 };
-use host_tests::compare::{assert_same_values, decode, encode};
+use host_tests::compare::{Wire, assert_same_values, decode, encode, whole};
 use host_tests::reference::{nearest_first, rank_order_value};
 use proptest::prelude::*;
 use spikewire::population::{RankOrder, SlotSpikes};
-use spikewire::{ConfigError, Sample, Scheme};
+use spikewire::{ConfigError, Scheme};
 
 /// Neurons in the order of their slots.
 fn order_of<const M: usize, const K: usize>(spikes: SlotSpikes<M, K>) -> Vec<usize> {
@@ -16,15 +16,8 @@ fn order_of<const M: usize, const K: usize>(spikes: SlotSpikes<M, K>) -> Vec<usi
     pairs.into_iter().map(|(_, neuron)| neuron.into()).collect()
 }
 
-fn whole<S: Sample>(value: S) -> i64 {
-    match size_of::<S>() {
-        2 => i64::from((value.to_bits32() as u16).cast_signed()),
-        _ => i64::from(value.to_bits32().cast_signed()),
-    }
-}
-
 /// Encoder, decoder, and the decoder after any number of spikes, in integers.
-fn check<S: Sample + host_tests::compare::Wire, const M: usize, const K: usize>(
+fn check<S: Wire, const M: usize, const K: usize>(
     scheme: &RankOrder<S, M, K>,
     min: S,
     max: S,
@@ -184,13 +177,13 @@ fn drawn_floats() {
     });
 }
 
-fn check_centres<S: host_tests::compare::Wire, const K: usize>(centres: [S; 7], x: &[S]) {
+fn check_centres<S: Wire, const K: usize>(centres: [S; 7], x: &[S]) {
     if let Ok(scheme) = RankOrder::<S, 7, K>::try_new(centres) {
         check(&scheme, centres[0], centres[6], x);
     }
 }
 
-fn drawn<S: host_tests::compare::Wire + Drawn + Ord>() {
+fn drawn<S: Wire + Drawn + Ord>() {
     let list = proptest::collection::btree_set(S::value(), 7);
     proptest!(cases(96), |(set in list, mut x in S::recordings(), [min, max] in ranges::<S>())| {
         let list: Vec<_> = set.into_iter().collect();

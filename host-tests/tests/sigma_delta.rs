@@ -1,6 +1,6 @@
 //! Sigma-delta against its transcription, and its means.
 
-use crate::common::refused;
+use crate::common::{rate::spikes_of, refused};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare;
 use proptest::prelude::*;
@@ -29,14 +29,6 @@ pub(crate) fn in_every_type(x: &[i16], mut check: impl Check) {
 /// What is checked in every sample type, with what a count becomes.
 pub(crate) trait Check {
     fn check<S: Plain>(&mut self, x: &[S], of: impl Fn(i16) -> S);
-}
-
-pub(crate) fn spikes_of<P: spikewire::Start<Code = Spike, Output = Spike>>(
-    scheme: &P,
-    x: &[P::Sample],
-) -> Vec<i8> {
-    let mut encoder = scheme.encoder();
-    x.iter().map(|&x| encoder.encode(x).sign()).collect()
 }
 
 pub(crate) fn values_of<P: Scheme<Code = Spike>>(scheme: &P, spikes: &[i8]) -> Vec<P::Sample> {

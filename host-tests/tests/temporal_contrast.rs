@@ -1,14 +1,13 @@
 //! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
 
 use crate::common::{drawn_recordings, flights, hostile_recordings};
-use fixed::types::{I8F8};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, signs_of,
 };
 use host_tests::reference::temporal_contrast;
 use proptest::prelude::*;
+use spikewire::Scheme;
 use spikewire::temporal::TemporalContrast;
-use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference, unprimed and primed.
 fn check<S: Wire>(x: &[S], threshold: S, step: S, primed: S) {
@@ -62,31 +61,6 @@ fn integers_do_not_wrap() {
     }
 }
 
-/// Of a longer past only the last value counts; an empty one changes nothing.
-#[test]
-fn pasts_of_any_length() {
-    let scheme = TemporalContrast::new(1.0_f32);
-    let mut encoder = scheme.encoder();
-    encoder.prime(&[]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, None));
-    encoder.prime(&[f32::NAN, 9.0, 2.0]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, Some(2.0)));
-    encoder.prime(&[]);
-    assert_eq!(encoder.encode(3.5), Spike::Up);
-}
-
-#[test]
-fn a_rejected_priming_value_is_counted_and_ignored() {
-    let scheme = TemporalContrast::try_new(1.0_f32).unwrap();
-    let mut encoder = scheme.encoder();
-    encoder.prime(&[f32::NAN]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
-    assert_eq!(encoder.encode(5.0), Spike::None);
-    encoder.prime(&[f32::INFINITY]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(5.0)));
-    assert_eq!(encoder.encode(7.0), Spike::Up);
-}
-
 #[test]
 fn the_keyframe_is_the_last_sample() {
     let scheme = TemporalContrast::try_new(1.0_f32).unwrap();
@@ -116,26 +90,3 @@ fn hostile() {
 drawn_recordings!(S: Wire, 256, (x in S::recordings(), threshold in S::positive(), step in S::positive(), primed in S::value()) => {
     check(&x, threshold, step, primed);
 });
-
-/// All pairs of predecessor and sample within 8 bits, in the middle and at both ends of the type.
-#[test]
-fn all_pairs_of_8_bits() {
-    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
-        for threshold in [1, 2, 100, 255, i16::MAX] {
-            let scheme = TemporalContrast::try_new(I8F8::from_bits(threshold)).unwrap();
-            for previous in (from..=to).map(I8F8::from_bits) {
-                let mut encoder = scheme.encoder();
-                for x in (from..=to).map(I8F8::from_bits) {
-                    encoder.prime(&[previous]);
-                    let expected = temporal_contrast(
-                        &[x.real()],
-                        scheme.threshold().real(),
-                        Some(previous.real()),
-                    );
-                    assert_eq!([encoder.encode(x).sign()], *expected);
-                    assert_eq!(encoder.keyframe(), Some(x));
-                }
-            }
-        }
-    }
-}

@@ -1,11 +1,11 @@
 //! Weighted bursts against their transcription, and their error.
 
-use crate::common::refused;
+use crate::common::{rate::spikes_of, refused};
 use proptest::prelude::*;
+use spikewire::Scheme;
 use spikewire::rate::{Average, SigmaDelta, WeightedBurst, Window};
-use spikewire::{Scheme};
 
-use crate::sigma_delta::{Check, drawn, in_every_type, spikes_of, values_of};
+use crate::sigma_delta::{Check, drawn, in_every_type, values_of};
 use catalogue::plain::{self, Plain};
 use catalogue::schemes::burst_weighted::transcribed;
 
