@@ -198,6 +198,7 @@ impl Layer {
         // Before the reset, and after: those that come late are part of the step that follows.
         let (reached, reset) = match self.reset {
             Reset::ToValue => (next, 0.0),
+            Reset::NoReset => (next, next),
             Reset::Subtract => (next, less),
             Reset::ToValueLate => {
                 let next = if was_over { driven } else { next };

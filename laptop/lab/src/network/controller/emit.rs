@@ -109,13 +109,14 @@ use spikewire_network::{{{used}}};
 }
 
 /// Names that a module imports if it uses them, besides those that every module imports.
-const NAMES: [&str; 16] = [
+const NAMES: [&str; 17] = [
     "Cuba",
     "Forward",
     "Full",
     "Layer",
     "Li",
     "Lif",
+    "NoReset",
     "OneToOne",
     "Spiking",
     "Subtract",

@@ -36,6 +36,8 @@ pub enum Reset {
     SubtractLate,
     /// snnTorch's subtraction with `reset_delay=False`.
     SubtractNoDelay,
+    /// Leaves the potential as it is.
+    NoReset,
 }
 
 /// How the potential is compared with the threshold.
@@ -232,12 +234,13 @@ impl Reset {
             Self::Subtract => "Subtract",
             Self::SubtractLate => "SubtractLate",
             Self::SubtractNoDelay => "SubtractNoDelay",
+            Self::NoReset => "NoReset",
         }
     }
 
     /// Returns whether a spike subtracts the threshold, rather than setting the potential.
     pub const fn subtracts(self) -> bool {
-        !matches!(self, Self::ToValue | Self::ToValueLate | Self::ToValueHeld)
+        matches!(self, Self::Subtract | Self::SubtractLate | Self::SubtractNoDelay)
     }
 }
 
@@ -251,6 +254,7 @@ impl Display for Rule {
             Reset::Subtract => "loses its threshold at once",
             Reset::SubtractLate => "loses its threshold a step late",
             Reset::SubtractNoDelay => "loses its threshold as snnTorch's reset_delay=False has it",
+            Reset::NoReset => "keeps its potential",
         };
         write!(f, "fires {fires} its threshold, and then {reset}")
     }
