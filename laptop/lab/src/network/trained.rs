@@ -189,6 +189,7 @@ impl Layer {
         // late have acted before the comparison.
         let (reached, reset) = match self.reset {
             Reset::ToValue => (next, 0.0),
+            Reset::NoReset => (next, next),
             Reset::Subtract => (next, less),
             Reset::ToValueLate => {
                 let next = if was_over { driven } else { next };

@@ -222,6 +222,8 @@ fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
     let dt = rule.dt;
     let resistance = neurons.resistance.at(at);
     let (decay, mut gain, leak) = match &neurons.leak {
+        // Norse adds the whole input, however long a step is.
+        None if rule.framework == Some(Framework::Norse) => (1.0, resistance, 0.0),
         None => (1.0, resistance * dt, 0.0),
         Some(leak) => {
             let tau = leak.tau.at(at);
