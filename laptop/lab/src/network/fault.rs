@@ -141,10 +141,6 @@ kinds! {
         MixedResets => (
             "some layers subtract their threshold and others reset to a value: ReckOn does the same in all"
         ),
-        NoReset => (
-            "the chips' neurons are reset when they fire: {} none is for the controller",
-            spell("reset")
-        ),
         LeakByAmount { owner: &'static str } =>
             ("a leak by an amount is tinyODIN's: {owner} neurons keep a share"),
         LastingCurrent { left: f64 } => (
