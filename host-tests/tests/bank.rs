@@ -260,8 +260,7 @@ fn flights() {
     let hough = Hough::new(Taps::<f32, 9>::triangular(0.1)).with_shift(-0.5);
     let position = Position::<f32, 20>::linear(-9.0..=9.0);
     let slots = Slots::<f32, 15, 10>::new(-4.0..=4.0, 1.5);
-    for flight in [flight::hexarotor(), flight::vtol_at_rest()] {
-        let channels: [_; 6] = std::array::from_fn(|channel| flight::channel(&flight, channel));
+    for channels in flight::flights() {
         let ticks: Vec<_> = (0..channels[0].len() as u32).map(|i| i * 5_000).collect();
         let told = events(&mut Bank::new(&step), &channels, &ticks);
         assert_eq!(told, expected(&step, &channels, &ticks, 0));

@@ -76,7 +76,6 @@ fn thresholds_of_the_temporal_codes() {
     for value in [0.0, -0.0, -1.0, -1e-45, f32::MIN].into_iter().chain(BAD) {
         let expected = not_positive("threshold", value);
         assert_eq!(refusal(TemporalContrast::try_new(value)), expected);
-        assert_eq!(refusal(TemporalContrast::try_new(value)), expected);
         assert_eq!(refusal(StepForward::try_new(value)), expected);
         assert_eq!(refusal(MovingWindow::<_, 5>::try_new(value)), expected);
         let expected = not_positive("step", value);

@@ -1,5 +1,6 @@
 //! A sender and a receiver that have other schemes: no value is exact, for any code, from the first frame or from later on.
 
+use crate::beside::{CHANNELS, Items, slot_ticks};
 use catalogue::{Channel, Flight, Storable};
 use fixed::types::I16F16;
 use host_tests::flight;
@@ -10,26 +11,15 @@ use spikewire::link::{
 use spikewire::population::Position;
 use spikewire::temporal::{SendOnDelta, StepForward, TemporalContrast};
 use spikewire::{
-    Bank, ConfigError, Fingerprint, FromItems, Item, Put, Recovery, Sample, SampleKind, Scheme,
-    Start, Tick,
+    Bank, ConfigError, Fingerprint, FromItems, Recovery, Sample, SampleKind, Scheme, Start, Tick,
 };
 
-const CHANNELS: usize = 2;
 const EVENTS: usize = 256;
 const PERIOD: u16 = 2_500;
 const SAMPLES: usize = 120;
 const BEAT: usize = 8;
 /// Equal channels in their order, and in the other one.
 const LABELS: [&str; 2] = ["2500 us; gyro_x; gyro_y", "2500 us; gyro_y; gyro_x"];
-
-#[derive(Default)]
-struct Items(Vec<Item>);
-
-impl Put for &mut Items {
-    fn put(&mut self, item: Item) {
-        self.0.push(item);
-    }
-}
 
 /// What a sender with a description sent.
 struct Sent {
@@ -76,11 +66,6 @@ fn heard<'a, P: Scheme, const N: usize>(
     (exact, receiver.withheld(0))
 }
 
-fn slot_ticks<P: Scheme>(scheme: &P) -> u32 {
-    let has_slots = scheme.slots() > 1 && P::RECOVERY != Recovery::Keyframe;
-    if has_slots { u32::from(PERIOD) / scheme.slots() as u32 } else { 0 }
-}
-
 /// Every code once as a sender; then as a receiver of all that was sent.
 struct Pairs<'a, S> {
     samples: &'a [S],
@@ -101,7 +86,7 @@ impl<S: Sample> Flight for Pairs<'_, S> {
         scheme: &P,
         start: P::EncoderState,
     ) -> Result<(), ConfigError> {
-        let slot_ticks = slot_ticks(scheme);
+        let slot_ticks = slot_ticks(scheme, PERIOD.into());
         let start = postcard::to_allocvec(&start).unwrap();
         let states = [(); CHANNELS].map(|()| (scheme, postcard::from_bytes(&start).unwrap()));
         let mut bank = Bank::per_channel_with_states(states).with_slot_ticks(slot_ticks);

@@ -2,6 +2,7 @@
 
 use core::num::NonZeroU16;
 
+use crate::beside::session_from;
 use proptest::prelude::*;
 use spikewire::link::{
     Coding, FrameView, Framer, LinkError, MAX_FRAME, MIN_FRAME, Reader, Received, Session,
@@ -28,17 +29,19 @@ fn keyframe<S: Sample>(tick: u32, address: u16, value: S) -> Keyframe {
     Keyframe::new(tick.into(), address, value)
 }
 
-fn any_event() -> impl Strategy<Value = Event> {
-    let tick = prop_oneof![0_u32..10, 0_u32..100_000, any::<u32>()];
+/// Events at these ticks.
+fn events_at(tick: impl Strategy<Value = u32>) -> impl Strategy<Value = Event> {
     let address = prop_oneof![0_u16..6, any::<u16>()];
     (tick, address, any::<bool>()).prop_map(|(tick, address, is_up)| event(tick, address, is_up))
 }
 
+fn any_event() -> impl Strategy<Value = Event> {
+    events_at(prop_oneof![0_u32..10, 0_u32..100_000, any::<u32>()])
+}
+
 /// Events as a sender has them, whose time does not go back far.
 fn steady_event() -> impl Strategy<Value = Event> {
-    let (tick, address) =
-        (prop_oneof![0_u32..10, 0_u32..60_000], prop_oneof![0_u16..6, any::<u16>()]);
-    (tick, address, any::<bool>()).prop_map(|(tick, address, is_up)| event(tick, address, is_up))
+    events_at(prop_oneof![0_u32..10, 0_u32..60_000])
 }
 
 fn any_coding() -> impl Strategy<Value = Coding> {
@@ -640,13 +643,7 @@ fn a_frame_that_lasts_minutes_is_no_silence() {
 /// A first frame is a start, wherever its number lies: ahead of what came, behind it, or the same.
 #[test]
 fn a_first_frame_is_a_start_unless_it_is_the_one_that_came() {
-    // The bits that `Session` spreads to this number.
-    let inverse = (0..6).fold(0x9E37_79B9_7F4A_7C15_u64, |inverse, _| {
-        inverse.wrapping_mul(2_u64.wrapping_sub(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(inverse)))
-    });
-    let at = |first: u64, address| {
-        frames_of(Session::random((first << 16).wrapping_mul(inverse)), address, 40)
-    };
+    let at = |first, address| frames_of(session_from(first), address, 40);
     let old = at(1_000, 1);
     for first in [1_000, 1_001, 1_019, 1_020, 1_021, 1_300, 900, 999, 1_000 + (1 << 24)] {
         let new = at(first, 2);

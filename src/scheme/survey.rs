@@ -33,7 +33,7 @@ impl<S: Sample> Conditions<S> {
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(samples: u32, limits: RangeInclusive<S>, largest_change: S) -> Self {
-        unwrap(Self::of(samples, &limits, largest_change))
+        unwrap(Self::try_new(samples, limits, largest_change))
     }
 
     /// The conditions of a channel.
@@ -49,14 +49,6 @@ impl<S: Sample> Conditions<S> {
     pub const fn try_new(
         samples: u32,
         limits: RangeInclusive<S>,
-        largest_change: S,
-    ) -> Result<Self, ConfigError> {
-        Self::of(samples, &limits, largest_change)
-    }
-
-    const fn of(
-        samples: u32,
-        limits: &RangeInclusive<S>,
         largest_change: S,
     ) -> Result<Self, ConfigError> {
         let limits = [*limits.start(), *limits.end()];
