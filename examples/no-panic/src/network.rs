@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 use spikewire_network::{
-    Cuba, Full, Layer, Li, Lif, Network, Neuron, Number, OneToOne, Reset, Spikes, State, Subtract,
+    Cuba, Full, Layer, Li, Lif, Network, Neuron, NoReset, Number, OneToOne, Reset, Spikes, State, Subtract,
     SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
@@ -18,6 +18,7 @@ pub fn link() {
     rule::<Subtract>();
     rule::<SubtractLate>();
     rule::<SubtractNoDelay>();
+    rule::<NoReset>();
     let mut inputs = black_box(Spikes::<4>::new());
     inputs.push_event(event());
     inputs.push_signed(event());
