@@ -337,7 +337,7 @@ struct Sender<'a, P: Scheme> {
     truth: VecDeque<Truth<P::Sample>>,
     offered: Offers,
     /// Losses that the queue told of, and those before this start.
-    told: u64,
+    reported: u64,
     lost_before: u32,
     not_finite: u32,
     errors: u64,
@@ -374,7 +374,7 @@ impl<'a, P: Storable> Sender<'a, P> {
             beside: Beside::new(scheme, start),
             truth: VecDeque::new(),
             offered: Offers::default(),
-            told: 0,
+            reported: 0,
             lost_before: queue.lost(),
             not_finite: 0,
             errors: 0,
@@ -437,7 +437,7 @@ impl<'a, P: Storable> Sender<'a, P> {
     /// Main's turn: all that waits, as far as the port takes it.
     fn send(&mut self) {
         let consumer = self.queue.consumer().unwrap();
-        let mut source = Told(consumer, &mut self.told);
+        let mut source = Told(consumer, &mut self.reported);
         loop {
             match self.sink.send(&mut source) {
                 Ok(0) => break,
@@ -454,7 +454,7 @@ impl<'a, P: Storable> Sender<'a, P> {
     fn check_counts(&mut self) {
         assert!(self.queue.is_empty() && self.sink.waiting() == 0);
         let lost = u64::from(self.queue.lost() - self.lost_before);
-        assert_eq!(lost, self.told, "losses are told of in their place");
+        assert_eq!(lost, self.reported, "losses are told of in their place");
         let framed = self.sink.batch().framed;
         let due = self.offered.items - lost;
         assert!((framed..=framed + self.offered.breaks).contains(&due), "the others are in frames");
@@ -708,8 +708,8 @@ impl<'a, P: Storable> World<'a, P> {
         let line = self.line.borrow();
         let same = |sent: &&Sent| sent.number == frame.number();
         let sent = line.sent.iter().rev().find(same).expect("no frame is invented");
-        let own = FrameView::new(&sent.bytes).unwrap().0;
-        assert_eq!(format!("{own:?}"), format!("{frame:?}"), "no event is invented");
+        let original = FrameView::new(&sent.bytes).unwrap().0;
+        assert_eq!(format!("{original:?}"), format!("{frame:?}"), "no event is invented");
         let gap = received.gap.map_or(0, |gap| u64::from(gap.lost_frames));
         match self.delivered {
             Some((session, last)) if !received.is_start => {
@@ -744,24 +744,24 @@ impl<'a, P: Storable> World<'a, P> {
         let truth = self.senders.each_ref().map(|sender| &sender.truth);
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
-            let own = self.values.iter().filter(|told| usize::from(told.0) == channel);
-            let own: Vec<_> = own.collect();
+            let heard = self.values.iter().filter(|claimed| usize::from(claimed.0) == channel);
+            let heard: Vec<_> = heard.collect();
             let is_throughout = before[channel].is_some() && are_all_told;
-            let first = if is_throughout { 0 } else { own.len().saturating_sub(1) };
-            if let Some(last) = own.last() {
+            let first = if is_throughout { 0 } else { heard.len().saturating_sub(1) };
+            if let Some(last) = heard.last() {
                 assert_eq!(last.2.to_bits32(), value.to_bits32());
             }
-            for &&(_, tick, told) in &own[first..] {
+            for &&(_, tick, claimed) in &heard[first..] {
                 let away =
                     |truth: &Truth<_>| tick.since(Tick::from_micros(truth.time)).unsigned_abs();
                 let all = truth.iter().flat_map(|truth| truth.iter().rev());
                 let same = all.filter(|truth| truth.session == session && away(truth) <= near);
                 // Between two samples, where one that was late was the first to be heard, it may be either.
                 let is_told = |truth: &Truth<P::Sample>| {
-                    truth.values[channel].to_bits32() == told.to_bits32()
+                    truth.values[channel].to_bits32() == claimed.to_bits32()
                 };
-                let own = same.min_by_key(|truth| (!is_told(truth), away(truth)));
-                self.tally.claim(told, own.map(|truth| truth.values[channel]));
+                let nearest = same.min_by_key(|truth| (!is_told(truth), away(truth)));
+                self.tally.claim(claimed, nearest.map(|truth| truth.values[channel]));
             }
         }
     }
@@ -875,9 +875,9 @@ impl Tally {
         }
     }
 
-    fn claim<S: Sample>(&mut self, told: S, truth: Option<S>) {
+    fn claim<S: Sample>(&mut self, claimed: S, truth: Option<S>) {
         self.exact += 1;
-        let is_right = truth.is_some_and(|truth| truth.to_bits32() == told.to_bits32());
+        let is_right = truth.is_some_and(|truth| truth.to_bits32() == claimed.to_bits32());
         self.wrong += u64::from(!is_right);
     }
 

@@ -193,8 +193,8 @@ fn never<P: Start<Sample = f32>, const N: usize, const M: usize>(
 #[test]
 fn no_mistake_in_a_description_goes_unnoticed() {
     let thresholds: Vec<f32> = (1..=8).map(|step| step as f32 * 0.02).collect();
-    let schemes: Vec<_> = thresholds.iter().map(|&own| StepForward::new(own)).collect();
-    let send: Vec<_> = thresholds.iter().map(|&own| SendOnDelta::<f32, 16>::new(own)).collect();
+    let schemes: Vec<_> = thresholds.iter().map(|&step| StepForward::new(step)).collect();
+    let send: Vec<_> = thresholds.iter().map(|&step| SendOnDelta::<f32, 16>::new(step)).collect();
     let mut pairs = 0;
     for (at, one) in schemes.iter().enumerate() {
         for (other_at, other) in schemes.iter().enumerate().filter(|(place, _)| *place != at) {
@@ -264,7 +264,7 @@ fn the_fingerprint_comes_soon_and_costs_a_byte_a_frame() {
     {
         let mut bank = Bank::<_, 1>::new(&STEP);
         let mut link = Transmitter::for_bank(&bank, 2_500, Session::counted(7));
-        let (mut told, mut frames, mut silent) = (0, 0, 0);
+        let (mut described, mut frames, mut silent) = (0, 0, 0);
         let mut before = Tick::from(0);
         for number in 0..2_000 {
             let tick = Tick::from(number * pause);
@@ -280,7 +280,7 @@ fn the_fingerprint_comes_soon_and_costs_a_byte_a_frame() {
                 frames += 1;
                 if let Some(fingerprint) = view.fingerprint() {
                     assert_eq!(fingerprint, bank.fingerprint());
-                    told += 1;
+                    described += 1;
                     before = tick;
                 }
                 silent = silent.max(tick.since(before));
@@ -291,7 +291,7 @@ fn the_fingerprint_comes_soon_and_costs_a_byte_a_frame() {
             "{pause}: {silent} µs without a fingerprint"
         );
         let is_frequent = pause <= 125_000;
-        assert!(4 * told <= frames + 4 || !is_frequent, "{told} in {frames} frames");
+        assert!(4 * described <= frames + 4 || !is_frequent, "{described} in {frames} frames");
     }
 }
 
@@ -336,6 +336,6 @@ fn a_described_sender_is_not_believed_before_its_fingerprint() {
     let receiver = || Receiver::per_channel([&POSITION; 2]);
     assert_eq!(heard(receiver(), &without), (0, Some(Withheld::Unknown)));
     assert!(heard(receiver(), &frames).0 > 100);
-    let told = receiver().with_fingerprint(Fingerprint::from_bits(9)).fingerprint();
-    assert_eq!(told.bits(), 9);
+    let fingerprint = receiver().with_fingerprint(Fingerprint::from_bits(9)).fingerprint();
+    assert_eq!(fingerprint.bits(), 9);
 }

@@ -352,20 +352,20 @@ impl<'a, P: Storable> World<'a, P> {
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
             let was_exact = before[channel].is_some();
-            let own: Vec<_> =
-                self.values.iter().filter(|told| usize::from(told.0) == channel).collect();
-            let first = if was_exact && are_all_told { 0 } else { own.len().saturating_sub(1) };
-            if let Some(last) = own.last() {
+            let heard: Vec<_> =
+                self.values.iter().filter(|claimed| usize::from(claimed.0) == channel).collect();
+            let first = if was_exact && are_all_told { 0 } else { heard.len().saturating_sub(1) };
+            if let Some(last) = heard.last() {
                 assert_eq!(last.2.to_bits32(), value.to_bits32());
             }
-            for &&(_, tick, told) in &own[first..] {
+            for &&(_, tick, claimed) in &heard[first..] {
                 let from = self.truth.partition_point(|truth| truth.number < self.claimed[channel]);
                 // Ticks come again after 2³² µs: of samples with such a tick one has the value.
                 let is_near = |truth: &&Truth<P::Sample>| {
                     tick.since(Tick::from_micros(truth.time)).unsigned_abs() <= self.near
                 };
                 let is_told = |truth: &&Truth<P::Sample>| {
-                    truth.values[channel].to_bits32() == told.to_bits32()
+                    truth.values[channel].to_bits32() == claimed.to_bits32()
                 };
                 if let Some(truth) = self.truth.range(from..).filter(is_near).find(is_told) {
                     self.claimed[channel] = truth.number;
@@ -500,8 +500,8 @@ impl<'a, P: Storable> World<'a, P> {
 }
 
 impl Claims {
-    fn add<S: Sample>(&mut self, told: S, truth: S) {
-        if told.to_bits32() == truth.to_bits32() {
+    fn add<S: Sample>(&mut self, claimed: S, truth: S) {
+        if claimed.to_bits32() == truth.to_bits32() {
             self.right += 1;
         } else {
             self.wrong += 1;

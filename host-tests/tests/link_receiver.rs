@@ -257,13 +257,13 @@ fn a_transmitter_counts_the_silences_that_it_cannot_measure() {
 #[test]
 fn what_is_withheld_has_a_reason_in_words() {
     let slots = Withheld::Slots { slots: 50, slot_ticks: 21, period: 1_000 };
-    for (reason, told) in [
+    for (reason, message) in [
         (Withheld::Keyframe, "no keyframe since the start or the last loss"),
         (Withheld::Samples(3), "3 more samples without a loss are needed"),
         (slots, "50 sub-timesteps of 21 µs are longer than the link's period of 1000 µs"),
         (Withheld::Always, "the error of this code fades, and is never 0"),
     ] {
-        assert_eq!(reason.to_string(), told);
+        assert_eq!(reason.to_string(), message);
     }
 }
 
@@ -529,12 +529,12 @@ fn fly<P: Start<Sample = f32>>(
             let frame = reader.next_frame(&mut bytes).unwrap();
             let mut last = None;
             receiver.apply(&frame, |_, tick, value| last = Some((tick, value)));
-            if let (Some(told), Some(exact)) = (last, receiver.exact(0)) {
-                assert_eq!(told.1, exact);
+            if let (Some(end), Some(exact)) = (last, receiver.exact(0)) {
+                assert_eq!(end.1, exact);
                 // Where the clock steps, a sample without events is told of where it was due.
                 let is_near =
-                    |tick: Tick| tick.since(told.0).unsigned_abs() <= u32::from(LATE_PERIOD) / 2;
-                let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == told.1);
+                    |tick: Tick| tick.since(end.0).unsigned_abs() <= u32::from(LATE_PERIOD) / 2;
+                let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == end.1);
                 heard.right += usize::from(is_right);
                 heard.wrong += usize::from(!is_right);
             }

@@ -268,12 +268,12 @@ pub(crate) fn bank_fingerprint<'s, P: Scheme + 's>(
     let (mut count, mut last) = (0_u32, None);
     for scheme in schemes {
         // A scheme that channels share is described once.
-        let own = match last {
-            Some((same, own)) if core::ptr::eq(same, scheme) => own,
+        let described = match last {
+            Some((same, described)) if core::ptr::eq(same, scheme) => described,
             _ => scheme.fingerprint(),
         };
-        last = Some((scheme, own));
-        bank = bank.and(own);
+        last = Some((scheme, described));
+        bank = bank.and(described);
         count = count.wrapping_add(1);
     }
     bank.number(count)
