@@ -133,11 +133,11 @@ proptest! {
     #[test]
     fn the_integral_never_drifts(x in drawn(), threshold in 512_i16..4000, reference in -90_i16..90) {
         let scheme = Neuron::<i16, 8>::new(threshold, 3).with_reference(reference);
-        let (mut sum, mut told) = (0, 0);
+        let (mut sum, mut coded) = (0, 0);
         for (count, x) in counts_of(&scheme, &x).into_iter().zip(x) {
             sum += i32::from(x) - i32::from(reference);
-            told += i32::from(count) * i32::from(threshold);
-            prop_assert!((sum - told).abs() < i32::from(threshold));
+            coded += i32::from(count) * i32::from(threshold);
+            prop_assert!((sum - coded).abs() < i32::from(threshold));
         }
     }
 
