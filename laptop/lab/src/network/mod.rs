@@ -22,7 +22,7 @@ pub use controller::{
 };
 pub use costs::Cost;
 pub use distance::Distance;
-pub use fault::NetworkKind;
+pub use fault::{FitKind, LayerKind, ModelKind, NetworkKind, NirKind};
 pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;
 pub use trained::{Trained, Trains};

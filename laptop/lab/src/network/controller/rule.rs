@@ -79,7 +79,7 @@ pub struct Asked {
     pub resets: Vec<Reset>,
     /// Whether a neuron fires when its potential equals its threshold.
     pub fires: Option<Fires>,
-    /// How time constants become factors.
+    /// How time constants become the factors of a step.
     pub decay: Option<Decay>,
     /// Which current drives the potential.
     pub current: Option<Current>,
@@ -96,7 +96,7 @@ pub struct Rule {
     pub reset: Reset,
     /// Whether a neuron fires when its potential equals its threshold.
     pub fires: Fires,
-    /// How time constants become factors.
+    /// How time constants become the factors of a step.
     pub decay: Decay,
     /// Which current drives the potential.
     pub current: Current,
