@@ -2,8 +2,8 @@
 
 use core::hint::black_box;
 use spikewire_network::{
-    Cuba, Full, Layer, Li, Lif, Network, Neuron, NoReset, Number, OneToOne, Reset, Spikes, State, Subtract,
-    SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
+    Cuba, Full, Layer, Li, Lif, Network, Neuron, NoReset, Number, OneToOne, Reset, Spikes, State,
+    Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
 use crate::exercise::{event, hide, tick};

@@ -107,7 +107,10 @@ fn ensure_versions(place: &Path) -> Result<()> {
         ("idf_component.yml", format!("version: \"{version}\"")),
     ] {
         let text = fs::read_to_string(place.join(file)).context(file)?;
-        ensure!(text.contains(&line), "bindings/c/bundle/{file} has another version than {version}");
+        ensure!(
+            text.contains(&line),
+            "bindings/c/bundle/{file} has another version than {version}"
+        );
     }
     Ok(())
 }
