@@ -4,6 +4,7 @@ mod commands;
 mod inputs;
 mod live;
 mod options;
+mod panel;
 mod stop;
 mod words;
 

@@ -3,6 +3,7 @@
 use crate::inputs::StreamOptions;
 use crate::live::Live;
 use crate::options::{agreed, augment, given, option_group, schemes};
+use crate::panel::{Panel, Screen};
 use crate::stop::Stop;
 use crate::words::{of_lab, option};
 use anyhow::{Result, bail};
@@ -17,8 +18,10 @@ use lab::output::Output;
 use lab::port::{Bytes, Port};
 use lab::scheme::Scheme;
 use lab::values::with_receiver;
-use std::io::Write;
+use std::cell::RefCell;
+use std::io::{self, Write};
 use std::path::PathBuf;
+use std::rc::Rc;
 
 /// Listen to a board: write the events that it sends, or with `--scheme` the values that they encode.
 ///
@@ -34,6 +37,7 @@ Examples:
   spikewire listen --baud 921600 /dev/ttyUSB0 --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5
   spikewire listen captured.bytes --scheme grf --neurons 20 --min=-9 --max=9
   spikewire listen captured.bytes --flight flight.toml
+  spikewire listen --baud 921600 /dev/ttyUSB0 --flight flight.toml --live
   spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
     /// Serial port, or a file of captured bytes; `-` reads standard input
@@ -71,6 +75,10 @@ pub(crate) struct Listen {
     /// Length in µs of the sender's sub-timesteps; only for schemes that have them
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
+    /// Draw values, spikes and losses in the terminal while they arrive, a recording at the pace of its clock; values are
+    /// written only to a file
+    #[arg(long)]
+    live: bool,
     #[command(flatten)]
     parameters: DecoderOptions,
 }
@@ -103,7 +111,7 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
         let flight = Flight::read(path)?;
         let mut heard = Ok(());
         flight::with_receiver(&flight, |values| {
-            heard = listen(options, Some((values, flight.sample)));
+            heard = listen_to(options, values, flight.sample, || Panel::of_flight(&flight));
             Ok(())
         })?;
         return heard;
@@ -114,35 +122,66 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
         if !options.parameters.0.is_empty() || options.slot_ticks.is_some() {
             bail!("a scheme's parameters need --scheme");
         }
-        return listen(options, None);
+        if options.live {
+            bail!("--live draws values: it needs --flight or --scheme");
+        }
+        return listen(options, None, None);
     };
     let settings = options.settings(scheme, sample)?;
     let slot_ticks = options.slot_ticks(scheme, &settings)?;
+    let neurons = settings.first().map(|own| scheme.shape(own)).transpose()?;
+    let neurons = neurons.map_or(1, |shape| shape.neurons);
     let mut heard = Ok(());
     with_receiver(scheme, sample, &settings, slot_ticks, |values| {
-        heard = listen(options, Some((values, sample)));
+        heard = listen_to(options, values, sample, || Panel::new(neurons));
         Ok(())
     })?;
     heard
 }
 
-fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) -> Result<()> {
+/// Listens to values, in a panel if one is asked for.
+fn listen_to(
+    options: &Listen,
+    values: Box<dyn Values + '_>,
+    sample: SampleType,
+    panel: impl FnOnce() -> Panel,
+) -> Result<()> {
+    if !options.live {
+        return listen(options, Some((values, sample)), None);
+    }
+    let panel = Rc::new(RefCell::new(panel()));
+    let screen = Screen::new(&panel)?;
+    listen(options, Some((Panel::noting(&panel, values), sample)), Some(screen))
+}
+
+fn listen(
+    options: &Listen,
+    values: Option<(Box<dyn Values + '_>, SampleType)>,
+    mut screen: Option<Screen>,
+) -> Result<()> {
+    /// Bytes of a recording between two pictures, at most.
+    const PART: usize = 64;
     let mut port = Port::open(&options.input, options.baud)?;
     let stop = Stop::new(options.seconds)?;
-    let mut output = Output::open(options.output.as_deref(), &options.input)?;
+    let is_written = screen.is_none() || options.output.is_some();
+    let open = || Output::open(options.output.as_deref(), &options.input);
+    let mut file = is_written.then(open).transpose()?;
     let (reader, writer): (Box<dyn EventReader + '_>, _) = match values {
         Some((values, sample)) => (Box::new(LinkReader::new(Some(values))), values_writer(sample)),
         None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)),
     };
     let mut stream = Stream::new(reader, writer, options.stream.from_zero);
     let mut live = Live::new(options.output.is_none());
+    let mut nothing = io::sink();
+    let output: &mut dyn Write = file.as_mut().map_or(&mut nothing, |file| file);
 
-    let mut buffer = vec![0; 1 << 16];
+    let is_played = screen.is_some() && options.baud.is_none();
+    let mut buffer = vec![0; if is_played { PART } else { 1 << 16 }];
     let heard = loop {
         match port.read(&mut buffer) {
             Ok(Bytes::Some(count)) => {
                 let arrival = options.baud.map(|_| stop.tick());
-                stream.push(&buffer[..count], arrival, &mut output)?;
+                stream.push(&buffer[..count], arrival, output)?;
                 if !port.is_file() {
                     output.flush()?;
                 }
@@ -151,21 +190,29 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
             Ok(Bytes::End) => break Ok(()),
             Err(error) => break Err(error),
         }
-        live.update(&stream);
+        match &mut screen {
+            Some(screen) => screen.update(&stream, port.is_file(), &stop)?,
+            None => live.update(&stream),
+        }
         if stop.is_due() {
             break Ok(());
         }
     };
     // What came before a port failed is kept.
-    stream.finish(&mut output)?;
+    stream.finish(output)?;
     live.clear();
+    if let Some(screen) = &mut screen {
+        screen.finish(&stream)?;
+    }
     eprint!("{}", stream.spelled(option));
     match stream.check_format(options.from, port.name()) {
         // It may yet speak, or at another speed.
         Err(error) if options.baud.is_some() => eprintln!("{}", of_lab(&error)),
         checked => checked?,
     }
-    output.finish()?;
+    if let Some(file) = file {
+        file.finish()?;
+    }
     Ok(heard?)
 }
 

@@ -3,6 +3,7 @@
 mod compiler;
 mod cost;
 mod declared;
+mod flights;
 mod guides;
 mod package;
 mod sizes;
@@ -21,6 +22,7 @@ use std::{
 };
 
 pub use cost::cost;
+pub use flights::write_flights;
 pub use guides::guides;
 pub use sizes::write as write_sizes;
 pub use tests::{cores, verify, watched};

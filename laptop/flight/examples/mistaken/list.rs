@@ -1,0 +1,97 @@
+//! Flights of which no two are the same, and of which each pair is a mistake that somebody makes.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+const NAMES: [&str; 6] = ["roll", "pitch", "yaw", "x", "y", "z"];
+
+/// A flight's file but for its parts.
+struct File<'a> {
+    scheme: &'a str,
+    parameters: String,
+    sample: &'a str,
+    period: usize,
+    names: [String; 6],
+    unit: &'a str,
+    counts: f64,
+    filter: String,
+}
+
+impl Default for File<'_> {
+    fn default() -> Self {
+        Self {
+            scheme: "sf",
+            parameters: "threshold = 0.1".into(),
+            sample: "f32",
+            period: 2000,
+            names: NAMES.map(str::to_owned),
+            unit: "rad/s",
+            counts: 1.0,
+            filter: String::new(),
+        }
+    }
+}
+
+impl File<'_> {
+    fn text(&self) -> String {
+        let Self { scheme, parameters, sample, period, names, unit, counts, filter } = self;
+        let mut text = format!(
+            "version = 1\nscheme = \"{scheme}\"\nsample = \"{sample}\"\nperiod = {period}\nkeyframe_every = 5\n{filter}\n\
+             parameters = {{ {parameters} }}\n"
+        );
+        for name in names {
+            let channel = format!("name = \"{name}\"\nunit = \"{unit}\"\ncounts = {counts:?}");
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "[[channel]]\n{channel}");
+        }
+        text
+    }
+}
+
+/// Every code.
+fn codes() -> Vec<String> {
+    let codes = catalogue::INFO.iter().map(|info| File {
+        scheme: info.name,
+        parameters: catalogue::run::example(info),
+        ..File::default()
+    });
+    codes.map(|file| file.text()).collect()
+}
+
+/// For each kind of mistake, files that differ in nothing else.
+fn kinds() -> BTreeMap<&'static str, Vec<String>> {
+    let seven =
+        |file: &dyn Fn(usize) -> File<'static>| (0..7).map(|own| file(own).text()).collect();
+    let file = File::default;
+    let swapped = |one: usize, other: usize| {
+        let mut names = NAMES.map(str::to_owned);
+        names.swap(one, other);
+        File { names, ..file() }
+    };
+    let swaps = [(0, 0), (0, 1), (0, 2), (0, 5), (1, 2), (2, 4), (3, 5)];
+    let samples = ["f32", "q16.16", "q4.28", "q6.26", "q8.8", "q5.11", "q6.10"];
+    let units = ["", "rad/s", "deg/s", "m/s", "m/s²", "g", "V"];
+    let low_pass = |own| format!("filter = {{ kind = \"low-pass\", corner = {} }}", 40 + own);
+    BTreeMap::from([
+        ("code", codes()),
+        ("sample", seven(&|own| File { sample: samples[own], ..file() })),
+        ("threshold", seven(&|own| File { parameters: format!("threshold = 0.1{own}"), ..file() })),
+        ("order", seven(&|own| swapped(swaps[own].0, swaps[own].1))),
+        ("names", seven(&|own| File { names: NAMES.map(|name| format!("{name}{own}")), ..file() })),
+        ("period", seven(&|own| File { period: 2000 + own, ..file() })),
+        ("unit", seven(&|own| File { unit: units[own], ..file() })),
+        ("counts", seven(&|own| File { counts: 1.0 + own as f64 / 8.0, ..file() })),
+        ("filter", seven(&|own| File { filter: low_pass(own), ..file() })),
+    ])
+}
+
+/// The text of each flight, and of which kinds it is: two flights with a common kind differ in that alone.
+pub(crate) fn flights() -> BTreeMap<String, BTreeSet<&'static str>> {
+    let mut found: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
+    for (kind, texts) in kinds() {
+        for text in texts {
+            found.entry(text).or_default().insert(kind);
+        }
+    }
+    found
+}

@@ -1,0 +1,36 @@
+//! Writes flights into a directory, for checks in other languages: those of `tests/flights`, and many that are mistaken for
+//! one another. `flights.txt` has a line for each: name, scheme, the number that stands for 1, the fingerprint, and its
+//! kinds; two flights with a common kind differ in that alone.
+
+mod list;
+
+use spikewire_flight::Flight;
+use std::{env, error::Error, fmt::Write, fs, path::Path};
+
+/// Flights whose bits `tests/both_ends.rs` tells.
+const FLOWN: [&str; 4] = ["asf", "grf_slots", "sf", "sod"];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let directory = env::args().nth(1).ok_or("no directory")?;
+    let directory = Path::new(&directory);
+    fs::create_dir_all(directory)?;
+    let flown = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/flights");
+    let mut flights = Vec::new();
+    for name in FLOWN {
+        let text = fs::read_to_string(flown.join(name).with_extension("toml"))?;
+        flights.push((name.to_owned(), text, "flown".to_owned()));
+    }
+    for (place, (text, kinds)) in list::flights().into_iter().enumerate() {
+        let kinds: Vec<_> = kinds.into_iter().collect();
+        flights.push((format!("f{place}"), text, kinds.join(" ")));
+    }
+    let mut table = String::new();
+    for (name, text, kinds) in flights {
+        let flight = Flight::parse(&text)?;
+        let (scheme, one, fingerprint) =
+            (flight.scheme.name, flight.sample.one(), flight.fingerprint());
+        writeln!(table, "{name} {scheme} {one} {} {kinds}", fingerprint.bits())?;
+        fs::write(directory.join(name).with_extension("toml"), text)?;
+    }
+    Ok(fs::write(directory.join("flights.txt"), table)?)
+}
