@@ -89,7 +89,7 @@ fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> 
 
 #[test]
 fn the_recorded_flight_is_drawn() {
-    let drawn = picture(&flight(THRESHOLDS[0]), 2500, |_| false);
+    let drawn = picture(&flight(THRESHOLDS[0]), 1700, |_| false);
     assert_eq!(drawn, include_str!("flight.txt").lines().collect::<Vec<_>>(), "{}", drawn.join("\n"));
 }
 
@@ -101,7 +101,7 @@ fn what_was_lost_is_held_until_a_keyframe() {
     let marks = |samples: usize, mark: &str| {
         let drawn = picture(&flight, samples, is_lost);
         let count = drawn.iter().filter(|line| line.contains(mark)).count();
-        (count, drawn.join("\n"))
+        (count, drawn.join(" "))
     };
     let (held, drawn) = marks(2439, " held ");
     assert!(held == 6 && drawn.contains(": no keyframe since the start or the last loss"), "{drawn}");

@@ -1,7 +1,7 @@
 //! Both ends of flights in C, as `spikewire emit c --flight` makes them: each hears its own sender with the crate's bits, on
 //! the host and on a board, and none hears an exact value of a flight that is mistaken for its own.
 
-use super::{compiler, put, work};
+use super::{compiler, put, room, work};
 use crate::common::{paths, shell};
 use crate::programs::boards::Board;
 use crate::programs::{host, qemu};
@@ -94,6 +94,8 @@ fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
     emit.args(flights.iter().map(|own| files.join(&own.name).with_extension("toml")));
     emit.arg("-o").arg(&made).arg("--spikewire").arg(paths::root());
     shell::run(&mut emit)?;
+    // The versions that the library was compiled with.
+    fs::copy(room().join("Cargo.lock"), made.join("Cargo.lock"))?;
     let include = work().join(name);
     let mut cargo = shell::cargo("run --features header --bin header");
     shell::run(in_dev(&mut cargo, &made).arg(&include))?;
