@@ -25,10 +25,11 @@ def flights():
 
 
 def sent(flight):
-    """The frames of each sample."""
+    """The frames of each sample; the first has the fingerprint that a firmware from the same file sends."""
     sender = flight.sender(session=7)
-    assert sender.fingerprint == flight.fingerprint
-    return [sender.encode(np.trunc(sample * flight.counts)) for sample in SAW]
+    frames = [sender.encode(sample) for sample in SAW]
+    assert flight.fingerprint.to_bytes(4, "little") in frames[0][0]
+    return frames
 
 
 def heard(flight, frames):
