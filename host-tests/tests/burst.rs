@@ -1,7 +1,9 @@
 //! Burst coding: the larger the value, the more spikes, and the closer together.
 
-use crate::common::timing::{Lined, assert_law, beside, check, code_of, rising};
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::timing::{Lined, assert_law, beside, check, code_of};
+use crate::common::{
+    between, cases, drawn_recordings, flight_channels, hostile_recordings, ranges,
+};
 use fixed::types::I16F16;
 use host_tests::reference::{Bursts, edge};
 use proptest::prelude::*;
@@ -111,24 +113,16 @@ fn flights_and_hostile_recordings() {
     }
 }
 
-fn drawn<S: Lined + Drawn>() {
-    proptest!(cases(48), |(x in S::recordings(), a in S::value(), b in S::value())| {
-        let range = rising(a, b);
-        // Where an `f32` is as coarse as the cells, two edges may be one.
-        let [min, max] = range.map(spikewire::Sample::to_f64);
-        prop_assume!(max - min > (min.abs().max(max.abs()) / 1024.0).max(1e-40));
-        check_bursts::<S, 2>(range, 1, [1, 200], &x);
-        check_bursts::<S, 17>(range, 2, [1, 30], &x);
-        check_bursts::<S, 19>(range, 5, [2, 10], &x);
-        check_bursts::<S, 64>(range, 7, [3, 3], &x);
-        check_bursts::<S, 256>(range, 20, [1, 20], &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Lined, 48, (x in S::recordings(), range in ranges::<S>()) => {
+    // Where an `f32` is as coarse as the cells, two edges may be one.
+    let [min, max] = range.map(spikewire::Sample::to_f64);
+    prop_assume!(max - min > (min.abs().max(max.abs()) / 1024.0).max(1e-40));
+    check_bursts::<S, 2>(range, 1, [1, 200], &x);
+    check_bursts::<S, 17>(range, 2, [1, 30], &x);
+    check_bursts::<S, 19>(range, 5, [2, 10], &x);
+    check_bursts::<S, 64>(range, 7, [3, 3], &x);
+    check_bursts::<S, 256>(range, 20, [1, 20], &x);
+});
 
 /// Ranges of few samples, where edges fall together: no shape takes more cells than slots.
 #[test]
@@ -169,7 +163,7 @@ fn fewest_slots() {
 /// `f32` next to every edge.
 #[test]
 fn beside_the_edges() {
-    proptest!(cases(128), |(min in -3.0_f32..3.0, width in crate::common::between(0.01, 5.0))| {
+    proptest!(cases(128), |(min in -3.0_f32..3.0, width in between(0.01, 5.0))| {
         let range = [min, min + width];
         let counts = (0..5).map(|k| edge(range[0], range[1], k, 5));
         let intervals = (1..=8).map(|j| edge(range[0], range[1], j, 8));

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
-use catalogue::{Channel, Flight, State};
+use catalogue::{Channel, Flight, State, Storable};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -348,10 +348,7 @@ fn again<T: State>(bytes: &[u8]) -> T {
     postcard::from_bytes(bytes).unwrap()
 }
 
-impl<'a, P> Sender<'a, P>
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+impl<'a, P: Storable> Sender<'a, P> {
     fn new(
         scheme: &'a P,
         start: &'a [u8],
@@ -506,10 +503,7 @@ struct World<'a, P: Scheme> {
     tally: Tally,
 }
 
-impl<'a, P> World<'a, P>
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+impl<'a, P: Storable> World<'a, P> {
     fn new(
         scheme: &'a P,
         start: &'a [u8],
@@ -945,16 +939,13 @@ impl<S: Sample> Flight for Soak<'_, S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         self.seed += 1;
         let policies = [Overflow::DropOldest, Overflow::DropNewest, Overflow::Refuse];
         let queue = || EventQueue::<256>::new(policies[self.seed as usize % 3]);

@@ -2,10 +2,10 @@
 //! `r[i+j] -= h[j]`.
 
 use crate::common::rate::{
-    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
+    all_lengths, drawn_recordings, few_lengths, least, pairs_of_8_bits, spikes_of, triangle,
 };
-use crate::common::{flight_channels, hostile_recordings};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{flights, hostile_recordings};
+use fixed::types::I8F8;
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::hough;
 use proptest::prelude::*;
@@ -54,20 +54,10 @@ fn waits_for_the_look_ahead() {
     assert_eq!(encoder.finish_next(), None);
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        let shift = channel.iter().copied().fold(f32::INFINITY, f32::min);
-        all_lengths!(check, f32, &triangle(0.1), &channel, shift);
-        all_lengths!(check, f32, &triangle(1.0), &channel, shift);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        check::<I16F16, 8>(&first_taps(&triangle(0.1)), &fixed, I16F16::from_num(shift));
-        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-        check::<I8F8, 8>(&first_taps(&triangle(0.1)), &fixed, I8F8::from_num(shift));
-        let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-        check::<i16, 8>(&first_taps(&triangle(13.0)), &counts, (shift * 100.0) as i16);
-    }
-}
+flights!(S: Wire, |x, unit| {
+    few_lengths!(check, S, &triangle(0.1 * unit), &x, least(&x));
+    few_lengths!(check, S, &triangle(unit), &x, least(&x));
+});
 
 #[test]
 fn hostile() {
@@ -87,14 +77,13 @@ fn all_pairs_of_8_bits() {
         let taps = Taps::try_new(taps.map(I8F8::from_bits)).unwrap();
         let h = reals(taps.as_array());
         let scheme = Hough::new(taps);
-        let mut encoder = scheme.encoder();
         for pair in pairs_of_8_bits() {
             let pair = pair.map(I8F8::from_bits);
-            encoder.reset();
-            let mut spikes: Vec<_> =
-                pair.iter().filter_map(|&r| encoder.encode(r)).map(Spike::sign).collect();
-            spikes.extend(encoder.finish().map(Spike::sign));
-            assert_eq!(spikes, hough(&pair.map(Wire::real), &h, 0.0, true), "{pair:?}");
+            assert_eq!(
+                spikes_of(&scheme, &pair),
+                hough(&pair.map(Wire::real), &h, 0.0, true),
+                "{pair:?}"
+            );
         }
     }
     check([1]);

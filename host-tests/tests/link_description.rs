@@ -1,6 +1,6 @@
 //! A sender and a receiver that have other schemes: no value is exact, for any code, from the first frame or from later on.
 
-use catalogue::{Channel, Flight, State};
+use catalogue::{Channel, Flight, Storable};
 use fixed::types::I16F16;
 use host_tests::flight;
 use spikewire::filter::{Biquad, FirstOrder};
@@ -94,16 +94,13 @@ impl<S: Sample> Flight for Pairs<'_, S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         let slot_ticks = slot_ticks(scheme);
         let start = postcard::to_allocvec(&start).unwrap();
         let states = [(); CHANNELS].map(|()| (scheme, postcard::from_bytes(&start).unwrap()));

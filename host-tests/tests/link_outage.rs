@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 
-use catalogue::{Channel, Flight, State};
+use catalogue::{Channel, Flight, State, Storable};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -110,10 +110,7 @@ fn again<T: State>(bytes: &[u8]) -> T {
     postcard::from_bytes(bytes).unwrap()
 }
 
-impl<'a, P> World<'a, P>
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+impl<'a, P: Storable> World<'a, P> {
     fn new(
         scheme: &'a P,
         start: &P::EncoderState,
@@ -602,16 +599,13 @@ impl<S: Sample> Flight for Outages<S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         let mut sum = 0;
         for seed in self.seeds.clone() {
             let mut world = World::new(scheme, &start, &self.samples, (seed, self.is_attack));
@@ -639,44 +633,42 @@ fn claims<S: Sample>(unit: f64, seeds: std::ops::Range<u64>, turns: u32, is_atta
     visitor.claims
 }
 
-#[test]
-fn what_is_called_exact_is_so_after_any_outage() {
-    assert!(claims::<f32>(1.0, 0..1, 8, false) > 20_000);
-    assert!(claims::<i16>(1000.0, 1..2, 8, false) > 20_000);
+fn some_claims(turns: u32, is_attack: bool) {
+    assert!(claims::<f32>(1.0, 0..1, turns, is_attack) > 20_000);
+    assert!(claims::<i16>(1000.0, 1..2, turns, is_attack) > 20_000);
 }
 
-/// The same for 10⁸ claims.
-#[test]
-#[ignore = "minutes"]
-fn what_is_called_exact_is_so_after_a_hundred_million() {
+/// Goes on with further seeds until there are so many claims.
+fn all_claims(wanted: u64, first_seed: u64, is_attack: bool) {
     let mut sum = 0;
-    for round in (1_000..).step_by(20) {
-        sum += claims::<f32>(1.0, round..round + 10, 60, false);
-        sum += claims::<i16>(1000.0, round + 10..round + 20, 60, false);
+    for seed in (first_seed..).step_by(20) {
+        sum += claims::<f32>(1.0, seed..seed + 10, 60, is_attack);
+        sum += claims::<i16>(1000.0, seed + 10..seed + 20, 60, is_attack);
         println!("{sum} claims");
-        if sum > 100_000_000 {
+        if sum > wanted {
             break;
         }
     }
+}
+
+#[test]
+fn what_is_called_exact_is_so_after_any_outage() {
+    some_claims(8, false);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn what_is_called_exact_is_so_after_a_hundred_million() {
+    all_claims(100_000_000, 1_000, false);
 }
 
 #[test]
 fn an_attack_makes_nothing_wrong_exact() {
-    assert!(claims::<f32>(1.0, 0..1, 12, true) > 20_000);
-    assert!(claims::<i16>(1000.0, 1..2, 12, true) > 20_000);
+    some_claims(12, true);
 }
 
-/// The same for 2 · 10⁷ claims.
 #[test]
 #[ignore = "minutes"]
 fn an_attack_of_twenty_million_makes_nothing_wrong_exact() {
-    let mut sum = 0;
-    for round in (5_000..).step_by(20) {
-        sum += claims::<f32>(1.0, round..round + 10, 60, true);
-        sum += claims::<i16>(1000.0, round + 10..round + 20, 60, true);
-        println!("{sum} claims");
-        if sum > 20_000_000 {
-            break;
-        }
-    }
+    all_claims(20_000_000, 5_000, true);
 }

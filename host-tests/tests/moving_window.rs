@@ -1,6 +1,6 @@
 //! MW, moving window: a spike when the sample leaves the band around the mean of the `N` before.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::{drawn_recordings, flight_channels, flights, hostile_recordings};
 use fixed::types::{I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_same_values, assert_step_spikes, check_step_decoder, decode, encode, finite,
@@ -202,20 +202,9 @@ fn the_keyframe_is_the_last_sample_of_a_full_window() {
     }
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        for threshold in [0.01_f32, 0.25] {
-            check_all(&channel, threshold, &channel);
-            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-            check::<_, 6>(&fixed, I16F16::from_num(threshold), &fixed);
-            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-            check::<_, 5>(&fixed, I8F8::from_num(threshold), &fixed);
-            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-            check::<_, 64>(&counts, (threshold * 100.0) as i16, &counts);
-        }
-    }
-}
+flights!(S: Wire, |x, unit| for threshold in [0.01, 0.25] {
+    check_all(&x, S::from_f64(threshold * unit), &x);
+});
 
 #[test]
 fn hostile() {
@@ -270,37 +259,6 @@ fn does_not_drift() {
     assert_eq!(encoder.encode(0.102), Spike::Up);
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let fill = proptest::collection::vec(S::value(), 0..7);
-    let cases = &cases(96);
-    proptest!(cases, |((x, threshold, fill) in (S::recordings(), S::positive(), fill))| {
-        check_all(&x, threshold, &fill);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
-
-/// All sums of a window of two within 8 bits, with all samples, in the middle and at both ends of
-/// the type.
-#[test]
-fn all_pairs_of_8_bits() {
-    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
-        for threshold in [1, 100, i16::MAX] {
-            let scheme = MovingWindow::<I8F8, 2>::try_new(I8F8::from_bits(threshold)).unwrap();
-            let mut encoder = scheme.encoder();
-            let pairs = (from..to).map(|a| (a, a)).chain((from..to).map(|a| (a, a + 1)));
-            for window in pairs.map(|(a, b)| [a, b].map(I8F8::from_bits)) {
-                let before = window.map(Wire::real);
-                for x in (from..=to).map(I8F8::from_bits) {
-                    let expected =
-                        moving_window(&[x.real()], 2, scheme.threshold().real(), Some(&before));
-                    encoder.prime(&window);
-                    assert_eq!([encoder.encode(x).sign()], *expected, "{x} after {window:?}");
-                }
-            }
-        }
-    }
-}
+drawn_recordings!(S: Wire, 96, (x in S::recordings(), threshold in S::positive(), fill in proptest::collection::vec(S::value(), 0..7)) => {
+    check_all(&x, threshold, &fill);
+});

@@ -1,6 +1,6 @@
 //! The survey before arming: its verdicts, and the laws of the thresholds that it gives.
 
-use crate::common::{cases, flight_channels};
+use crate::common::{between, cases, flight_channels};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::Wire;
 use proptest::prelude::*;
@@ -150,7 +150,7 @@ fn shares_of_drawn_signals() {
     let cases = &cases(512);
     proptest!(cases, |(
         steps in proptest::collection::vec(-80..=80_i16, 3..200),
-        share in crate::common::between(0.005, 1.0),
+        share in between(0.005, 1.0),
     )| {
         let x: Vec<i16> = steps.iter().scan(0_i16, |x, step| { *x += step; Some(*x) }).collect();
         let survey = watched::<i16, 64>(conditions, &x);

@@ -1,10 +1,11 @@
 //! Weighted bursts against their transcription, and their error.
 
+use crate::common::{rate::spikes_of, refused};
 use proptest::prelude::*;
+use spikewire::Scheme;
 use spikewire::rate::{Average, SigmaDelta, WeightedBurst, Window};
-use spikewire::{ConfigError, Scheme};
 
-use crate::sigma_delta::{Check, drawn, in_every_type, spikes_of, values_of};
+use crate::sigma_delta::{Check, drawn, in_every_type, values_of};
 use catalogue::plain::{self, Plain};
 use catalogue::schemes::burst_weighted::transcribed;
 
@@ -45,19 +46,8 @@ fn what_is_not_finite_ends_a_burst() {
 
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
-    let parameter = |min, max, unit, doublings| match WeightedBurst::<f32, _>::try_new(
-        min..=max,
-        unit,
-        doublings,
-        Average::new(1),
-    ) {
-        Err(
-            ConfigError::NotFinite { parameter, .. }
-            | ConfigError::NotPositive { parameter, .. }
-            | ConfigError::NotRising { parameter, .. }
-            | ConfigError::OutOfRange { parameter, .. },
-        ) => parameter,
-        other => panic!("{other:?}"),
+    let parameter = |min, max, unit, doublings| {
+        refused(WeightedBurst::<f32, _>::try_new(min..=max, unit, doublings, Average::new(1)))
     };
     assert_eq!(parameter(1.0, 0.0, 1.0, 0), "min and max");
     assert_eq!(parameter(0.0, 1.0, 0.0, 0), "weight");

@@ -136,7 +136,7 @@ pub trait Output: Copy {
     fn code(self) -> Option<Self::Code>;
 }
 
-impl Output for Spike {
+impl<C: Code> Output for C {
     type Code = Self;
 
     fn code(self) -> Option<Self> {

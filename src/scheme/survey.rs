@@ -3,7 +3,7 @@
 use core::fmt;
 use core::ops::RangeInclusive;
 
-use crate::error::{positive, range, unwrap, within};
+use crate::error::{positive, range, tri, unwrap, within};
 use crate::num::to_f64;
 use crate::temporal::{StepForward, TemporalContrast};
 use crate::{Calibration, ConfigError, Histogram, Moments, Sample};
@@ -60,15 +60,9 @@ impl<S: Sample> Conditions<S> {
         largest_change: S,
     ) -> Result<Self, ConfigError> {
         let limits = [*limits.start(), *limits.end()];
-        if let Err(error) = within("samples", samples as f64, 3.0, u32::MAX as f32) {
-            return Err(error);
-        }
-        if let Err(error) = range(to_f64(limits[0]), to_f64(limits[1])) {
-            return Err(error);
-        }
-        if let Err(error) = positive("largest change", to_f64(largest_change)) {
-            return Err(error);
-        }
+        tri!(within("samples", samples as f64, 3.0, u32::MAX as f32));
+        tri!(range(to_f64(limits[0]), to_f64(limits[1])));
+        tri!(positive("largest change", to_f64(largest_change)));
         Ok(Self { samples, limits, largest_change, stillness: None })
     }
 
@@ -88,10 +82,8 @@ impl<S: Sample> Conditions<S> {
     /// # Errors
     /// Returns an error if the distance is not above 0, or not finite.
     pub const fn try_with_stillness(self, distance: S) -> Result<Self, ConfigError> {
-        match positive("stillness", to_f64(distance)) {
-            Ok(()) => Ok(Self { stillness: Some(distance), ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(positive("stillness", to_f64(distance)));
+        Ok(Self { stillness: Some(distance), ..self })
     }
 }
 

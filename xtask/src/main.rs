@@ -34,6 +34,7 @@ cargo xtask <command>
   write [PART]...       writes again what is generated: tables and pictures of the pages, declarations, stubs; all, or
                         the named parts; a name that there is not lists them
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core and the host
+  c-bundle              the same for people without Rust: one archive for make, CMake, Arduino, PlatformIO, Zephyr, ESP-IDF
   guides FIRMWARE DIR   builds the guide of bindings/c/guides for crazyflie, betaflight or px4 with a checkout of that firmware
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
@@ -73,6 +74,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "bench-target" => bench::bench(args),
         "write" => write::write(args),
         "c-library" => c_library::library(args),
+        "c-bundle" => c_library::bundle().map(drop),
         "guides" => c_library::guides(args),
         "scheme" => new_scheme::new_scheme(args),
         "new-firmware" => new_firmware::new_firmware(args),

@@ -32,7 +32,7 @@ pub trait Wire: Sample {
 }
 
 /// The nearest integer, halves upwards.
-fn whole(value: f64) -> f64 {
+fn nearest_integer(value: f64) -> f64 {
     let below = value.floor();
     if value - below >= 0.5 { below + 1.0 } else { below }
 }
@@ -69,7 +69,7 @@ impl Wire for i16 {
     }
 
     fn nearest(value: f64) -> i16 {
-        whole(value) as i16
+        nearest_integer(value) as i16
     }
 }
 
@@ -85,7 +85,7 @@ impl<Frac: LeEqU16 + Send + Sync + 'static> Wire for FixedI16<Frac> {
     }
 
     fn nearest(value: f64) -> Self {
-        Self::from_bits(whole(value / Self::DELTA.to_num::<f64>()) as i16)
+        Self::from_bits(nearest_integer(value / Self::DELTA.to_num::<f64>()) as i16)
     }
 }
 
@@ -101,11 +101,19 @@ impl<Frac: LeEqU32 + Send + Sync + 'static> Wire for FixedI32<Frac> {
     }
 
     fn nearest(value: f64) -> Self {
-        Self::from_bits(whole(value / Self::DELTA.to_num::<f64>()) as i32)
+        Self::from_bits(nearest_integer(value / Self::DELTA.to_num::<f64>()) as i32)
     }
 
     fn residual_limit(magnitude: f64) -> Option<f64> {
         Some(Self::MAX.to_num::<f64>() - magnitude)
+    }
+}
+
+/// A sample in units of its type's last place; of `f32` the bits.
+pub fn whole<S: Sample>(sample: S) -> i64 {
+    match size_of::<S>() {
+        2 => i64::from((sample.to_bits32() as u16).cast_signed()),
+        _ => i64::from(sample.to_bits32().cast_signed()),
     }
 }
 

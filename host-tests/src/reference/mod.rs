@@ -25,6 +25,7 @@ mod position;
 mod precise;
 mod probabilistic;
 mod rank_order;
+mod rate;
 mod rate_decoder;
 mod real;
 mod recursive;

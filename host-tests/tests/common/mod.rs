@@ -10,11 +10,11 @@ use host_tests::flight;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
+use spikewire::{ConfigError, Sample};
 
-/// Runs a check in every sample type.
-macro_rules! in_every_type {
+/// Runs a check in every integer type.
+macro_rules! in_every_integer {
     ($check:ident) => {
-        $check::<f32>();
         $check::<i16>();
         $check::<fixed::types::I8F8>();
         $check::<fixed::types::I1F15>();
@@ -22,7 +22,61 @@ macro_rules! in_every_type {
         $check::<fixed::types::I32F0>();
     };
 }
+pub(crate) use in_every_integer;
+
+/// Runs a check in every sample type.
+macro_rules! in_every_type {
+    ($check:ident) => {
+        $check::<f32>();
+        crate::common::in_every_integer!($check);
+    };
+}
 pub(crate) use in_every_type;
+
+/// The test of a check with parameters drawn in every sample type, which is `S`.
+macro_rules! drawn_recordings {
+    ($S:ident: $Bound:path, $cases:literal, ($($value:pat in $values:expr),*) => $check:expr) => {
+        #[test]
+        fn drawn_recordings() {
+            fn drawn<$S: $Bound + crate::common::Drawn>() {
+                let cases = &crate::common::cases($cases);
+                proptest!(cases, |($($value in $values),*)| $check);
+            }
+            crate::common::in_every_type!(drawn);
+        }
+    };
+}
+pub(crate) use drawn_recordings;
+
+/// The test of a check with each channel of the flights in four sample types: `S`, of which 1 rad/s or 1 m/s² is `unit`.
+macro_rules! flights {
+    ($S:ident: $Bound:path, |$samples:ident, $unit:ident| $check:expr) => {
+        #[test]
+        fn flights() {
+            fn flown<$S: $Bound>($unit: f64) {
+                for $samples in crate::common::flown_channels::<$S>($unit) {
+                    $check
+                }
+            }
+            flown::<f32>(1.0);
+            flown::<fixed::types::I16F16>(1.0);
+            flown::<fixed::types::I8F8>(1.0);
+            flown::<i16>(100.0);
+        }
+    };
+}
+pub(crate) use flights;
+
+/// The name of the parameter that a constructor refused.
+pub(crate) fn refused<T>(result: Result<T, ConfigError>) -> &'static str {
+    match result.err().expect("it must be refused") {
+        ConfigError::NotPositive { parameter, .. }
+        | ConfigError::NotFinite { parameter, .. }
+        | ConfigError::NotRising { parameter, .. }
+        | ConfigError::OutOfRange { parameter, .. } => parameter,
+        error => panic!("{error}"),
+    }
+}
 
 /// How a property is tried: with this many cases, times `CASES_TIMES`. They are drawn from the seed that
 /// `.cargo/config.toml` fixes, after those that failed before, whose seeds are in `<test>.proptest-regressions`.
@@ -158,6 +212,13 @@ pub(crate) trait Drawn: Sized + Clone + std::fmt::Debug + 'static {
     fn tap() -> BoxedStrategy<Self>;
 }
 
+/// Ranges of drawn ends, those that rise.
+pub(crate) fn ranges<S: Drawn + Copy + PartialOrd>() -> BoxedStrategy<[S; 2]> {
+    let rising = |(a, b)| if a < b { [a, b] } else { [b, a] };
+    let ranges = (S::value(), S::value()).prop_map(rising);
+    ranges.prop_filter("rising", |[min, max]| min < max).boxed()
+}
+
 impl Drawn for f32 {
     fn recordings() -> BoxedStrategy<Vec<f32>> {
         floats()
@@ -220,6 +281,13 @@ pub(crate) fn flight_channels() -> Vec<Vec<f32>> {
     let flights = [flight::hexarotor(), flight::vtol_at_rest()];
     let channels = |flight: &Vec<_>| (0..6).map(|i| flight::channel(flight, i)).collect::<Vec<_>>();
     flights.iter().flat_map(channels).collect()
+}
+
+/// All twelve channels in a sample type, of which 1 rad/s or 1 m/s² is `unit`.
+pub(crate) fn flown_channels<S: Sample>(unit: f64) -> Vec<Vec<S>> {
+    let scaled = |x: f32| S::from_f64(f64::from(x) * unit);
+    let scaled = |channel: Vec<f32>| channel.into_iter().map(scaled).collect();
+    flight_channels().into_iter().map(scaled).collect()
 }
 
 /// Every way of being short or strange: recordings that each scheme is run on.

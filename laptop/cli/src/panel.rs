@@ -140,8 +140,13 @@ impl Panel {
             Some(_) => ("held", Style::new().fg(Color::Yellow)),
         };
         let value = channel.value.map_or_else(String::new, |value| format!("{value:10.4}"));
-        let cells =
-            [channel.name.clone(), value, channel.unit.clone(), mark.to_owned(), self.raster(channel, width)];
+        let cells = [
+            channel.name.clone(),
+            value,
+            channel.unit.clone(),
+            mark.to_owned(),
+            self.raster(channel, width),
+        ];
         Row::new(cells).style(style)
     }
 

@@ -1,4 +1,5 @@
-//! `listen` with another flight's file than the sender's: no value is exact, whatever the difference.
+//! `listen` with a different flight file than the sender's marks no value as exact, whatever the difference between the
+//! two files.
 
 use catalogue::run::Known;
 use lab::flight::Flight;
@@ -11,22 +12,22 @@ mod list;
 
 const SAMPLES: usize = 60;
 
-/// The frames of a vehicle with this flight, whose fingerprint they carry.
+/// Simulates the sender of a flight; returns its frames, which carry the flight's fingerprint.
 fn sent(flight: &Flight) -> Vec<u8> {
     let mut filters = flight.filters().unwrap();
     let mut items: Vec<Vec<Item>> = vec![Vec::new(); SAMPLES];
     let neurons = flight.neurons() as u16;
     let tick = |sample: usize| Tick::from_micros(sample as u64 * u64::from(flight.period.get()));
-    for (place, (channel, settings)) in flight.channels.iter().zip(flight.settings()).enumerate() {
+    for (index, (channel, settings)) in flight.channels.iter().zip(flight.settings()).enumerate() {
         let mut values: Vec<f64> = (0..SAMPLES)
-            .map(|at| (at as f64 * 0.03 * (place as f64 + 1.0)).sin() * 1.2 * channel.counts)
+            .map(|at| (at as f64 * 0.03 * (index as f64 + 1.0)).sin() * 1.2 * channel.counts)
             .collect();
-        if let Some(filter) = filters.get_mut(place) {
+        if let Some(filter) = filters.get_mut(index) {
             for value in &mut values {
                 *value = filter(*value);
             }
         }
-        // A code of steps starts from the first sample.
+        // Codes of steps start from the first sample.
         let known = Known { calibrated: None, first: &values, can_calibrate: false };
         let asked = flight.asked(channel);
         let started = flight.run_time().resolve(flight.sample, &asked, &known).unwrap();
@@ -36,14 +37,14 @@ fn sent(flight: &Flight) -> Vec<u8> {
         codec.encode(&values, &mut events);
         codec.finish(&mut events);
         codec.decode(SAMPLES, &events, &mut decoded).unwrap();
-        let first = place as u16 * neurons;
-        for own in events {
-            let at = own.sample as usize;
-            let tick = tick(at) + u32::from(own.slot) * flight.slot_ticks();
+        let first = index as u16 * neurons;
+        for event in events {
+            let at = event.sample as usize;
+            let tick = tick(at) + u32::from(event.slot) * flight.slot_ticks();
             items[at].push(Item::Event(Event {
                 tick,
-                address: first + own.neuron,
-                polarity: own.polarity,
+                address: first + event.neuron,
+                polarity: event.polarity,
             }));
         }
         for at in (0..SAMPLES).step_by(flight.keyframe_every as usize) {
@@ -56,7 +57,7 @@ fn sent(flight: &Flight) -> Vec<u8> {
                     kind,
                     bits,
                 }));
-            } else if place == 0 {
+            } else if index == 0 {
                 items[at].push(Item::Heartbeat { tick: tick(at), address: 0 });
             }
         }
@@ -65,7 +66,7 @@ fn sent(flight: &Flight) -> Vec<u8> {
         .with_fingerprint(flight.fingerprint());
     let (mut bytes, mut buffer) = (Vec::new(), [0; MAX_FRAME]);
     for mut items in items {
-        // Events by time and address, then keyframes.
+        // The transmitter takes events by time and address, then keyframes.
         items.sort_by_key(|item| match item {
             Item::Event(event) => (false, event.tick.micros(), event.address),
             other => (true, other.tick().micros(), 0),
@@ -78,7 +79,7 @@ fn sent(flight: &Flight) -> Vec<u8> {
     bytes
 }
 
-/// A sample as a keyframe has it.
+/// Returns the bits by which a keyframe expresses a sample.
 fn bits(flight: &Flight, value: f64) -> u32 {
     use catalogue::run::SampleType;
     match flight.sample {
@@ -92,7 +93,7 @@ fn bits(flight: &Flight, value: f64) -> u32 {
     }
 }
 
-/// How many values the receiver of `listen` calls exact.
+/// Returns the number of values that `listen` would mark as exact, for these bytes and the receiver of this flight.
 fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     use lab::events::{LinkReader, Stream, values_writer};
     let mut heard = Vec::new();
@@ -106,7 +107,7 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
-/// A sender's file, which kinds it is of, and what it sent.
+/// A sender: its flight file, the kinds that this file belongs to, and the sender's frames.
 struct Sender {
     text: String,
     kinds: BTreeSet<&'static str>,
@@ -117,7 +118,7 @@ struct Sender {
 fn senders() -> Vec<Sender> {
     let flights = list::flights().into_iter();
     let senders = flights.map(|(text, kinds)| {
-        let flight = Flight::parse(&text).unwrap_or_else(|told| panic!("{told}: {text}"));
+        let flight = Flight::parse(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
         let frames = sent(&flight);
         Sender { text, kinds, flight, frames }
     });
@@ -127,16 +128,16 @@ fn senders() -> Vec<Sender> {
 #[test]
 fn no_mistaken_pair_has_an_exact_value() {
     let senders = senders();
-    let (mut own, mut same) = (0, 0);
+    let (mut heard_own, mut same) = (0, 0);
     let mut pairs: BTreeMap<&str, usize> = BTreeMap::new();
     for near in &senders {
-        own += usize::from(exact(&near.flight, &near.frames) > 20);
+        heard_own += usize::from(exact(&near.flight, &near.frames) > 20);
         for far in senders.iter().filter(|far| far.text != near.text) {
             let mut common = near.kinds.intersection(&far.kinds).peekable();
             if common.peek().is_none() {
                 continue;
             }
-            // Fields of one width code as the cells between their centres.
+            // Receptive fields of one width are the same code as the cells between their centres.
             if near.flight.fingerprint() == far.flight.fingerprint() {
                 same += 1;
                 continue;
@@ -146,10 +147,10 @@ fn no_mistaken_pair_has_an_exact_value() {
             common.for_each(|kind| *pairs.entry(kind).or_default() += 1);
         }
     }
-    println!("{pairs:?}; {own} of {} hear their own", senders.len());
+    println!("{pairs:?}; {heard_own} of {} hear their own", senders.len());
     let kinds: BTreeSet<_> = senders.iter().flat_map(|own| &own.kinds).collect();
     assert!(kinds.into_iter().all(|kind| pairs[kind] >= 30), "{pairs:?}");
     assert_eq!(same, 2, "grf and position");
-    // Means are never exact, and some rate codes need more samples.
-    assert!(own + 8 > senders.len(), "{own} of {}", senders.len());
+    // Codes that decode to means are never exact, and some rate codes need more samples.
+    assert!(heard_own + 8 > senders.len(), "{heard_own} of {}", senders.len());
 }

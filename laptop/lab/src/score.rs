@@ -1,13 +1,13 @@
-//! Scores a trial: counts its spikes, and measures how near they decode to the signal.
+//! Scores a trial: counts its spikes, and measures the error of the decoded values.
 
 use crate::brief::{brief, json};
-use crate::steep::Steep;
+use crate::slope::Slope;
 use crate::trial::{Recording, Trial};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// The figures of one scheme.
+/// The figures of a trial of one scheme on a recording.
 #[derive(Debug, Serialize)]
 pub struct Figures {
     /// Short name of the scheme.
@@ -16,18 +16,18 @@ pub struct Figures {
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percentage of samples without a spike, for a code that has at most one each; see [`Trial::efficiency`].
+    /// Percentage of samples without a spike, for a code with at most one spike a sample; see [`Trial::efficiency`].
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
     /// Signal-to-noise ratio in dB: the signal's variance over the mean square of the error.
     pub snr: f64,
-    /// Spikes a second, if the length is known.
+    /// Spikes a second, if the recording's length is known.
     pub spikes_per_second: Option<f64>,
-    /// The parameters that were used.
+    /// The parameters that were used, by their keys.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// The signal's slope compared with the code's largest; `None` if the code has no such limit.
-    pub slope: Option<Steep>,
+    /// The signal's slope compared with the largest that the code can follow; `None` if the code can follow any slope.
+    pub slope: Option<Slope>,
     /// Notes for the user.
     pub notes: Vec<String>,
     /// The parameters in short form.
@@ -60,7 +60,7 @@ impl Figures {
                 .map(|seconds| trial.events.len() as f64 / seconds),
             brief: brief(parameters),
             parameters: parameters.iter().map(|(key, value)| (*key, json(value))).collect(),
-            slope: Steep::new(trial.scheme, recording, &trial.settings),
+            slope: Slope::new(trial.scheme, recording, &trial.settings),
             notes: trial.notes.clone(),
         }
     }

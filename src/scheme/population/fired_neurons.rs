@@ -1,6 +1,6 @@
 //! The code of a sample as any number of neurons of a population.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// Which neurons fired for one sample.
 ///
@@ -69,14 +69,6 @@ impl<const M: usize> Code for FiredNeurons<M> {
             }
         }
         neurons
-    }
-}
-
-impl<const M: usize> Output for FiredNeurons<M> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }
 

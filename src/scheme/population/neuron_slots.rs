@@ -1,6 +1,6 @@
 //! The code of a sample as spikes of any neurons of a population, each in one of several sub-timesteps.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// The spikes of one sample: any of `M` neurons, each in its slot of `N`, which is at most 256.
 ///
@@ -69,14 +69,6 @@ impl<const M: usize, const N: usize> Code for NeuronSlots<M, N> {
             }
         }
         all
-    }
-}
-
-impl<const M: usize, const N: usize> Output for NeuronSlots<M, N> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }
 

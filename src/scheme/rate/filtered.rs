@@ -1,7 +1,7 @@
 //! The parameters of every rate code with a filter: the taps, and the shift.
 
 use super::Taps;
-use crate::error::offset;
+use crate::error::{offset, tri};
 use crate::num::to_f64;
 use crate::{ConfigError, Sample};
 
@@ -21,10 +21,8 @@ impl<S: Sample, const F: usize> Filtered<S, F> {
 
     /// Sets the shift, which must be finite, and within ±10³¹ in `f32`.
     pub(super) const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
-        match offset("shift", to_f64(shift)) {
-            Ok(()) => Ok(Self { shift, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(offset("shift", to_f64(shift)));
+        Ok(Self { shift, ..self })
     }
 
     /// `sample - shift`.
@@ -52,10 +50,8 @@ macro_rules! with_shift {
         /// Returns an error if the shift is not finite, or beyond ±10³¹ in `f32`.
         #[allow(clippy::needless_update)] // HSA has no other field
         pub const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
-            match self.filtered.try_with_shift(shift) {
-                Ok(filtered) => Ok(Self { filtered, ..self }),
-                Err(error) => Err(error),
-            }
+            let filtered = $crate::error::tri!(self.filtered.try_with_shift(shift));
+            Ok(Self { filtered, ..self })
         }
 
         /// The taps of its filter.

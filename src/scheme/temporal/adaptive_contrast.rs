@@ -1,7 +1,7 @@
 //! Adaptive temporal contrast: temporal contrast whose threshold grows with the number of recent spikes.
 
 use super::doublings;
-use crate::error::unwrap;
+use crate::error::{tri, unwrap};
 use crate::num::Tally;
 use crate::scheme::codec::{Until, decode_copied, encode_each};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
@@ -71,10 +71,8 @@ impl<S: Sample> AdaptiveContrast<S> {
     /// Returns an error if the threshold is not above 0, or not finite; there are more than 15 doublings; the largest
     /// threshold is more than the sample type holds, or above 10³¹ in `f32`.
     pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
-        match doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest threshold") {
-            Ok(()) => Ok(Self { threshold, doublings }),
-            Err(error) => Err(error),
-        }
+        tri!(doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest threshold"));
+        Ok(Self { threshold, doublings })
     }
 
     /// The smallest threshold, in the samples' unit.

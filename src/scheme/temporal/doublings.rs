@@ -1,6 +1,6 @@
 //! The check of a step or a threshold that doubles, for the adaptive schemes.
 
-use crate::error::{step, within};
+use crate::error::{step, tri, within};
 use crate::num::{largest_step, to_f64};
 use crate::{ConfigError, Sample};
 
@@ -16,10 +16,8 @@ pub(super) const fn check<S: Sample>(
     largest: &'static str,
 ) -> Result<(), ConfigError> {
     let smallest = to_f64(threshold);
-    match (step("threshold", smallest), within("doublings", doublings as f64, 0.0, most as f32)) {
-        (Err(error), _) | (_, Err(error)) => return Err(error),
-        _ => {}
-    }
+    tri!(step("threshold", smallest));
+    tri!(within("doublings", doublings as f64, 0.0, most as f32));
     let (value, max) = (smallest * (1_u64 << (doublings & 31)) as f64, largest_step::<S>());
     if value > max {
         let (value, min, max) = (value as f32, smallest as f32, max as f32);

@@ -24,10 +24,8 @@ const RP2040: Board = Board {
     icount: 0,
 };
 
-/// Path of the network whose spikes its authors published: snnTorch, with two layers of neurons with a current.
-const PUBLISHED: &str = "laptop/cli/tests/peers/nir/braille_subtract.nir";
-const RULE: &str = "--on controller --as snntorch --reset subtract-no-delay";
-const SPIKES: &str = "laptop/cli/tests/peers/nir/braille.txt";
+/// The page whose first commands bring a network whose spikes its authors published onto both boards.
+const PAGE: &str = "docs/network.md";
 
 /// Runs a network's module on a file of spikes, and prints the outcome.
 pub fn network(args: &[String]) -> Result<()> {
@@ -39,24 +37,37 @@ pub fn network(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Checks the path from the published files to spikes on both boards, in single precision and in integers; then counts
-/// the instructions of a step.
+/// Runs the commands of the page as they stand there, and then those of integers; then counts the instructions of a step.
 pub fn verify() -> Result<()> {
-    let place = paths::target().join(PROGRAM);
-    fs::create_dir_all(&place)?;
-    for (numbers, kept) in [("f32", Some("src/braille.rs")), ("i8", None)] {
-        let module = place.join(format!("{numbers}.rs"));
-        let export = format!("network {PUBLISHED} {RULE} --numbers {numbers} {SPIKES} -o");
-        run(host::spikewire(&export)?.arg(&module))?;
-        if let Some(kept) = kept {
-            let kept = paths::examples().join(PROGRAM).join(kept);
-            let is_same = fs::read(&module)? == fs::read(&kept)?;
-            ensure!(is_same, "`spikewire network` writes another {}", kept.display());
-        }
-        println!("{numbers}:\n{}", everywhere(&module, &paths::root().join(SPIKES))?);
-    }
+    let commands = commands()?;
+    let [setup, install, export, steps] = &commands[..] else {
+        bail!("{PAGE} begins with {} commands, where there were four", commands.len());
+    };
+    let is_known = setup == "cargo xtask setup" && install == "cargo install --path laptop/cli";
+    ensure!(is_known, "the first two commands of {PAGE} are others");
+    let export = export.strip_prefix("spikewire ").context("the third command is another")?;
+    run(&mut host::spikewire(export)?)?;
+    let steps = steps.strip_prefix("cargo xtask network ").context("the fourth is another")?;
+    let steps: Vec<String> = steps.split_whitespace().map(str::to_owned).collect();
+    network(&steps)?;
+
+    let (module, kept) = (steps[0].as_str(), "trained/src/braille.rs");
+    let is_same = fs::read(module)? == fs::read(paths::examples().join(kept))?;
+    ensure!(is_same, "`spikewire network` writes another examples/{kept}");
+    let packed = module.replace(".rs", "_i8.rs");
+    run(&mut host::spikewire(&format!("{} --numbers i8", export.replace(module, &packed)))?)?;
+    network(&[packed, steps[1].clone()])?;
     counts("M4F", &[("A,f32", 2420), ("A,i8", 3453), ("D,f32", 23_798), ("D,i8", 22_369)])?;
     counts("M0", &[("A,i8", 4778), ("D,i8", 31_985)])
+}
+
+/// Returns the commands of the page's first block, without comments.
+fn commands() -> Result<Vec<String>> {
+    let page = fs::read_to_string(paths::root().join(PAGE))?;
+    let block = page.split("```sh\n").nth(1).and_then(|rest| rest.split("```").next());
+    let block = block.context("no commands")?.replace("\\\n", " ");
+    let command = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();
+    Ok(block.lines().map(command).collect())
 }
 
 /// Builds the network as a C library, and compares its outputs and the bits of its potentials.

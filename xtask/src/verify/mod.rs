@@ -223,6 +223,11 @@ const LONG: &[Step] = &[
         "the library for C on the host, under the address sanitizer as the programs in C are",
         c_library::watched,
     ),
+    step(
+        "c-bundle",
+        "the C library's archive for people without Rust: unpacked, compiled and run on six cores",
+        c_library::verify_bundle,
+    ),
     step("c-cost", "what the calls of C take beside the crate's", c_library::cost),
     step("page", "the page in a browser, against the laptop program", page::verify).apart(&[
         PROSE,

@@ -31,7 +31,8 @@ fn flight(first: f32) -> Flight {
     for (place, (name, threshold)) in NAMES.iter().zip(THRESHOLDS).enumerate() {
         let unit = if place < 3 { "rad/s" } else { "m/s²" };
         let threshold = if place == 0 { first } else { threshold };
-        let channel = format!("name = \"{name}\"\nunit = \"{unit}\"\nparameters.threshold = {threshold:?}");
+        let channel =
+            format!("name = \"{name}\"\nunit = \"{unit}\"\nparameters.threshold = {threshold:?}");
         writeln!(text, "[[channel]]\n{channel}").unwrap();
     }
     Flight::parse(&text).unwrap()
@@ -79,7 +80,8 @@ fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> 
         let mut terminal = Terminal::new(TestBackend::new(80, 10)).unwrap();
         let tally = stream.tally().link.unwrap();
         terminal.draw(|frame| panel.borrow().draw(frame, &tally)).unwrap();
-        let cells: Vec<_> = terminal.backend().buffer().content().iter().map(|own| own.symbol()).collect();
+        let cells: Vec<_> =
+            terminal.backend().buffer().content().iter().map(|own| own.symbol()).collect();
         drawn = cells.chunks(80).map(|line| line.concat().trim_end().to_owned()).collect();
         Ok(())
     })
@@ -90,7 +92,12 @@ fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> 
 #[test]
 fn the_recorded_flight_is_drawn() {
     let drawn = picture(&flight(THRESHOLDS[0]), 1700, |_| false);
-    assert_eq!(drawn, include_str!("flight.txt").lines().collect::<Vec<_>>(), "{}", drawn.join("\n"));
+    assert_eq!(
+        drawn,
+        include_str!("flight.txt").lines().collect::<Vec<_>>(),
+        "{}",
+        drawn.join("\n")
+    );
 }
 
 #[test]
@@ -104,7 +111,10 @@ fn what_was_lost_is_held_until_a_keyframe() {
         (count, drawn.join(" "))
     };
     let (held, drawn) = marks(2439, " held ");
-    assert!(held == 6 && drawn.contains(": no keyframe since the start or the last loss"), "{drawn}");
+    assert!(
+        held == 6 && drawn.contains(": no keyframe since the start or the last loss"),
+        "{drawn}"
+    );
     assert!(drawn.contains(" lost in 1 gaps"), "{drawn}");
     let (exact, drawn) = marks(2441, " exact ");
     assert_eq!(exact, 6, "{drawn}");

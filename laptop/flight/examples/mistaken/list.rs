@@ -1,11 +1,11 @@
-//! Flights of which no two are the same, and of which each pair is a mistake that somebody makes.
+//! Flight files that are easily mistaken for one another.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 const NAMES: [&str; 6] = ["roll", "pitch", "yaw", "x", "y", "z"];
 
-/// A flight's file but for its parts.
+/// The fields of a flight file, to be varied one at a time.
 struct File<'a> {
     scheme: &'a str,
     parameters: String,
@@ -48,7 +48,7 @@ impl File<'_> {
     }
 }
 
-/// Every code.
+/// Returns a flight file for each scheme in the catalogue.
 fn codes() -> Vec<String> {
     let codes = catalogue::INFO.iter().map(|info| File {
         scheme: info.name,
@@ -58,10 +58,10 @@ fn codes() -> Vec<String> {
     codes.map(|file| file.text()).collect()
 }
 
-/// For each kind of mistake, files that differ in nothing else.
+/// Returns, for each field of a flight file, files that differ in this field only.
 fn kinds() -> BTreeMap<&'static str, Vec<String>> {
     let seven =
-        |file: &dyn Fn(usize) -> File<'static>| (0..7).map(|own| file(own).text()).collect();
+        |file: &dyn Fn(usize) -> File<'static>| (0..7).map(|step| file(step).text()).collect();
     let file = File::default;
     let swapped = |one: usize, other: usize| {
         let mut names = NAMES.map(str::to_owned);
@@ -71,21 +71,27 @@ fn kinds() -> BTreeMap<&'static str, Vec<String>> {
     let swaps = [(0, 0), (0, 1), (0, 2), (0, 5), (1, 2), (2, 4), (3, 5)];
     let samples = ["f32", "q16.16", "q4.28", "q6.26", "q8.8", "q5.11", "q6.10"];
     let units = ["", "rad/s", "deg/s", "m/s", "m/s²", "g", "V"];
-    let low_pass = |own| format!("filter = {{ kind = \"low-pass\", corner = {} }}", 40 + own);
+    let low_pass = |step| format!("filter = {{ kind = \"low-pass\", corner = {} }}", 40 + step);
     BTreeMap::from([
         ("code", codes()),
-        ("sample", seven(&|own| File { sample: samples[own], ..file() })),
-        ("threshold", seven(&|own| File { parameters: format!("threshold = 0.1{own}"), ..file() })),
-        ("order", seven(&|own| swapped(swaps[own].0, swaps[own].1))),
-        ("names", seven(&|own| File { names: NAMES.map(|name| format!("{name}{own}")), ..file() })),
-        ("period", seven(&|own| File { period: 2000 + own, ..file() })),
-        ("unit", seven(&|own| File { unit: units[own], ..file() })),
-        ("counts", seven(&|own| File { counts: 1.0 + own as f64 / 8.0, ..file() })),
-        ("filter", seven(&|own| File { filter: low_pass(own), ..file() })),
+        ("sample", seven(&|step| File { sample: samples[step], ..file() })),
+        (
+            "threshold",
+            seven(&|step| File { parameters: format!("threshold = 0.1{step}"), ..file() }),
+        ),
+        ("order", seven(&|step| swapped(swaps[step].0, swaps[step].1))),
+        (
+            "names",
+            seven(&|step| File { names: NAMES.map(|name| format!("{name}{step}")), ..file() }),
+        ),
+        ("period", seven(&|step| File { period: 2000 + step, ..file() })),
+        ("unit", seven(&|step| File { unit: units[step], ..file() })),
+        ("counts", seven(&|step| File { counts: 1.0 + step as f64 / 8.0, ..file() })),
+        ("filter", seven(&|step| File { filter: low_pass(step), ..file() })),
     ])
 }
 
-/// The text of each flight, and of which kinds it is: two flights with a common kind differ in that alone.
+/// Returns the text of each file with its kinds. Two files with a common kind differ in this field only.
 pub(crate) fn flights() -> BTreeMap<String, BTreeSet<&'static str>> {
     let mut found: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
     for (kind, texts) in kinds() {

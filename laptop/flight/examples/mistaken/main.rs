@@ -1,13 +1,15 @@
-//! Writes flights into a directory, for checks in other languages: those of `tests/flights`, and many that are mistaken for
-//! one another. `flights.txt` has a line for each: name, scheme, the number that stands for 1, the fingerprint, and its
-//! kinds; two flights with a common kind differ in that alone.
+//! Writes flight files into a directory, for checks in other languages: those of `tests/flights`, and many that are easily
+//! mistaken for one another.
+//!
+//! `flights.txt` has a line for each file: its name, its scheme, the number that represents 1 in its samples, its
+//! fingerprint, and its kinds. Two files with a common kind differ in one field only.
 
 mod list;
 
 use spikewire_flight::Flight;
 use std::{env, error::Error, fmt::Write, fs, path::Path};
 
-/// Flights whose bits `tests/both_ends.rs` tells.
+/// Flights whose bits `tests/both_ends.rs` compares.
 const FLOWN: [&str; 4] = ["asf", "grf_slots", "sf", "sod"];
 
 fn main() -> Result<(), Box<dyn Error>> {

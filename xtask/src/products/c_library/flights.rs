@@ -111,7 +111,10 @@ fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
     for Flight { name, one, fingerprint, kinds: own } in flights {
         let bits = own.iter().filter_map(|kind| kinds.iter().position(|known| *known == kind));
         let bits: u32 = bits.map(|bit| 1 << bit).sum();
-        list += &format!(" \\\n    X({name}, {}, {one:?}, {fingerprint}u, {bits}u)", name.to_uppercase());
+        list += &format!(
+            " \\\n    X({name}, {}, {one:?}, {fingerprint}u, {bits}u)",
+            name.to_uppercase()
+        );
     }
     put(&include.join("flights.h"), &(list + "\n"))?;
     Ok(made)
@@ -127,7 +130,8 @@ fn in_dev<'a>(cargo: &'a mut Command, directory: &Path) -> &'a mut Command {
 fn known(place: &str, said: &str) -> Result<()> {
     let known = paths::root().join("laptop/flight/tests/flights/flown.txt");
     let known = fs::read_to_string(known)?;
-    let lacking: Vec<_> = known.lines().filter(|line| !said.lines().any(|own| own == *line)).collect();
+    let lacking: Vec<_> =
+        known.lines().filter(|line| !said.lines().any(|own| own == *line)).collect();
     ensure!(lacking.is_empty(), "{place}: C does not say\n{}\nbut\n{said}", lacking.join("\n"));
     println!("{place}: both ends of {} flights have the crate's bits in C", known.lines().count());
     Ok(())
@@ -156,6 +160,8 @@ fn heard(said: &str) -> Result<()> {
     // Means are never exact.
     ensure!(own + 8 > flights, "{own} of {flights} flights hear their own sender:\n{said}");
     let count: usize = pairs.values().sum();
-    println!("{flights} flights in C: 0 exact values in {count} mistaken pairs; reasons {reasons:?}");
+    println!(
+        "{flights} flights in C: 0 exact values in {count} mistaken pairs; reasons {reasons:?}"
+    );
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! Converts a file to the form of `spikewire-network`: its numbers are for a step, and gains are contained in the
-//! weights.
+//! Converts a network from its file to the form of `spikewire-network`: time constants become factors for a step, and
+//! gains are multiplied into the weights.
 
 use super::super::nir::{Array, Chain, Neurons, Stage, Weights};
 use super::super::trained;
@@ -7,33 +7,30 @@ use super::net::{Layer, Net, Neuron, Recurrent, Spike};
 use super::rule::{Current, Decay, Framework, Needs, Reset, Rule};
 use super::{Asked, Model};
 use crate::network::NetworkKind;
-use crate::network::fault::{Context, Result, bail, ensure};
+use crate::network::fault::{Context, FitKind, LayerKind, Result, ensure};
 
-/// Largest number that the crate accepts in `f32`.
+/// Largest absolute value of a number that `spikewire-network` accepts in `f32`.
 const LARGEST: f64 = 1e15;
 
-/// Share of a step from which on a time constant counts as a whole step: the step of a recording and that of the
-/// training may differ a little.
+/// Smallest time constant that counts as one whole step, as a share of the step. The step of a recording may differ a
+/// little from that of the training.
 const A_STEP: f64 = 0.98;
 
-/// How far rounding may move a gain away from 1.
+/// Gains that differ from 1 by less than this are taken for exactly 1.
 const ROUNDING: f64 = 1e-5;
 
 impl Model {
-    /// Converts a network in JSON.
+    /// Converts a network from JSON.
     ///
     /// # Errors
-    /// Returns an error if a number is out of its range.
+    /// Returns an error if a number is out of its range, or if the controller does not support the network.
     pub(in super::super) fn of_plain(trained: trained::Trained, asked: &Asked) -> Result<Self> {
         let trained::Trained { layers, readout } = trained;
-        ensure!(
-            asked.resets.len() < 2,
-            "layers in JSON have one reset, and {} are asked for",
-            asked.resets.len()
-        );
+        let resets = asked.resets.len();
+        ensure!(resets < 2, NetworkKind::JsonResets { resets });
         ensure!(
             layers.iter().flat_map(|layer| &layer.neurons).all(|neuron| neuron.leak == 0.0),
-            "a leak by an amount is tinyODIN's: the controller's neurons keep a share"
+            FitKind::LeakByAmount { owner: "the controller's" }
         );
         let rule = asked.or_plain();
         let of_layer = |layer: trained::Layer| {
@@ -57,10 +54,10 @@ impl Model {
         Self::new(Net { layers }, Vec::new())
     }
 
-    /// Converts a NIR graph, by the rule asked for.
+    /// Converts a NIR graph, by the rule that the user asked for.
     ///
     /// # Errors
-    /// Returns an error if the rule is incomplete, or if it does not go with the file.
+    /// Returns an error if the rule is incomplete, or if it does not fit the file.
     pub(in super::super) fn of_nir(chain: Chain, asked: &Asked) -> Result<Self> {
         let Chain { stages, readout, sum, mut notes } = chain;
         let all = || stages.iter().chain(&readout);
@@ -72,8 +69,7 @@ impl Model {
         let (firing, resets) = (stages.len(), &asked.resets);
         ensure!(
             resets.len() < 2 || resets.len() == firing,
-            "{} resets are asked for, and {firing} layers fire",
-            resets.len()
+            NetworkKind::Resets { resets: resets.len(), layers: firing }
         );
         let mut layers = Vec::new();
         for stage in stages.into_iter().chain(readout) {
@@ -103,17 +99,11 @@ impl Model {
     }
 
     fn new(net: Net<f64>, notes: Vec<String>) -> Result<Self> {
-        ensure!(!net.layers.is_empty(), "the network has no neurons");
+        ensure!(!net.layers.is_empty(), NetworkKind::NoNeurons);
         for pair in net.layers.windows(2) {
             let (before, after) = (&pair[0], &pair[1]);
-            ensure!(
-                after.inputs() == before.neurons.len(),
-                "{}: weights for {} inputs, but {} has {} neurons",
-                after.name,
-                after.inputs(),
-                before.name,
-                before.neurons.len()
-            );
+            let fits = trained::fits(after.inputs(), &before.name, before.neurons.len());
+            fits.context(&after.name)?;
         }
         for layer in &net.layers {
             layer.check().with_context(|| layer.name.clone())?;
@@ -132,29 +122,24 @@ impl Layer<f64> {
                 neuron.spike.unwrap_or(Spike { threshold: 0.0, reset: 0.0 });
             [neuron.bias, neuron.inner, threshold, reset]
         });
-        if let Some(odd) =
-            weights.copied().chain(of_neurons).find(|n| n.is_nan() || n.abs() > LARGEST)
-        {
-            bail!("a weight, bias, threshold or reset value of {odd}, where 1e15 is the most");
+        let mut numbers = weights.copied().chain(of_neurons);
+        if let Some(number) = numbers.find(|n| n.is_nan() || n.abs() > LARGEST) {
+            return Err(FitKind::Number { number }.into());
         }
-        ensure!(
-            self.inputs() <= 1 << 16 && self.neurons.len() <= 1 << 16,
-            "{} inputs and {} neurons, of which 65536 are the most",
-            self.inputs(),
-            self.neurons.len()
-        );
+        let (inputs, neurons, most) = (self.inputs(), self.neurons.len(), 1 << 16);
+        ensure!(inputs.max(neurons) <= most, FitKind::Size { inputs, neurons, most });
         Ok(())
     }
 }
 
-/// Transposes weights, from rows by neuron to rows by input.
+/// Transposes a matrix of weights: from one row for each neuron to one row for each input.
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let inputs = rows.first().map_or(0, Vec::len);
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Converts recurrent weights, given in rows by neuron; if each neuron leads to itself alone, only those weights are
-/// kept.
+/// Converts recurrent weights from one row for each receiving neuron. If no weight leads from a neuron to another,
+/// keeps the diagonal only.
 fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
@@ -170,7 +155,7 @@ fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     }
 }
 
-/// Converts a layer.
+/// Converts a layer of a NIR graph, and adds remarks for the user to `notes`.
 fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Layer<f64>> {
     let Stage { weights: Weights { mut rows, bias }, recurrent, neurons } = stage;
     let name = neurons.name();
@@ -185,7 +170,7 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
             && gain != 1.0
             && let Some(spike) = &mut neuron.spike
         {
-            // As its reader does, which has no gain.
+            // snnTorch's reader divides the threshold by the gain, because its neurons have no gain.
             scaled = Some(gain);
             for number in [&mut spike.threshold, &mut spike.reset, &mut neuron.inner] {
                 *number /= gain;
@@ -220,7 +205,7 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
     let is_leaky = back.is_empty() && neurons.synapse.is_none();
     let is_late = rule.reset == Reset::ToValueLate;
     if is_late && !is_leaky && rule.framework == Some(Framework::SnnTorch) {
-        // As all of its neurons but `Leaky` do.
+        // In snnTorch, all neurons except `Leaky` hold the potential through the next step.
         rule.reset = Reset::ToValueHeld;
     }
     Ok(Layer { name, weights: turned(&rows), own: own(&back), neurons: all, rule })
@@ -228,15 +213,17 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
 
 struct Stepped {
     neuron: Neuron<f64>,
-    /// Factor of the inputs.
+    /// Factor by which the weights must be multiplied.
     gain: f64,
 }
 
-/// Converts a neuron's numbers to those for a step, except for its bias, which is added later.
+/// Converts a neuron's parameters to those for a step. The bias stays 0; the caller adds it.
 fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
     let dt = rule.dt;
     let resistance = neurons.resistance.at(at);
     let (decay, mut gain, leak) = match &neurons.leak {
+        // Norse adds the whole input, however long a step is.
+        None if rule.framework == Some(Framework::Norse) => (1.0, resistance, 0.0),
         None => (1.0, resistance * dt, 0.0),
         Some(leak) => {
             let tau = leak.tau.at(at);
@@ -265,7 +252,7 @@ fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
 }
 
 impl Neurons {
-    /// Returns the potential at which the framework starts a neuron; in `spikewire-network` it is 0.
+    /// Returns the potential at which the framework starts this neuron. (`spikewire-network` starts all neurons at 0.)
     fn start(&self, at: usize, rule: &Rule) -> f64 {
         let of = |all: Option<&Array>| all.map_or(0.0, |all| all.at(at));
         match rule.framework {
@@ -278,7 +265,7 @@ impl Neurons {
 }
 
 impl Neuron<f64> {
-    /// Shifts all potentials by `start`, so that the neuron starts at 0.
+    /// Shifts all of the neuron's potentials by `start`, so that it starts at 0.
     fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
         self.inner -= (1.0 - self.decay) * start;
         if let Some(spike) = &mut self.spike {
@@ -291,16 +278,19 @@ impl Neuron<f64> {
     }
 }
 
-/// Returns the factor by which a step multiplies a quantity with this time constant.
+/// Returns the factor by which a step multiplies a quantity that decays with time constant `tau`, in seconds.
+///
+/// # Errors
+/// Returns an error if `tau` is not positive, or so short that [`Decay::Euler`] would give a negative factor.
 fn left(tau: f64, rule: &Rule) -> Result<f64> {
     let Rule { dt, framework, decay, .. } = *rule;
-    ensure!(tau > 0.0 && tau.is_finite(), "a time constant of {tau} s");
+    ensure!(tau > 0.0 && tau.is_finite(), LayerKind::TimeConstant { tau });
     if decay == Decay::Exponential {
         return Ok((-dt / tau).exp());
     }
     if tau < dt * (1.0 - 1e-9) && framework != Some(Framework::SnnTorch) {
         let kind = if framework == Some(Framework::Norse) {
-            // Without the digits that a product of two decimals has at its end.
+            // The product of two decimals has wrong digits at its end; rounding removes them.
             let meant = (dt * dt * 1e12).round() / 1e12;
             NetworkKind::NorsesTime { tau, step: dt, meant }
         } else {

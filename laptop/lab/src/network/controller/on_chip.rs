@@ -1,9 +1,10 @@
-//! Converts a network from the form of `spikewire-network` to that of the chips: neurons rest at 0 and have no current.
+//! Converts a network from the form of `spikewire-network` to that of the chips, whose neurons rest at 0 and have no
+//! current.
 
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
 use super::net::{Layer, Neuron, Recurrent, Spike};
-use crate::network::fault::{Context, Result, ensure};
+use crate::network::fault::{Context, FitKind, Result, ensure};
 
 /// Largest share of a current that may remain after a step.
 const CURRENT: f64 = 1e-3;
@@ -12,7 +13,8 @@ impl Model {
     /// Converts the network for the chips.
     ///
     /// # Errors
-    /// Returns an error if a current lasts longer than a step, or if outputs that never fire have a bias.
+    /// Returns an error if a current lasts longer than a step, if neurons that never fire are not the last ones, or if
+    /// they have a bias.
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =
@@ -29,7 +31,7 @@ impl Model {
     }
 }
 
-/// Transposes weights, from rows by input to rows by neuron.
+/// Transposes a matrix of weights: from one row for each input to one row for each neuron.
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let neurons = rows.first().map_or(0, Vec::len);
     (0..neurons).map(|neuron| rows.iter().map(|row| row[neuron]).collect()).collect()
@@ -37,11 +39,7 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 fn check_current(neuron: &Neuron<f64>) -> Result<()> {
     let left = neuron.current.unwrap_or(0.0);
-    ensure!(
-        left <= CURRENT,
-        "a spike's current lasts: a step leaves {left:.3} of it, and the chip's neurons have no current; train with \
-         `tau_syn` of a step, or LIF"
-    );
+    ensure!(left <= CURRENT, FitKind::LastingCurrent { left });
     Ok(())
 }
 
@@ -69,12 +67,11 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     for neuron in neurons {
         check_current(&neuron)?;
         let Neuron { decay: keep, bias, inner, spike, .. } = neuron;
-        let Spike { threshold, reset } =
-            spike.context("neurons that never fire must be the last")?;
-        // A spike returns the chip's neurons to 0: potentials are told from there.
+        let Spike { threshold, reset } = spike.ok_or(FitKind::SilentInside)?;
+        // On the chips a spike resets neurons to 0, so potentials are counted from the reset value.
         let zero = if rule.reset.subtracts() { 0.0 } else { reset };
         let bias = bias + inner - (1.0 - keep) * zero;
-        // What rounding leaves of a rest at the reset is no bias.
+        // If the neuron rests at its reset value, only a rounding error remains of the bias.
         layer.bias.push(if bias.abs() < 1e-9 * threshold.abs() { 0.0 } else { bias });
         layer.neurons.push(trained::Neuron { keep, threshold: threshold - zero, leak: 0.0 });
     }
@@ -87,10 +84,7 @@ fn readout(layer: Layer<f64>) -> Result<Readout> {
     for (at, neuron) in neurons.iter().enumerate() {
         check_current(neuron)?;
         let bias = neuron.bias + neuron.inner;
-        ensure!(
-            bias == 0.0,
-            "output {at} has a bias of {bias}: it must be 0, and be added where it is read"
-        );
+        ensure!(bias == 0.0, FitKind::OutputBias { output: at, bias });
         keep.push(neuron.decay);
     }
     Ok(Readout { name, weights: turned(&weights), keep })

@@ -10,11 +10,12 @@ use super::bring::{Original, figures};
 use super::chip::{Chip, Compare, OnChip, Ran, Remarks, Stepped, written};
 use super::costs::Cost;
 use super::{Trained, Trains};
-use crate::network::fault::{Context, Result, bail};
+use crate::Spot;
+use crate::network::fault::{FitKind, Result};
 use quantise::{Quantised, quantise};
 use spikewire_chips::NetworkBytes;
 
-/// The chip tinyODIN.
+/// The chip tinyODIN, as a target for trained networks.
 pub struct TinyOdin;
 
 impl Chip for TinyOdin {
@@ -31,12 +32,12 @@ impl Chip for TinyOdin {
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Box<dyn OnChip>> {
         if let Some(readout) = &trained.readout {
-            bail!("{}: tinyODIN has no outputs that never fire; ReckOn has", readout.name);
+            return Err(FitKind::NoReadout.at(Spot::Part(readout.name.clone())));
         }
         if compare == Some(Compare::Spike) {
             return Ok(Box::new(quantise(trained, inputs, fired, progress)?));
         }
-        // What is found on the first part is judged on the rest, where it may not hold.
+        // Searches on the first part of the recording, and judges the results on the rest.
         let part = inputs.len() * FOUND.0 / FOUND.1;
         let found = inputs[..part].to_vec();
         let found_fired: Vec<Trains> = fired.iter().map(|all| all[..part].to_vec()).collect();
@@ -60,14 +61,12 @@ impl Chip for TinyOdin {
                 best = Some((holds, network));
             }
         }
-        let (_, best) = best.context(
-            "the network leaves no room for comparing once a step: one neuron must be free, a row for each layer, and two",
-        )?;
+        let (_, best) = best.ok_or(FitKind::NoRoomToCompare)?;
         Ok(best)
     }
 }
 
-/// Share of a recording on which a network's numbers are searched, as numerator and denominator.
+/// Share of the recording on which parameters are searched, as numerator and denominator.
 const FOUND: (usize, usize) = (3, 4);
 
 impl OnChip for Quantised {
