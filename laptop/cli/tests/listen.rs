@@ -633,7 +633,7 @@ fn values_are_drawn_in_a_terminal_alone() {
             terminal.write_all(b"\x1b[1;1R").unwrap(); // where the cursor is
         }
     }
-    said(child);
+    finish(child);
     let drawn = String::from_utf8_lossy(&drawn);
     for words in ["channel", "exact", "▀", "▄", "frames"] {
         assert!(drawn.contains(words), "{words}: {drawn}");

@@ -20,19 +20,7 @@ use std::fmt::{Debug, Write};
 /// # Errors
 /// Returns an error if the scheme cannot be written as a constant: random codes need a generator of the user's.
 pub fn rust(flight: &Flight) -> Result<String, FlightError> {
-    // Channels with the same parameters share a constant.
-    let mut statics: Vec<(Constant, Vec<&str>)> = Vec::new();
-    let mut schemes = Vec::new();
-    for (channel, described) in flight.channels.iter().enumerate() {
-        let constant = flight.constant(channel)?;
-        let index = statics.iter().position(|(known, _)| *known == constant);
-        let index = index.unwrap_or_else(|| {
-            statics.push((constant, Vec::new()));
-            statics.len() - 1
-        });
-        statics[index].1.push(&described.name);
-        schemes.push(format!("&SCHEME_{index}"));
-    }
+    let (statics, schemes) = constants(flight)?;
     let Some((Constant { scheme: code, .. }, _)) = statics.first() else {
         return Err(FlightError::new("channel", FlightErrorKind::Missing));
     };
@@ -123,6 +111,26 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         ),
     );
     Ok(module(&items))
+}
+
+/// Constants of a flight's schemes, each with the names of its channels, and for each channel a reference to its constant.
+type Constants<'a> = (Vec<(Constant, Vec<&'a str>)>, Vec<String>);
+
+/// Returns the constants of a flight's schemes. Channels with the same parameters share one.
+fn constants(flight: &Flight) -> Result<Constants<'_>, FlightError> {
+    let mut statics: Vec<(Constant, Vec<&str>)> = Vec::new();
+    let mut schemes = Vec::new();
+    for (channel, described) in flight.channels.iter().enumerate() {
+        let constant = flight.constant(channel)?;
+        let index = statics.iter().position(|(known, _)| *known == constant);
+        let index = index.unwrap_or_else(|| {
+            statics.push((constant, Vec::new()));
+            statics.len() - 1
+        });
+        statics[index].1.push(&described.name);
+        schemes.push(format!("&SCHEME_{index}"));
+    }
+    Ok((statics, schemes))
 }
 
 /// Returns the source code of the module with these items.

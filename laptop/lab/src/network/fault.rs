@@ -118,6 +118,8 @@ room!(LayerKind, Layer);
 kinds! {
     /// The reason for which a network does not fit a chip or the controller.
     pub enum FitKind by spell of subject {
+        NoReset =>
+            ("the chips' neurons are reset when they fire: {} none is for the controller", spell("reset")),
         Neurons { most: usize, layer: usize, needed: usize } =>
             ("the chip has {most} neurons, and with this layer's {layer} the network needs {needed}"),
         Inputs { most: usize, inputs: usize, has_bias: bool } => (

@@ -82,10 +82,7 @@ impl File {
             Self::Nir(chain) => Model::of_nir(*chain, &asked.on_chip(seconds))?.on_chip(),
         }?;
         let all_reset = trained.layers.iter().all(|layer| layer.reset != Reset::NoReset);
-        fault::ensure!(
-            all_reset,
-            "the chips' neurons are reset when they fire: --reset none is for the controller"
-        );
+        fault::ensure!(all_reset, FitKind::NoReset);
         Ok(trained)
     }
 }

@@ -14,7 +14,6 @@ use std::{
     process::Command,
 };
 
-const ARCHIVE: &str = "libends.a";
 /// Pairs of each kind that are heard, at least.
 const PAIRS: usize = 30;
 /// Statuses of a value withheld from a receiver of another flight: no fingerprint yet, another one, and sub-timesteps that
@@ -39,7 +38,7 @@ pub fn verify() -> Result<()> {
 
     let mut cargo = shell::cargo("build --lib");
     shell::run(in_dev(&mut cargo, &pairs))?;
-    let archive = work().join("debug").join(ARCHIVE);
+    let archive = work().join("debug/libpairs.a");
     let program = compiler::on_host("ends", "c99", &archive, &["PAIRS"])?;
     heard(&shell::output(&mut Command::new(program))?)?;
 
@@ -47,7 +46,7 @@ pub fn verify() -> Result<()> {
     let mut cargo = toolchain::cargo_for(board.target, "build --release --lib")?;
     cargo.current_dir(&small).env("RUSTFLAGS", format!("-C target-cpu={}", board.cpu));
     shell::run(&mut cargo).context("both ends of flights for a Cortex-M4F")?;
-    let archive = paths::thumb_target().join(board.target).join("release").join(ARCHIVE);
+    let archive = paths::thumb_target().join(board.target).join("release/libflown.a");
     let program = compiler::for_board("ends", board, &archive, &[])?;
     known(board.core, &qemu::run(board, &program)?)
 }
@@ -84,12 +83,11 @@ fn read(files: &Path) -> Result<Vec<Flight>> {
 
 /// Makes the crate of these flights, its headers, and the list of them for C; returns its directory.
 fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
-    let directory = work().join("emitted").join(name);
-    if directory.exists() {
-        fs::remove_dir_all(&directory)?;
+    let made = work().join("emitted").join(name);
+    if made.exists() {
+        fs::remove_dir_all(&made)?;
     }
-    fs::create_dir_all(&directory)?;
-    let made = directory.join("ends");
+    fs::create_dir_all(work().join("emitted"))?;
     let mut emit = host::spikewire("emit c --flight")?;
     emit.args(flights.iter().map(|own| files.join(&own.name).with_extension("toml")));
     emit.arg("-o").arg(&made).arg("--spikewire").arg(paths::root());
