@@ -123,6 +123,12 @@ fn what_makes_no_sense_is_refused_by_name() {
     assert_eq!(refused(Neuron::<f32, 4>::new(1.0, 3).try_with_most(5)), "most spikes a sample");
 }
 
+#[test]
+fn a_sample_has_as_many_slots_as_spikes() {
+    assert_eq!(Neuron::<f32, 4>::new(1.0, 3).slots(), 4);
+    assert_eq!(Neuron::<f32, 127>::new(1.0, 3).with_most(4).slots(), 4);
+}
+
 proptest! {
     #[test]
     fn as_transcribed(x in drawn(), threshold in 1_i16..2000, power in 1_u8..8) {
