@@ -30,6 +30,7 @@ const wires = { miso: "whole", dataReady: "whole", clock: "whole", uart: "whole"
 /// Thrown out of whatever runs when the watchdog's time is over.
 const BITTEN = new Error("the watchdog");
 let [mcu, noise, isHung] = [undefined, 1, false];
+let unmodelled;
 
 /// What a line picks up.
 function noisy() {
@@ -54,11 +55,18 @@ function random() {
   return (noise = (Math.imul(noise, 1664525) + 1013904223) >>> 0);
 }
 
+/// What nothing models ends the run. It is noted here, as rp2040js catches nothing and goes on.
+class Strict extends ConsoleLogger {
+  warn(component, message) {
+    if (/[Uu]nimplemented|invalid memory|undefined address/.test(message)) unmodelled ??= `${component}: ${message}`;
+  }
+}
+
 /// A part after a reset: RAM, and the watchdog's reason, are what was there before.
 function start(reason) {
   const before = mcu;
   mcu = new RP2040();
-  mcu.logger = new ConsoleLogger(LogLevel.Error, false);
+  mcu.logger = new Strict(LogLevel.Error, false);
   if (before) {
     mcu.clock.nanosCounter = before.clock.nanos;
     mcu.sram.set(before.sram);
@@ -246,6 +254,7 @@ function note(at, cycles) {
 while (mcu.clock.nanos < END) {
   try {
     step();
+    if (unmodelled) console.error(unmodelled), unmodelled = undefined;
   } catch (error) {
     if (error !== BITTEN) throw error;
     start(1);

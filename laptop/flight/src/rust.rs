@@ -9,7 +9,7 @@ use std::fmt::{Debug, Write};
 ///
 /// | item | |
 /// |---|---|
-/// | `CHANNELS`, `NAMES`, `COUNTS` | number of channels, their names, their counts a unit |
+/// | `CHANNELS`, `NAMES`, `UNITS`, `COUNTS` | number of channels, their names, units, counts a unit |
 /// | `Code`, `SCHEMES` | the type of their schemes, and the schemes, in flash |
 /// | `Bank`, `BANK` | the encoders before the first sample |
 /// | `LABEL` | what the schemes do not say of the flight, in a text |
@@ -38,6 +38,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     };
     let (channels, coding) = (flight.channels.len(), flight.coding());
     let names = listed(flight.channels.iter().map(|own| &own.name));
+    let units = listed(flight.channels.iter().map(|own| &own.unit));
     let counts = listed(flight.channels.iter().map(|own| own.counts));
     let slots = match flight.slot_ticks() {
         0 => String::new(),
@@ -56,6 +57,10 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     item(
         "Names of the channels, in the order of a sample.",
         format!("pub const NAMES: [&str; CHANNELS] = [{names}];"),
+    );
+    item(
+        "Units of the channels, empty where they are not known.",
+        format!("pub const UNITS: [&str; CHANNELS] = [{units}];"),
     );
     item(
         "Counts for one unit of each channel.",
