@@ -173,7 +173,11 @@ const FATES = {
   "miso-high": () => (wires.miso = "high"),
   "ready-cut": () => (wires.dataReady = "cut"),
   "clock-cut": () => (wires.clock = "cut"),
-  mend: () => Object.assign(wires, { miso: "whole", dataReady: "whole", clock: "whole", uart: "whole", crystal: "whole" }),
+  another: () => (sensor.identity = 0x68), // than the one that was there
+  mend: () => {
+    Object.assign(wires, { miso: "whole", dataReady: "whole", clock: "whole", uart: "whole", crystal: "whole" });
+    sensor.identity = 0x47;
+  },
   "supply-gone": () => sensor.powerOff(),
   "supply-back": () => sensor.powerOn(mcu.clock.nanos),
   freeze: () => (sensor.isFrozen = true),

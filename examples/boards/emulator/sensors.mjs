@@ -126,13 +126,13 @@ export class Bmi323 extends Sensor {
 export class Icm42688p extends Sensor {
   constructor() {
     super(1e9 / 8000);
+    this.identity = 0x47; // WHO_AM_I
   }
 
   reset() {
     this.bytes = new Uint8Array(128);
     this.bytes.set([0x91], 0x4d);
     this.bytes.set([0x10], 0x64);
-    this.bytes.set([0x47], 0x75);
     this.bytes.set([0x06, 0x06], 0x4f);
     this.bytes.set([0x10], 0x2d); // INT_STATUS: reset done
     for (let axis = 0; axis < 6; axis++) this.bytes.set([0x80, 0x00], 0x1f + 2 * axis); // no data yet
@@ -192,7 +192,7 @@ export class Icm42688p extends Sensor {
       if (at === 4) this.reads += 1;
       return this.fifo.length > 0 ? this.fifo.shift() : 0xff;
     }
-    return this.bytes[register];
+    return register === 0x75 ? this.identity : this.bytes[register];
   }
 
   write(register, value) {

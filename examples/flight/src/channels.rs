@@ -40,18 +40,15 @@ impl<const N: usize> Channels<N> {
     /// # Panics
     /// Panics if a name is no axis, or a unit is neither `rad/s` nor `deg/s`, `m/s²` nor `g`.
     #[must_use]
-    pub const fn new(
-        sensor: Counts,
-        names: [&str; N],
-        units: [&str; N],
-        counts: [f64; N],
-    ) -> Self {
+    pub const fn new(sensor: Counts, names: [&str; N], units: [&str; N], counts: [f64; N]) -> Self {
         let mut channels = Self { axes: [0; N], scales: [0.0; N] };
         let mut channel = 0;
         while channel < N {
             let axis = axis(names[channel]);
             let Some(axis) = axis else {
-                panic!("a channel of flight.toml has no axis in its name, such as gyro_x or accel_z")
+                panic!(
+                    "a channel of flight.toml has no axis in its name, such as gyro_x or accel_z"
+                )
             };
             let Some(unit) = unit(units[channel], axis < 3) else {
                 panic!("a unit in flight.toml is neither rad/s, deg/s, m/s² nor g")

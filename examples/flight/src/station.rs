@@ -91,7 +91,9 @@ pub struct Station<I, T: Schemes<N>, const N: usize> {
     is_faulty: bool,
 }
 
-impl<I: Registers, T: Schemes<N, Scheme: Start<Sample: OfCounts>>, const N: usize> Station<I, T, N> {
+impl<I: Registers, T: Schemes<N, Scheme: Start<Sample: OfCounts>>, const N: usize>
+    Station<I, T, N>
+{
     /// A sensor before its first start. The items are those of the flight's module: `BANK`, `PERIOD`, `KEYFRAME_EVERY`.
     pub const fn new(
         sensor: I,

@@ -18,5 +18,5 @@ mod polled;
 mod registers;
 
 pub use burst::{PACKET, WATERMARK};
-pub use polled::Polled;
 pub use driver::{Buffer, Icm42688p, NEW_BUFFER, SAMPLE_RATE, TIMING};
+pub use polled::Polled;

@@ -37,7 +37,8 @@ impl<D: SpiDevice> Polled<D> {
         let [rate, bandwidth] = codes(period);
         let [clock, int, power] = POLLED;
         // Power comes last, as no register may be written for 200 µs after it.
-        let settings = [clock, int, (0x4F, rate), (0x50, rate), (0x52, bandwidth << 4 | bandwidth), power];
+        let settings =
+            [clock, int, (0x4F, rate), (0x50, rate), (0x52, bandwidth << 4 | bandwidth), power];
         Self { device, settings }
     }
 

@@ -35,7 +35,8 @@ pub fn emulate(args: &[String]) -> Result<()> {
         }
     }
     let (Some(image), Some(part)) = (image, part) else { return Err(usage(USAGE.to_owned())) };
-    let seconds = seconds.parse().with_context(|| format!("`{seconds}` is no number of seconds"))?;
+    let seconds =
+        seconds.parse().with_context(|| format!("`{seconds}` is no number of seconds"))?;
     let sensor = sensor.unwrap_or(if part == "crazyflie" { "bmi088" } else { "icm42688p" });
     let (image, directory) =
         (std::env::current_dir()?.join(image), paths::target().join("emulated/image"));

@@ -133,7 +133,8 @@ fn a_sensor_that_dies_has_no_value_until_it_is_back() {
         fly(&mut station, 100);
         own.set(fate);
         let (news, items) = fly(&mut station, 22);
-        let expected: Vec<_> = first.map(News::Fault).into_iter().chain([News::Dead(why)]).collect();
+        let expected: Vec<_> =
+            first.map(News::Fault).into_iter().chain([News::Dead(why)]).collect();
         assert_eq!(news[..expected.len()], expected);
         assert_eq!(breaks(&items), 1);
         assert_eq!(station.counters().deaths, 1);
@@ -171,7 +172,8 @@ fn channels_are_found_by_name_and_come_in_the_files_unit() {
         ["", "rad/s", "deg/s", "m/s²", "g", ""],
         [1.0, 1.0, 1.0, 1.0, 1.0, 10.0],
     );
-    let close = |own: f32, other: f64| assert!((f64::from(own) / other - 1.0).abs() < 1e-6, "{own}");
+    let close =
+        |own: f32, other: f64| assert!((f64::from(own) / other - 1.0).abs() < 1e-6, "{own}");
     let sample: [f32; 6] = SI.sample(COUNT);
     close(sample[0], 1000.0_f64.to_radians());
     close(sample[1], -(500.0_f64.to_radians()));

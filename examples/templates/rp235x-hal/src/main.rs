@@ -7,6 +7,9 @@
 use core::cell::RefCell;
 use critical_section::Mutex;
 use defmt_rtt as _;
+use icm42688p::{Polled, TIMING};
+use imu::{Blocking, Channels, Device, Registers, Rounds, Sender, Spin, Station};
+use panic_probe as _;
 use rp235x_hal::{
     self as hal, Clock, Spi, Watchdog,
     clocks::init_clocks_and_plls,
@@ -21,9 +24,6 @@ use rp235x_hal::{
     timer::{Alarm as _, Alarm0, CopyableTimer0, Instant},
     uart::{DataBits, StopBits, UartConfig, UartPeripheral},
 };
-use icm42688p::{Polled, TIMING};
-use imu::{Blocking, Channels, Device, Registers, Rounds, Sender, Spin, Station};
-use panic_probe as _;
 use spikewire::{EventQueue, Overflow, link::Session};
 
 include!(concat!(env!("OUT_DIR"), "/flight.rs"));
@@ -88,7 +88,13 @@ fn main() -> ! {
     watchdog.start(500.millis());
     let (xosc, pll_sys, pll_usb) = (p.XOSC, p.PLL_SYS, p.PLL_USB);
     let clocks = init_clocks_and_plls(
-        CRYSTAL, xosc, p.CLOCKS, pll_sys, pll_usb, &mut p.RESETS, &mut watchdog,
+        CRYSTAL,
+        xosc,
+        p.CLOCKS,
+        pll_sys,
+        pll_usb,
+        &mut p.RESETS,
+        &mut watchdog,
     );
     let Ok(clocks) = clocks else { panic!("the clocks do not start") };
     defmt::info!("reset by the watchdog: {}", by_watchdog);
