@@ -2,7 +2,7 @@
 //! part's emulator, well and with every fault of its sensor.
 
 use crate::checks::emulator;
-use crate::common::{lint, output, paths, run};
+use crate::common::{command, lint, output, paths, run};
 use crate::products::new_firmware::{self, Origin};
 use crate::products::templates::{TEMPLATES, Template};
 use crate::programs::{host, published};
@@ -16,6 +16,8 @@ use std::{
 /// How far a value may be from the sensor's sample, in thresholds: one by which the code may lag, and one for the filter, the
 /// noise and the time of the sample.
 const MOST_DISTANCE: f64 = 2.0;
+const PAGE: &str = "docs/firmware.md";
+const HEADING: &str = "## From a log to exact values";
 /// The repository's flight, as `spikewire advise` wrote it.
 const FLIGHT: &str = "one-file/flight.toml";
 /// How long each fault lasts, and from one to the next, in ms.
@@ -35,6 +37,9 @@ const FAULTS: [(&str, &str, &str); 7] = [
 /// Builds and flies every template; `HAL` in the environment selects a single one.
 pub fn templates() -> Result<()> {
     let asked = std::env::var("HAL").ok();
+    if asked.is_none() {
+        five_commands()?;
+    }
     let is_asked = |own: &&Template| asked.as_ref().is_none_or(|hal| own.hal == hal);
     TEMPLATES.iter().filter(is_asked).try_for_each(|template| {
         let elsewhere = tempfile::tempdir()?;
@@ -50,6 +55,42 @@ pub fn templates() -> Result<()> {
         println!("{}: {events} exact values; {noticed}", template.hal);
         Ok(())
     })
+}
+
+/// Runs the five commands of docs/firmware.md as they stand there, except that the laptop program is the tests' build, and
+/// that projects lie elsewhere.
+fn five_commands() -> Result<()> {
+    let page = fs::read_to_string(paths::root().join(PAGE))?;
+    let (_, section) = page.split_once(HEADING).context(HEADING)?;
+    let (_, rest) = section.split_once("```sh\n").context("no commands")?;
+    let (commands, _) = rest.split_once("```").context("no end of the commands")?;
+    let commands: Vec<&str> = commands.lines().collect();
+    ensure!(commands.len() <= 5, "{} commands", commands.len());
+    let elsewhere = tempfile::tempdir()?;
+    let place = elsewhere.path().display();
+    let program = host::spikewire("")?.get_program().display().to_string();
+    let cargo = cargo_for("thumbv7em-none-eabihf", "build")?;
+    let toolchain = cargo.get_args().next().filter(|arg| *arg == "+thumb");
+    let xtask = std::env::current_exe()?.display().to_string();
+    let mut heard = String::new();
+    for line in commands.into_iter().filter(|line| !line.starts_with("cargo install")) {
+        let line = line
+            .replace("../mine", &format!("{place}/mine"))
+            .replace(" flight.toml", &format!(" {place}/flight.toml"))
+            .replace("spikewire ", &format!("{program} "))
+            .replace("cargo xtask", &xtask)
+            .replace(
+                "cargo build",
+                if toolchain.is_some() { "cargo +thumb build" } else { "cargo build" },
+            );
+        heard = output(command("sh").args(["-c", &line]))?;
+    }
+    let (all, exact) =
+        (heard.lines().skip(1), heard.lines().filter(|line| line.ends_with(",exact")));
+    let (all, exact) = (all.count(), exact.count());
+    ensure!(exact > 100 && exact == all, "{exact} of {all} values are exact");
+    println!("the five commands of {PAGE}: {exact} values, all exact");
+    Ok(())
 }
 
 /// Builds a template's image in a project of its own, with the crate as it would be published.
