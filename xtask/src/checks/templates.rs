@@ -248,6 +248,20 @@ mod tests {
     }
 
     #[test]
+    fn the_page_has_each_hal() {
+        let page = fs::read_to_string(paths::root().join(PAGE)).unwrap();
+        let (_, section) = page.split_once(HEADING).unwrap();
+        let (section, _) = section.split_once("\n## ").unwrap();
+        let rows: Vec<_> = section.lines().filter(|line| line.starts_with("| `")).collect();
+        assert_eq!(rows.len(), TEMPLATES.len() + 1); // and the head
+        for Template { hal, target, emulated, .. } in &TEMPLATES {
+            let row = rows.iter().find(|row| row.starts_with(&format!("| `{hal}`"))).unwrap();
+            assert!(row.contains(&format!("| `{target}` |")), "{row}");
+            assert!(row.contains(&format!("| `{}`", emulated.unwrap_or("none"))), "{row}");
+        }
+    }
+
+    #[test]
     fn a_template_stays_short() {
         for Template { hal, .. } in &TEMPLATES {
             let path = paths::examples().join(format!("templates/{hal}/src/main.rs"));

@@ -116,6 +116,10 @@ pub fn write_template(
     let files = [
         ("Cargo.toml", toml::to_string(&manifest)?),
         (".cargo/config.toml", config(target, chip)),
+        (
+            "rust-toolchain.toml",
+            format!("[toolchain]\nchannel = \"stable\"\ntargets = [\"{target}\"]\n"),
+        ),
         ("memory.x", read(format!("boards/memory/{memory}.x"))? + sections),
         ("build.rs", read("templates/build.rs".into())?),
         ("src/main.rs", read(format!("templates/{hal}/src/main.rs"))?),
@@ -294,6 +298,22 @@ mod tests {
         let text = "a\n#[cfg_attr(feature = \"x\", path = \"x.rs\")]\nmod b;\n#[cfg(not(feature = \"x\"))]\nc\n#[cfg(feature = \"x\")]\nd\n";
         assert_eq!(alone(text, "x"), "a\nmod b;\nd\n");
         assert_eq!(alone(text, "y"), "a\nmod b;\nc\n");
+    }
+
+    #[test]
+    fn a_hals_project_finds_this_repositorys_packages() {
+        let directory = tempfile::tempdir().unwrap();
+        let flight = paths::examples().join("one-file/flight.toml");
+        for template in &TEMPLATES {
+            let project = directory.path().join(template.hal);
+            let url = "https://example.org/spikewire";
+            write_template(&project, template, &flight, &Origin::Git(url.into())).unwrap();
+            let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
+            assert!(!manifest.contains("path = "), "{manifest}");
+            assert_eq!(manifest.matches(url).count(), 4, "{manifest}");
+            let name = format!("name = \"{}\"", template.hal);
+            assert!(manifest.contains(&name), "{manifest}");
+        }
     }
 
     #[test]
