@@ -1,5 +1,5 @@
-//! Finds the header of a table: its first line, or a comment above its first row, as `EuRoC`, TUM-VI and `NumPy` write
-//! it.
+//! Finds the header of a table: its first line, or a comment above its first row, where `EuRoC`, TUM-VI and `NumPy`
+//! write it.
 
 use super::csv::is_missing;
 use super::text::name;
@@ -10,7 +10,7 @@ use std::io::{self, BufRead, Read};
 
 /// The comments at the start of a table, and the first line after them.
 pub(super) struct Start {
-    /// The bytes of the comments and of that line, as in the file.
+    /// The bytes of the comments and of the line after them, as in the file.
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
@@ -23,7 +23,7 @@ pub(super) struct Header {
 }
 
 impl Start {
-    /// Reads lines up to the first that is neither a comment nor empty.
+    /// Reads lines up to and including the first that is neither a comment nor empty.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read.
@@ -45,12 +45,13 @@ impl Start {
         self.text.ends_with(b"\r\n")
     }
 
-    /// Returns the delimiter that separates most names, if the first line after the comments is the header.
+    /// Returns the delimiter that occurs most often in the first line after the comments.
     pub(super) fn delimiter(&self) -> u8 {
         delimiter(&self.text[self.line..])
     }
 
-    /// Returns the last comment that has as many names as the line below has columns, if that line contains a number.
+    /// Returns the header if a comment holds it: the last comment that has as many fields as the line after the
+    /// comments, if that line contains a number and the comment none. `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = self.text.split_at(self.line);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
@@ -71,7 +72,7 @@ pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let is_number = |field: &[u8]| is_number(field, delimiter);
     let is_name = |(place, field): (usize, &[u8])| {
         let below = rows.get(1).and_then(|row| row.get(place));
-        // pandas leaves the name of an index empty, which stands first.
+        // pandas writes an index as the first column, and leaves its name empty.
         let is_text = if is_missing(field.trim_ascii()) { place == 0 } else { !is_number(field) };
         is_text && below.is_some_and(is_number)
     };
@@ -82,17 +83,17 @@ fn is_number(field: &[u8], delimiter: u8) -> bool {
     number(field.trim_ascii(), delimiter != b',').is_some()
 }
 
-/// Splits a line into fields.
+/// Splits a line into the fields of a CSV record.
 fn split(line: &[u8], delimiter: u8) -> ByteRecord {
     let mut record = ByteRecord::new();
     let mut builder = ReaderBuilder::new();
     let mut reader = builder.has_headers(false).delimiter(delimiter).from_reader(line.trim_ascii());
-    // Memory is always read, and one line has no other length than the first.
+    // Reading from memory cannot fail, and a single record has no record before it to differ from in length.
     let _ = reader.read_byte_record(&mut record);
     record
 }
 
-/// Finds the delimiter that separates most names of a header.
+/// Returns the delimiter that occurs most often in a line, outside of quotes; a comma if there is none.
 fn delimiter(header: &[u8]) -> u8 {
     let mut is_quoted = false;
     let mut counts = [(b',', 0), (b';', 0), (b'\t', 0), (b'|', 0)];
@@ -102,6 +103,6 @@ fn delimiter(header: &[u8]) -> u8 {
             *count += u32::from(!is_quoted && byte == delimiter);
         }
     }
-    // The comma where there is no other.
+    // The comma comes last in reverse, and `max_by_key` returns the last of equals.
     counts.into_iter().rev().max_by_key(|&(_, count)| count).map_or(b',', |(found, _)| found)
 }

@@ -1,4 +1,4 @@
-//! Opens tables that are compressed, or in another encoding than UTF-8.
+//! Opens tables as text, also if they are compressed or in UTF-16.
 
 use super::TableKind;
 use crate::Result;
@@ -8,10 +8,11 @@ use flight_logs::GZIP;
 use flight_logs::zstd::{Frames, ZSTD};
 use std::io::{self, BufReader, Cursor, Read};
 
-/// Number of bytes from which the kind of a file is recognised.
+/// Number of bytes at the start of a file by which its kind is recognised.
 const HEAD: usize = 16;
 
-/// Files that are not tables: their first bytes, the name of the kind, and how to export a table from it.
+/// Kinds of files that are not tables: their first bytes, and words for the user that name the kind and suggest what to
+/// do.
 const OTHERS: [(&[u8], &str); 11] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
@@ -26,7 +27,8 @@ const OTHERS: [(&[u8], &str); 11] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// Reads a file as text in UTF-8, or in another encoding that extends ASCII.
+/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8; text in
+/// other encodings that extend ASCII passes unchanged. `name` is the file's name in errors.
 ///
 /// # Errors
 /// Returns an error if the file is not text.
@@ -44,7 +46,7 @@ pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     decode(&head, input, name)
 }
 
-/// Decodes a name in a table, from UTF-8 or else from Latin-1.
+/// Decodes a name in a table from UTF-8, or from Latin-1 if the bytes are not UTF-8.
 pub(super) fn name(bytes: &[u8]) -> String {
     match str::from_utf8(bytes) {
         Ok(text) => text.trim().to_owned(),
@@ -52,8 +54,8 @@ pub(super) fn name(bytes: &[u8]) -> String {
     }
 }
 
-/// Formats bytes for a message: bytes that are not UTF-8 and control characters are escaped, and only the first of many
-/// are shown.
+/// Formats bytes for a message. Bytes that are not UTF-8 and control characters are escaped; a long text is cut after
+/// 60 characters.
 pub fn shown(bytes: &[u8]) -> String {
     const MOST: usize = 60;
     let mut text = String::new();
@@ -84,7 +86,7 @@ fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn
         _ => {}
     }
     for (start, what) in OTHERS {
-        // Long names are cut to what was looked at.
+        // Only `HEAD` bytes of the file are known, fewer than some of these starts have.
         if head.starts_with(&start[..start.len().min(HEAD)]) {
             return Err(TableKind::NoTable { what }.at(name));
         }
@@ -95,7 +97,7 @@ fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn
     Ok(Box::new(input))
 }
 
-/// Reads the first bytes, and returns a reader that starts with them again.
+/// Reads the first bytes, and returns them and a reader that begins with them again.
 fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
     let mut head = Vec::new();
     input.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
@@ -125,8 +127,8 @@ mod encoding {
     }
 }
 
-/// Decodes Latin-1 only. A browser decodes other files before it lends them; the tables of all encodings would make up a
-/// tenth of the page.
+/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them;
+/// the tables of all encodings would make up a tenth of the page.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;
