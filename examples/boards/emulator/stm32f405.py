@@ -478,7 +478,7 @@ class Usart(Registers):
 class Part:
     MEMORIES, MODEL, PLACES = MEMORIES, UC_CPU_ARM_CORTEX_M4, PLACES
     KINDS = {"TIM2": Tim2, "TIM3": Tim3, "TIM4": Tim4, "TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA1": NoDma, "DMA2": Dma, "RNG": Random, "GPIO": Gpio}
-    SPI, PORT, DMA = "SPI1", "USART6", "DMA2"
+    SPI, PORT, DMA, HAS_BITS = "SPI1", "USART6", "DMA2", True
     # The wires: port, pin, alternate function.
     SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("A", 7, 5), ("C", 6, 8)
     SELECT, READY = ("A", 4), ("C", 4)
@@ -488,6 +488,8 @@ class Part:
         self.core = Core(self.MEMORIES, self.MODEL)
         for base in sorted({place & ~0xFFF for place, _, _ in self.PLACES.values()}):
             self.core.bus(base, 0x1000, Window(self, base))
+        if self.HAS_BITS:
+            self.core.bus(0x42000000, 0x02000000, Bits(self))
 
     def reset(self, bench, reason):
         self.bench, self.reason, self.named = bench, reason, {}
@@ -549,3 +551,22 @@ class Window:
 
     def write(self, offset, value):
         self.part.find(self.base + offset).write(offset & 0x3FF, value)
+
+
+class Bits:
+    """A Cortex-M4's bit band: a word for each bit of the peripherals, of which a write reads and writes the register."""
+
+    def __init__(self, part):
+        self.part = part
+
+    def place(self, offset):
+        address = 0x40000000 + offset // 32 & ~3
+        return self.part.find(address), address & 0x3FF, offset // 4 & 31
+
+    def read(self, offset):
+        one, register, bit = self.place(offset)
+        return one.read(register) >> bit & 1
+
+    def write(self, offset, value):
+        one, register, bit = self.place(offset)
+        one.write(register, one.read(register) & ~(1 << bit) | (value & 1) << bit)

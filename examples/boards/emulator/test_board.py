@@ -85,6 +85,12 @@ class Board(unittest.TestCase):
         seen, _ = run([*LIKE_PORT, (USART6 + 0x04, 0x55)])
         self.assertEqual(seen["baud"], 1_000_000)
 
+    def test_a_bit_has_a_word_of_its_own(self):
+        bit = lambda register, bit: 0x42000000 + (register - 0x40000000) * 32 + bit * 4
+        timer = [(bit(RCC + 0x40, 0), 1), (TIM2 + 0x2C, 999), (bit(TIM2 + 0x0C, 0), 1), (bit(TIM2, 0), 1)]
+        self.assertGreater(run([*timer, enables(28)], 28)[1], 0)
+        self.assertEqual(run([*timer, (bit(TIM2 + 0x0C, 0), 0), enables(28)], 28)[1], 0)
+
     def test_a_timer_interrupts(self):
         timer = [(RCC + 0x40, 1), (TIM2 + 0x2C, 999), (TIM2 + 0x0C, 1), (TIM2, 1)]
         self.assertGreater(run([*timer, enables(28)], 28)[1], 0)

@@ -66,6 +66,7 @@ fn main() -> ! {
     let p = pac::Peripherals::take().expect("taken once");
     // Before the clocks: a crystal that does not start ends in a reset.
     let mut watchdog = IndependentWatchdog::new(p.IWDG);
+    watchdog.stop_on_debug(&p.DBGMCU, true);
     watchdog.start(500.millis());
     defmt::info!("reset by the watchdog: {}", p.RCC.csr().read().wdgrstf().bit());
     p.RCC.csr().modify(|_, flags| flags.rmvf().set_bit());
