@@ -5,7 +5,7 @@ use crate::checks::emulator;
 use crate::common::{command, lint, output, paths, run};
 use crate::products::new_firmware::{self, Origin};
 use crate::products::templates::{TEMPLATES, Template};
-use crate::programs::{host, published};
+use crate::programs::host;
 use crate::setup::toolchain::cargo_for;
 use anyhow::{Context, Result, ensure};
 use std::{
@@ -92,14 +92,13 @@ fn five_commands() -> Result<()> {
     Ok(())
 }
 
-/// Builds a template's image in a project of its own, with the crate as it would be published.
+/// Builds a template's image in a project of its own.
 fn build(template: &Template, project: &Path) -> Result<PathBuf> {
     let flight = paths::examples().join(FLIGHT);
     new_firmware::write_template(project, template, &flight, &Origin::Path(paths::root()))?;
     let target = paths::thumb_target().join("templates");
     let mut cargo = cargo_for(template.target, "build --release")?;
-    cargo.args(["--config", &published::patch()?]).current_dir(project);
-    run(lint(cargo.env("CARGO_TARGET_DIR", &target)))?;
+    run(lint(cargo.current_dir(project).env("CARGO_TARGET_DIR", &target)))?;
     Ok(target.join(template.target).join("release").join(template.hal))
 }
 
