@@ -30,7 +30,9 @@ const wires = { miso: "whole", dataReady: "whole", clock: "whole", uart: "whole"
 /// Thrown out of whatever runs when the watchdog's time is over.
 const BITTEN = new Error("the watchdog");
 let [mcu, noise, isHung] = [undefined, 1, false];
-let unmodelled;
+let fault;
+/// Peripherals of which nothing is modelled, and of which the firmware needs nothing.
+const HARMLESS = new Set([]);
 
 /// What a line picks up.
 function noisy() {
@@ -55,10 +57,11 @@ function random() {
   return (noise = (Math.imul(noise, 1664525) + 1013904223) >>> 0);
 }
 
-/// What nothing models ends the run. It is noted here, as rp2040js catches nothing and goes on.
+/// What nothing models ends the run: rp2040js only warns of it.
 class Strict extends ConsoleLogger {
   warn(component, message) {
-    if (/[Uu]nimplemented|invalid memory|undefined address/.test(message)) unmodelled ??= `${component}: ${message}`;
+    if (!/[Uu]nimplemented|invalid memory|undefined address/.test(message)) return;
+    if (!HARMLESS.has(component)) fault ??= `${component}: ${message}, at 0x${mcu.core.PC.toString(16)}`;
   }
 }
 
@@ -255,17 +258,16 @@ function note(at, cycles) {
   one.cycles += cycles - slow;
 }
 
-while (mcu.clock.nanos < END) {
+while (mcu.clock.nanos < END && !fault) {
   try {
     step();
-    if (unmodelled) console.error(unmodelled), unmodelled = undefined;
   } catch (error) {
     if (error !== BITTEN) throw error;
     start(1);
   }
 }
 drain();
-Object.assign(seen, { clkSys: mcu.clkSys, clkPeri: mcu.clkPeri, reads: sensor.reads, configured: sensor.isConfigured });
+Object.assign(seen, { fault, clkSys: mcu.clkSys, clkPeri: mcu.clkPeri, reads: sensor.reads, configured: sensor.isConfigured });
 seen.pulledUp = mcu.gpio[PINS.miso].pullupEnabled;
 seen.pausesOnHalt = (mcu.peripherals[0x40058].readUint32(0x00) >> 24 & 7) === 7; // PAUSE_JTAG, PAUSE_DBG0, PAUSE_DBG1
 writeFileSync(`${directory}/uart`, Buffer.from(uart));
