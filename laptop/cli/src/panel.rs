@@ -1,4 +1,4 @@
-//! The picture that `listen --live` draws in the terminal: values, spikes, losses, and why a value is not exact.
+//! Draws the picture of `listen --live` in the terminal: values, spikes, losses, and why a value is not exact.
 
 use crate::stop::Stop;
 use anyhow::{Context, Result, bail};
@@ -18,18 +18,18 @@ use std::rc::Rc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Length of the raster, in µs.
+/// Duration that the raster of spikes shows, in µs.
 const WINDOW: u32 = 2_000_000;
 /// Time between two pictures.
 const PERIOD: Duration = Duration::from_millis(50);
-/// Most time between frames that a recording is played with; a restart of the sender leaves its clock behind.
+/// Maximum pause while a recording is played, in µs: after a restart of the sender its ticks jump.
 const MOST_STEP: u32 = 1_000_000;
-/// Lines for counts and reasons.
+/// Number of lines for counts and reasons.
 const FOOTER: u16 = 3;
-/// Most channels that are drawn.
+/// Maximum number of channels that are drawn.
 const MOST_CHANNELS: usize = 24;
 
-/// What has been heard, by channel.
+/// The state of every channel as received so far.
 pub(crate) struct Panel {
     channels: Vec<Channel>,
     /// Number of neurons of each channel.
@@ -52,13 +52,13 @@ struct Channel {
 }
 
 impl Panel {
-    /// Channels with this many neurons, which are known by their numbers once they fire.
+    /// Makes an empty panel. Channels have this many neurons; each is added with its number when it first sends.
     pub(crate) fn new(neurons: usize) -> Self {
         let neurons = u16::try_from(neurons).unwrap_or(u16::MAX).max(1);
         Self { channels: Vec::new(), neurons, now: None, elapsed: 0, spikes: 0 }
     }
 
-    /// The channels of a flight.
+    /// Makes a panel with the channels of a flight.
     pub(crate) fn of_flight(flight: &Flight) -> Self {
         let mut panel = Self::new(flight.neurons());
         panel.channels.extend(flight.channels.iter().map(|own| Channel {
@@ -69,7 +69,7 @@ impl Panel {
         panel
     }
 
-    /// Passes on what a decoder says, and notes it in the panel.
+    /// Wraps a decoder: the panel follows its frames and values.
     pub(crate) fn noting<'a>(
         panel: &Rc<RefCell<Self>>,
         values: Box<dyn Values + 'a>,
@@ -77,6 +77,7 @@ impl Panel {
         Box::new(Noting { panel: Rc::clone(panel), values })
     }
 
+    /// Returns the channel of an address; `None` beyond the maximum.
     fn channel(&mut self, address: u16) -> Option<&mut Channel> {
         let place = usize::from(address / self.neurons);
         if place >= self.channels.len() && place < MOST_CHANNELS {
@@ -87,7 +88,7 @@ impl Panel {
         self.channels.get_mut(place)
     }
 
-    /// Notes a frame's time and its spikes.
+    /// Adds a frame's spikes, and moves the panel's time to the frame's.
     fn hear(&mut self, received: &Received<'_>) {
         for event in received.frame.events() {
             self.spikes += 1;
@@ -112,7 +113,7 @@ impl Panel {
         }
     }
 
-    /// Draws the channels, and below them counts and reasons.
+    /// Draws a line for each channel, and counts and reasons below.
     fn draw(&self, frame: &mut Frame<'_>, tally: &LinkTally) {
         let [table, footer] =
             Layout::vertical([Constraint::Fill(1), Constraint::Length(FOOTER)]).areas(frame.area());
@@ -132,6 +133,7 @@ impl Panel {
         frame.render_widget(text, footer);
     }
 
+    /// Formats a channel: name, value, unit, whether the value is exact, and spikes.
     fn row(&self, channel: &Channel, width: u16) -> Row<'_> {
         let is_exact = channel.value.is_some() && channel.withheld.is_none();
         let (mark, style) = match channel.value {
@@ -150,7 +152,7 @@ impl Panel {
         Row::new(cells).style(style)
     }
 
-    /// The latest spikes are at the right; those up are in the upper half of a line.
+    /// Formats the spikes of a channel, the latest at the right; up is the upper half of a line, down the lower half.
     fn raster(&self, channel: &Channel, width: u16) -> String {
         const GLYPHS: [char; 4] = ['·', '▀', '▄', '█'];
         let mut cells = vec![0; usize::from(width)];
@@ -165,7 +167,7 @@ impl Panel {
         cells.into_iter().map(|cell| GLYPHS[cell]).collect()
     }
 
-    /// How much was heard and lost, and why values are not exact.
+    /// Formats the counts of the link, and the reason of each channel whose value is not exact.
     fn counts(&self, tally: &LinkTally) -> String {
         let LinkTally { frames, lost, gaps, .. } = tally;
         let (seconds, spikes) = (self.elapsed as f64 / 1e6, self.spikes);
@@ -188,18 +190,19 @@ impl Panel {
 
 const GREY: Style = Style::new().fg(Color::DarkGray);
 
-/// µs from one tick to a later one.
+/// Returns the time from a tick to a later one, in µs.
 fn since(later: Tick, tick: Tick) -> u32 {
     later.micros().wrapping_sub(tick.micros())
 }
 
-/// A decoder whose frames and values are noted in a panel.
+/// A decoder whose frames and values a panel follows.
 struct Noting<'a> {
     panel: Rc<RefCell<Panel>>,
     values: Box<dyn Values + 'a>,
 }
 
 impl Noting<'_> {
+    /// Copies the last values, and the reasons that values are not exact, to the panel.
     fn note(&self, items: &[Item]) {
         let mut panel = self.panel.borrow_mut();
         for item in items {
@@ -238,7 +241,7 @@ impl Values for Noting<'_> {
     }
 }
 
-/// A part of the terminal that shows a panel, below what was written before.
+/// The lines of the terminal, below earlier output, in which a panel is drawn.
 pub(crate) struct Screen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
     panel: Rc<RefCell<Panel>>,
@@ -246,7 +249,7 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// Takes as many lines of the terminal as the panel needs.
+    /// Reserves as many lines of the terminal as the panel needs.
     ///
     /// # Errors
     /// Returns an error if standard output is no terminal, or one that does not tell where its cursor is.
@@ -263,7 +266,8 @@ impl Screen {
         Ok(Self { terminal, panel: Rc::clone(panel), drawn: None })
     }
 
-    /// Draws the panel, if the last picture is old enough. A recording waits here until its time has come.
+    /// Draws the panel if the last picture is old enough. With `wait` it returns when as much time has passed as on the
+    /// sender's clock.
     ///
     /// # Errors
     /// Returns an error if the terminal cannot be written.
@@ -280,7 +284,7 @@ impl Screen {
         }
     }
 
-    /// Draws the panel, and leaves it in the terminal with the cursor below.
+    /// Draws the panel a last time; it stays in the terminal, with the cursor below.
     ///
     /// # Errors
     /// Returns an error if the terminal cannot be written.

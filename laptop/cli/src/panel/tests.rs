@@ -1,4 +1,4 @@
-//! The panel over the recorded flight, as a link brings it.
+//! Draws the recorded flight as it arrives over a link.
 
 use super::Panel;
 use lab::events::{LinkReader, Stream, values_writer};
@@ -38,7 +38,7 @@ fn flight(first: f32) -> Flight {
     Flight::parse(&text).unwrap()
 }
 
-/// The frames of the first seconds of the recorded flight, sample by sample.
+/// Returns the bytes that each of the first samples of the recorded flight sends.
 fn frames(samples: usize) -> Vec<Vec<u8>> {
     let schemes = THRESHOLDS.map(SendOnDelta::<f32, 8>::new);
     let mut bank = Bank::<_, 6>::per_channel(schemes.each_ref());
@@ -65,7 +65,7 @@ fn frames(samples: usize) -> Vec<Vec<u8>> {
     sent.collect()
 }
 
-/// The lines of the picture that a receiver of this flight draws, after frames of which these are lost.
+/// Returns the lines of the picture of a receiver of this flight, after some samples, of which the frames of some are lost.
 fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> Vec<String> {
     let panel = Rc::new(RefCell::new(Panel::of_flight(flight)));
     let mut drawn = Vec::new();
