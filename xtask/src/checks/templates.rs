@@ -106,7 +106,7 @@ fn build(template: &Template, project: &Path) -> Result<PathBuf> {
 /// the sensor had. Returns the number of values.
 fn well(template: &Template, part: &str, image: &Path, flight: &Path) -> Result<usize> {
     let directory = paths::target().join("emulated").join(template.hal);
-    let seen = emulator::launch(part, image, "icm42688p", 2.0, &directory, &[])?;
+    let seen = emulator::strictly(part, image, "icm42688p", 2.0, &directory, &[])?;
     ensure!(seen.configured && seen.pulled_up, "the sensor is not configured, or its line floats");
     let log = emulator::log(image, &directory)?;
     ensure!(log.contains("Started") && !log.contains("Fault"), "the log says\n{log}");
@@ -128,7 +128,7 @@ fn faults(template: &Template, part: &str, image: &Path, flight: &Path) -> Resul
     }
     let seconds = (FAULTS.len() as u64 + 1) * EACH;
     let seen =
-        emulator::launch(part, image, "icm42688p", seconds as f64 / 1e3, &directory, &fates)?;
+        emulator::strictly(part, image, "icm42688p", seconds as f64 / 1e3, &directory, &fates)?;
     ensure!(seen.configured, "the sensor did not come back");
     let log = emulator::log(image, &directory)?;
     for (fault, words, _) in FAULTS {
