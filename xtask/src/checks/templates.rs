@@ -43,7 +43,7 @@ pub fn templates() -> Result<()> {
     let is_asked = |own: &&Template| asked.as_ref().is_none_or(|hal| own.hal == hal);
     TEMPLATES.iter().filter(is_asked).try_for_each(|template| {
         let elsewhere = tempfile::tempdir()?;
-        let project = elsewhere.path().join(template.hal);
+        let project = elsewhere.path().join(format!("my-{}", template.hal)); // not the HAL's own name
         let image = build(template, &project)?;
         let Some(part) = template.emulated else {
             println!("{}: compiled and linked", template.hal);
@@ -99,7 +99,8 @@ fn build(template: &Template, project: &Path) -> Result<PathBuf> {
     let target = paths::thumb_target().join("templates");
     let mut cargo = cargo_for(template.target, "build --release")?;
     run(lint(cargo.current_dir(project).env("CARGO_TARGET_DIR", &target)))?;
-    Ok(target.join(template.target).join("release").join(template.hal))
+    let name = project.file_name().context("a project has a name")?;
+    Ok(target.join(template.target).join("release").join(name))
 }
 
 /// Checks two seconds without faults: `spikewire listen`, with the same file, says every value exactly, and each is one that
