@@ -182,7 +182,10 @@ impl Panel {
             }
         }
         for (why, names) in reasons {
-            text += &format!("\n{}: {why}", names.join(", "));
+            text += "\n";
+            text += &names.join(", ");
+            text += ": ";
+            text += &why.to_string();
         }
         text
     }

@@ -80,8 +80,13 @@ fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> 
         let mut terminal = Terminal::new(TestBackend::new(80, 10)).unwrap();
         let tally = stream.tally().link.unwrap();
         terminal.draw(|frame| panel.borrow().draw(frame, &tally)).unwrap();
-        let cells: Vec<_> =
-            terminal.backend().buffer().content().iter().map(|own| own.symbol()).collect();
+        let cells: Vec<_> = terminal
+            .backend()
+            .buffer()
+            .content()
+            .iter()
+            .map(ratatui::buffer::Cell::symbol)
+            .collect();
         drawn = cells.chunks(80).map(|line| line.concat().trim_end().to_owned()).collect();
         Ok(())
     })
