@@ -38,7 +38,7 @@ fn flight(first: f32) -> Flight {
     Flight::parse(&text).unwrap()
 }
 
-/// Returns the bytes that each of the first samples of the recorded flight sends.
+/// Encodes the first `samples` samples of the recorded flight; returns the frame that is sent after each.
 fn frames(samples: usize) -> Vec<Vec<u8>> {
     let schemes = THRESHOLDS.map(SendOnDelta::<f32, 8>::new);
     let mut bank = Bank::<_, 6>::per_channel(schemes.each_ref());
@@ -65,7 +65,8 @@ fn frames(samples: usize) -> Vec<Vec<u8>> {
     sent.collect()
 }
 
-/// Returns the lines of the picture of a receiver of this flight, after some samples, of which the frames of some are lost.
+/// Returns the lines that the panel draws after `samples` samples of this flight; the frames of the samples for which
+/// `is_lost` returns true do not arrive.
 fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> Vec<String> {
     let panel = Rc::new(RefCell::new(Panel::of_flight(flight)));
     let mut drawn = Vec::new();
@@ -80,8 +81,13 @@ fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> 
         let mut terminal = Terminal::new(TestBackend::new(80, 10)).unwrap();
         let tally = stream.tally().link.unwrap();
         terminal.draw(|frame| panel.borrow().draw(frame, &tally)).unwrap();
-        let cells: Vec<_> =
-            terminal.backend().buffer().content().iter().map(|own| own.symbol()).collect();
+        let cells: Vec<_> = terminal
+            .backend()
+            .buffer()
+            .content()
+            .iter()
+            .map(ratatui::buffer::Cell::symbol)
+            .collect();
         drawn = cells.chunks(80).map(|line| line.concat().trim_end().to_owned()).collect();
         Ok(())
     })
