@@ -48,7 +48,7 @@ SECTIONS
 } INSERT BEFORE .text;
 ";
 
-pub const TEMPLATES: [Template; 6] = [
+pub const TEMPLATES: [Template; 5] = [
     STM32,
     Template {
         hal: "embassy-nrf",
@@ -60,6 +60,5 @@ pub const TEMPLATES: [Template; 6] = [
     },
     RP,
     Template { hal: "stm32f4xx-hal", ..STM32 },
-    Template { hal: "rp2040-hal", ..RP },
     Template { hal: "rtic", ..STM32 },
 ];
