@@ -64,17 +64,17 @@ fn any_spikes_are_decoded() {
 
 #[test]
 fn refusals() {
-    let told = |result: Result<Burst<i16, 19>, ConfigError>| result.unwrap_err().to_string();
-    assert_eq!(told(Burst::try_new(0..=99, 0, 2..=10)), "spikes 0 must lie in 1..=255");
-    assert_eq!(told(Burst::try_new(0..=99, 5, 0..=10)), "shortest interval 0 must lie in 1..=10");
+    let says = |result: Result<Burst<i16, 19>, ConfigError>| result.unwrap_err().to_string();
+    assert_eq!(says(Burst::try_new(0..=99, 0, 2..=10)), "spikes 0 must lie in 1..=255");
+    assert_eq!(says(Burst::try_new(0..=99, 5, 0..=10)), "shortest interval 0 must lie in 1..=10");
     let descending = std::hint::black_box(9)..=8;
     assert_eq!(
-        told(Burst::try_new(0..=99, 5, descending)),
+        says(Burst::try_new(0..=99, 5, descending)),
         "shortest interval 9 must lie in 1..=8"
     );
-    assert_eq!(told(Burst::try_new(0..=99, 5, 3..=11)), "slots 19 must lie in 22..=256");
+    assert_eq!(says(Burst::try_new(0..=99, 5, 3..=11)), "slots 19 must lie in 22..=256");
     assert_eq!(
-        told(Burst::try_new(0..=99, 200, 1..=2)),
+        says(Burst::try_new(0..=99, 200, 1..=2)),
         "slots of the longest burst 395 must lie in 1..=256"
     );
     // In a range of one step every burst but the longest is of no value.
@@ -82,7 +82,7 @@ fn refusals() {
         Burst::<i16, 2>::try_new(0..=1, 3, 1..=1).unwrap_err().to_string(),
         "slots 2 must lie in 3..=256"
     );
-    assert!(told(Burst::try_new(9..=9, 5, 2..=10)).starts_with("min and max"));
+    assert!(says(Burst::try_new(9..=9, 5, 2..=10)).starts_with("min and max"));
     assert!(dynamic::Burst::<f32>::try_of(18, &(0.0..=1.0), 5, &(2..=10)).is_err());
     assert!(dynamic::Burst::<f32>::try_of(257, &(0.0..=1.0), 5, &(2..=10)).is_err());
     assert!(dynamic::Burst::<f32>::try_of(19, &(0.0..=1.0), 5, &(2..=10)).is_ok());

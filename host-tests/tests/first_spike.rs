@@ -118,17 +118,17 @@ fn a_neuron_with_a_leak() {
 #[test]
 fn refusals() {
     let empty = |cell, cells| Some(ConfigError::EmptyCell { cell, cells });
-    let told = |result: Result<FirstSpike<i16, 4>, _>| result.err();
+    let error = |result: Result<FirstSpike<i16, 4>, _>| result.err();
     let names = |result: Result<FirstSpike<i16, 4>, ConfigError>| {
         result.unwrap_err().to_string().split(' ').next().unwrap().to_owned()
     };
-    assert_eq!(told(FirstSpike::try_linear(0..=2)), empty(2, 4));
-    assert_eq!(told(FirstSpike::try_new(0..=9, [-1, 2, 3, 4])), empty(0, 5));
-    assert_eq!(told(FirstSpike::try_new(0..=9, [1, 2, 3, 9])), empty(4, 5));
-    assert_eq!(told(FirstSpike::try_logarithmic(0..=100, 1000.0)), empty(1, 5));
+    assert_eq!(error(FirstSpike::try_linear(0..=2)), empty(2, 4));
+    assert_eq!(error(FirstSpike::try_new(0..=9, [-1, 2, 3, 4])), empty(0, 5));
+    assert_eq!(error(FirstSpike::try_new(0..=9, [1, 2, 3, 9])), empty(4, 5));
+    assert_eq!(error(FirstSpike::try_logarithmic(0..=100, 1000.0)), empty(1, 5));
     assert_eq!(names(FirstSpike::try_new(0..=9, [1, 2, 2, 4])), "edges");
     assert_eq!(
-        told(FirstSpike::try_new(0..=9, [1, 3, 2, 4])),
+        error(FirstSpike::try_new(0..=9, [1, 3, 2, 4])),
         Some(ConfigError::NotRising { parameter: "edges", index: 2, value: 2.0, previous: 3.0 })
     );
     assert_eq!(names(FirstSpike::try_linear(3..=3)), "min");

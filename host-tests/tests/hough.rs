@@ -10,7 +10,6 @@ use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::hough;
 use proptest::prelude::*;
 use spikewire::rate::{Hough, Taps};
-use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference.
 fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], shift: S) {
@@ -38,20 +37,6 @@ fn cases_by_hand() {
         assert_eq!(signs_of(&encode(&Hough::new(taps), x).codes()), expected, "{name}");
         check(&taps, x, 0.0);
     }
-}
-
-#[test]
-fn waits_for_the_look_ahead() {
-    let taps = Taps::try_new([1.0_f32, 1.0, 1.0]).unwrap();
-    let scheme = Hough::new(taps);
-    assert_eq!((scheme.latency(), Hough::<f32, 3>::LATENCY), (2, 2));
-    let mut encoder = scheme.encoder();
-    let x = [1.0, f32::NAN, 1.0, 1.0, f32::NAN, 1.0];
-    let outputs = x.map(|x| encoder.encode(x));
-    assert_eq!(outputs, [None, None, None, Some(Spike::Up), None, Some(Spike::None)]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, None));
-    assert!(encoder.finish().eq([Spike::None; 2]));
-    assert_eq!(encoder.finish_next(), None);
 }
 
 flights!(S: Wire, |x, unit| {
@@ -92,15 +77,4 @@ fn all_pairs_of_8_bits() {
     check([1, 1]);
     check([3, -2]);
     check([0, 100]);
-}
-
-/// Room beyond the spikes is not written to.
-#[test]
-fn a_decoded_slice_ends_with_its_spikes() {
-    let scheme = Hough::new(Taps::try_new([1.0_f32, 2.0, 3.0, 4.0]).unwrap());
-    let mut decoder = scheme.decoder();
-    let mut values = [-1.0; 8];
-    assert_eq!(decoder.decode_slice(&[Spike::Up, Spike::None], &mut values), 2);
-    assert_eq!(values, [1.0, 2.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0]);
-    assert_eq!(decoder.decode(Spike::None), 3.0);
 }

@@ -123,6 +123,12 @@ fn what_makes_no_sense_is_refused_by_name() {
     assert_eq!(refused(Neuron::<f32, 4>::new(1.0, 3).try_with_most(5)), "most spikes a sample");
 }
 
+#[test]
+fn a_sample_has_as_many_slots_as_spikes() {
+    assert_eq!(Neuron::<f32, 4>::new(1.0, 3).slots(), 4);
+    assert_eq!(Neuron::<f32, 127>::new(1.0, 3).with_most(4).slots(), 4);
+}
+
 proptest! {
     #[test]
     fn as_transcribed(x in drawn(), threshold in 1_i16..2000, power in 1_u8..8) {
@@ -133,11 +139,11 @@ proptest! {
     #[test]
     fn the_integral_never_drifts(x in drawn(), threshold in 512_i16..4000, reference in -90_i16..90) {
         let scheme = Neuron::<i16, 8>::new(threshold, 3).with_reference(reference);
-        let (mut sum, mut told) = (0, 0);
+        let (mut sum, mut coded) = (0, 0);
         for (count, x) in counts_of(&scheme, &x).into_iter().zip(x) {
             sum += i32::from(x) - i32::from(reference);
-            told += i32::from(count) * i32::from(threshold);
-            prop_assert!((sum - told).abs() < i32::from(threshold));
+            coded += i32::from(count) * i32::from(threshold);
+            prop_assert!((sum - coded).abs() < i32::from(threshold));
         }
     }
 

@@ -79,12 +79,12 @@ fn any_spikes_are_decoded() {
 
 #[test]
 fn refusals() {
-    let told =
+    let says =
         |result: Result<LatencyPhase<i16, 2, 16, 4>, ConfigError>| result.unwrap_err().to_string();
-    assert_eq!(told(LatencyPhase::try_new(0..=99, 0)), "spacing 0 must lie in 1..=2");
-    assert_eq!(told(LatencyPhase::try_new(0..=99, 3)), "spacing 3 must lie in 1..=2");
+    assert_eq!(says(LatencyPhase::try_new(0..=99, 0)), "spacing 0 must lie in 1..=2");
+    assert_eq!(says(LatencyPhase::try_new(0..=99, 3)), "spacing 3 must lie in 1..=2");
     let phased = LatencyPhase::try_new(0..=99, 1).unwrap().try_with_phase(4);
-    assert_eq!(told(phased), "phase 4 must lie in 0..=3");
+    assert_eq!(says(phased), "phase 4 must lie in 0..=3");
     let coarse = LatencyPhase::<i16, 2, 16, 4>::try_new(0..=9, 1);
     assert_eq!(coarse.err(), Some(ConfigError::EmptyCell { cell: 2, cells: 16 }));
     let of = |neurons, latencies, period| {

@@ -247,12 +247,12 @@ fn scaling_by_powers_of_two_scales() {
         let (mut encoder, mut scaled) = (one.encoder(), other.encoder());
         let (mut decoder, mut decoder_scaled) = (one.decoder(), other.decoder());
         for &x in x {
-            let (code, own) = (encoder.encode(x).code(), scaled.encode(scale * x).code());
+            let (code, twin) = (encoder.encode(x).code(), scaled.encode(scale * x).code());
             let firings = |code: P::Code| code.firings().collect::<Vec<_>>();
-            assert_eq!(code.map(firings), own.map(firings), "{x} times {scale}");
-            if let (Some(code), Some(own)) = (code, own) {
+            assert_eq!(code.map(firings), twin.map(firings), "{x} times {scale}");
+            if let (Some(code), Some(twin)) = (code, twin) {
                 let value = (scale * decoder.decode(code)).to_bits();
-                assert_eq!(value, decoder_scaled.decode(own).to_bits());
+                assert_eq!(value, decoder_scaled.decode(twin).to_bits());
             }
         }
     }

@@ -17,6 +17,12 @@ const CHANNELS: usize = 2;
 const PERIOD: u32 = 1_000;
 const SAMPLES: u32 = 600;
 
+static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
+static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
+static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
+static STEP: StepForward<f32> = StepForward::new(0.5);
+static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
+
 /// How a run goes.
 #[derive(Clone, Copy, Debug)]
 struct Way {
@@ -117,7 +123,6 @@ fn check<P: Start<Sample = f32>>(scheme: &'static P, slot_ticks: u32, jitter: u3
 
 #[test]
 fn rate_codes_are_exact_again_after_their_filter() {
-    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
     static THRESHOLD: ThresholdHough<f32, 7> = ThresholdHough::new(Taps::triangular(0.5), 0.2);
     static TOOLBOX: BsaToolbox<f32, 7> = BsaToolbox::new(Taps::triangular(0.5), 0.9);
     for jitter in [0, 124] {
@@ -129,8 +134,6 @@ fn rate_codes_are_exact_again_after_their_filter() {
 
 #[test]
 fn population_codes_are_exact_again_at_their_next_spike() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
-    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
     check(&POSITION, 0, 0);
     check(&POSITION, 0, 499);
     check(&SLOTS, PERIOD / 50, 0);
@@ -174,8 +177,6 @@ fn spike_at(micros: u64) -> Item {
 /// An event without room belongs to a channel that is not exact until it has recovered.
 #[test]
 fn a_sample_with_more_events_than_there_is_room_for_is_not_exact() {
-    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
-    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
     for seed in 0..10 {
         let way = Way { seed, jitter: 0, loss: 0, slot_ticks: 0 };
         assert!(run::<_, 1>(&HOUGH, wave, way) > 20);
@@ -187,7 +188,6 @@ fn a_sample_with_more_events_than_there_is_room_for_is_not_exact() {
 /// What `advance` does for a value that nothing follows.
 #[test]
 fn a_sample_is_over_when_time_has_passed() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let mut bank = Bank::<_, 1>::new(&POSITION);
     let mut receiver = Receiver::<_, 1>::new(&POSITION);
     let mut items = Vec::new();
@@ -206,7 +206,6 @@ fn a_sample_is_over_when_time_has_passed() {
 
 #[test]
 fn what_does_not_belong_is_counted() {
-    static STEP: StepForward<f32> = StepForward::new(0.5);
     assert_eq!(<StepForward<f32> as Scheme>::RECOVERY, Recovery::Keyframe);
     let tick = Tick::from(5);
     let items = [
@@ -225,7 +224,6 @@ fn what_does_not_belong_is_counted() {
 
 #[test]
 fn a_first_address_can_be_set_at_run_time() {
-    static STEP: StepForward<f32> = StepForward::new(0.5);
     let receiver = || Receiver::<_, 2, 0>::new(&STEP);
     let mut behind = receiver().with_slot_ticks(7).try_with_first_address(10).unwrap();
     assert_eq!(
@@ -259,20 +257,19 @@ fn a_transmitter_counts_the_silences_that_it_cannot_measure() {
 #[test]
 fn what_is_withheld_has_a_reason_in_words() {
     let slots = Withheld::Slots { slots: 50, slot_ticks: 21, period: 1_000 };
-    for (reason, told) in [
+    for (reason, message) in [
         (Withheld::Keyframe, "no keyframe since the start or the last loss"),
         (Withheld::Samples(3), "3 more samples without a loss are needed"),
         (slots, "50 sub-timesteps of 21 µs are longer than the link's period of 1000 µs"),
         (Withheld::Always, "the error of this code fades, and is never 0"),
     ] {
-        assert_eq!(reason.to_string(), told);
+        assert_eq!(reason.to_string(), message);
     }
 }
 
 /// Addresses count neurons: a code of many has as many a channel.
 #[test]
 fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let tick = Tick::from(5);
     let mut receiver = Receiver::<_, 2>::new(&POSITION);
     let mut line = Line::new(18, 1);
@@ -293,7 +290,6 @@ fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
 /// A sample is over when the next begins, or another session: its value comes then, if it had events.
 #[test]
 fn the_last_sample_before_a_restart_is_decoded() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let mut receiver = Receiver::<_, 1>::new(&POSITION);
     let mut line = Line::new(9, 1_000);
     let mut send = |session, item| {
@@ -348,7 +344,6 @@ impl<'a, P: Start, const N: usize> Link<'a, P, N> {
 /// Even points have no value for silence: after a loss a sample that is not finite says nothing.
 #[test]
 fn silence_is_exact_only_where_it_has_a_value() {
-    static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
     static ABOVE: FirstSpike<f32, 10> = FirstSpike::logarithmic(0.0..=9.0, 100.0);
     let mut linear = Link::<_, 1>::new(&LINEAR, 100);
     let mut receiver = Receiver::new(&LINEAR).with_slot_ticks(100).with_clock_tolerance(0);
@@ -372,7 +367,6 @@ fn silence_is_exact_only_where_it_has_a_value() {
 /// Values that sub-timesteps tell are never exact where these are not known, and it is told why.
 #[test]
 fn without_its_sub_timesteps_a_code_has_no_value() {
-    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
     let fly = |slot_ticks: u32| {
         let mut link = Link::<_, 1>::new(&SLOTS, 20);
         let mut receiver =
@@ -418,7 +412,6 @@ fn passed_on<P: Start<Sample = f32>>(scheme: &P, address: u16) -> Vec<u16> {
 /// A keyframe is a sample's end only where samples are counted, and only if it belongs to a channel.
 #[test]
 fn a_keyframe_passes_on_its_own_channel() {
-    static STEP: StepForward<f32> = StepForward::new(0.5);
     static ADAPTIVE: AdaptiveStepForward<f32> = AdaptiveStepForward::new(0.5, 4);
     assert_eq!(passed_on(&STEP, 1), [1, 1, 1]);
     assert!(passed_on(&STEP, 2).is_empty() && passed_on(&ADAPTIVE, 2).is_empty());
@@ -429,7 +422,6 @@ fn a_keyframe_passes_on_its_own_channel() {
 /// Ten sub-timesteps of 20 µs in a period of 1000: what comes later than the last belongs to none.
 #[test]
 fn an_event_after_the_last_sub_timestep_is_a_misfit() {
-    static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
     let misfits = |slot: u32| {
         let mut link = Link::<_, 2>::new(&LINEAR, 20);
         let mut receiver = Receiver::new(&LINEAR).with_slot_ticks(20).with_clock_tolerance(0);
@@ -470,7 +462,6 @@ fn filters_of_different_lengths_run_empty_each() {
 /// A filter is empty after any silence, of which the sender was told; and samples go on from there.
 #[test]
 fn a_rate_code_knows_how_long_it_was_silent() {
-    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
     const MINUTE: u64 = 60_000_000;
     for minutes in [1, 35, 36, 40, 71, 72, 90, 143, 1_000, 100_000] {
         let mut receiver = Receiver::<_, 2>::new(&HOUGH);
@@ -538,12 +529,12 @@ fn fly<P: Start<Sample = f32>>(
             let frame = reader.next_frame(&mut bytes).unwrap();
             let mut last = None;
             receiver.apply(&frame, |_, tick, value| last = Some((tick, value)));
-            if let (Some(told), Some(exact)) = (last, receiver.exact(0)) {
-                assert_eq!(told.1, exact);
+            if let (Some(end), Some(exact)) = (last, receiver.exact(0)) {
+                assert_eq!(end.1, exact);
                 // Where the clock steps, a sample without events is told of where it was due.
                 let is_near =
-                    |tick: Tick| tick.since(told.0).unsigned_abs() <= u32::from(LATE_PERIOD) / 2;
-                let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == told.1);
+                    |tick: Tick| tick.since(end.0).unsigned_abs() <= u32::from(LATE_PERIOD) / 2;
+                let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == end.1);
                 heard.right += usize::from(is_right);
                 heard.wrong += usize::from(!is_right);
             }
@@ -571,7 +562,6 @@ fn a_clock_that_steps_back_before_a_keyframe_makes_nothing_wrong() {
 /// All events of a sample have its tick, so that it ends where another tick begins, however late that is.
 #[test]
 fn samples_of_a_population_code_may_be_late_by_anything() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let period = u32::from(LATE_PERIOD);
     for late in [0, 1, 1_249, 1_250, 1_251, 2_000, 2_499, 7_000] {
         let ticks = (0..300).map(|at| 1_000_000 + at * period + at % 2 * late);

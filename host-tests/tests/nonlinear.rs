@@ -2,7 +2,6 @@
 
 use crate::common::{
     Drawn, between, cases, drawn_recordings, flight_channels, hostile_recordings, in_every_type,
-    positive_float,
 };
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{
@@ -345,7 +344,7 @@ fn companded_as_drawn<S: Wire + Drawn + PartialOrd>() {
         between(0.01, 999.0),
         (0..=30_u8).prop_map(f32::from).prop_filter("above 0", |&companding| companding > 0.0),
         (1e-30_f32..1e-3),
-        positive_float(),
+        f32::positive(),
     ];
     proptest!(cases(32), |(a in S::value(), b in S::value(), companding in companding)| {
         let [min, max] = if a < b { [a, b] } else { [b, a] };

@@ -148,9 +148,9 @@ proptest! {
         let scheme = SigmaDelta::new(-1000_i16..=3000, Average::new(1));
         let spikes = spikes_of(&scheme, &x);
         let (from, to) = (from.min(x.len()), to.min(x.len()).max(from.min(x.len())));
-        let told: i32 = spikes[from..to].iter().map(|&spike| i32::from(spike) * 4000).sum();
+        let coded: i32 = spikes[from..to].iter().map(|&spike| i32::from(spike) * 4000).sum();
         let sum: i32 = x[from..to].iter().map(|&x| i32::from(x).clamp(-1000, 3000) + 1000).sum();
-        prop_assert!((told - sum).abs() < 4000);
+        prop_assert!((coded - sum).abs() < 4000);
     }
 
     #[test]

@@ -251,8 +251,8 @@ fn a_length_that_is_not_the_types_is_refused() {
     for length in [0, 39, 41] {
         let mut other = state.clone();
         other["ring"] = vec![0; length].into();
-        let told = format!("invalid length {length}, expected 40 items");
-        assert_eq!(refused::<<Long as Scheme>::EncoderState>(&other), told);
+        let message = format!("invalid length {length}, expected 40 items");
+        assert_eq!(refused::<<Long as Scheme>::EncoderState>(&other), message);
     }
 }
 

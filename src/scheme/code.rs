@@ -136,6 +136,7 @@ pub trait Output: Copy {
     fn code(self) -> Option<Self::Code>;
 }
 
+/// The code of a scheme that waits for no later sample is its own output.
 impl<C: Code> Output for C {
     type Code = Self;
 

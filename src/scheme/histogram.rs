@@ -163,8 +163,8 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
             return None;
         }
         let (numerator, denominator) = (u64::from(numerator), u64::from(denominator));
-        let all = u64::from(self.total).saturating_add(B as u64);
-        let wanted = numerator.saturating_mul(all);
+        let total = u64::from(self.total).saturating_add(B as u64);
+        let wanted = numerator.saturating_mul(total);
         let mut below = 0;
         for (cell, &count) in self.counts.iter().enumerate() {
             let weight = u64::from(count).saturating_add(1).saturating_mul(denominator);

@@ -33,7 +33,7 @@ impl<S: Sample> Conditions<S> {
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(samples: u32, limits: RangeInclusive<S>, largest_change: S) -> Self {
-        unwrap(Self::of(samples, &limits, largest_change))
+        unwrap(Self::try_new(samples, limits, largest_change))
     }
 
     /// The conditions of a channel.
@@ -49,14 +49,6 @@ impl<S: Sample> Conditions<S> {
     pub const fn try_new(
         samples: u32,
         limits: RangeInclusive<S>,
-        largest_change: S,
-    ) -> Result<Self, ConfigError> {
-        Self::of(samples, &limits, largest_change)
-    }
-
-    const fn of(
-        samples: u32,
-        limits: &RangeInclusive<S>,
         largest_change: S,
     ) -> Result<Self, ConfigError> {
         let limits = [*limits.start(), *limits.end()];
@@ -301,8 +293,8 @@ impl<'a, S: Sample, const B: usize> Fit<'a, S, B> {
     pub fn temporal_contrast(&self, spikes: f32) -> Result<TemporalContrast<S>, ConfigError> {
         check_spikes(spikes)?;
         let counts = self.changes().counts();
-        let all: u32 = counts.iter().copied().map(u32::from).sum();
-        let part = |above: u32| above as f32 / all as f32;
+        let total: u32 = counts.iter().copied().map(u32::from).sum();
+        let part = |above: u32| above as f32 / total as f32;
         let last = counts.last().copied().unwrap_or_default();
         within("spikes a sample", spikes.into(), part(last.into()), 1.0)?;
         let (mut above, mut border) = (0_u32, B);

@@ -20,7 +20,7 @@ mod verify;
 mod write;
 
 use anyhow::Result;
-use checks::{firmware, network, simulated_drone};
+use checks::{emulate, firmware, network, simulated_drone};
 use common::{Usage, progress, usage};
 use figures::{bench, demo};
 use products::{c_library, new_firmware, new_scheme, page};
@@ -38,6 +38,10 @@ cargo xtask <command>
   guides FIRMWARE DIR   builds the guide of bindings/c/guides for crazyflie, betaflight or px4 with a checkout of that firmware
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
+  new-firmware DIR --hal NAME --flight FLIGHT.toml
+                        writes one with a HAL of yours, from a flight's file; without arguments, the HALs
+  emulate IMAGE --part PART
+                        runs an image with a sensor on its bus, and writes what its serial port says to standard output
   scheme NAME TYPE --like NAME
                         a scheme to begin from: a copy of one that there is under another name, and the lines that list it
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
@@ -77,6 +81,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "c-bundle" => c_library::bundle().map(drop),
         "guides" => c_library::guides(args),
         "scheme" => new_scheme::new_scheme(args),
+        "emulate" => emulate::emulate(args),
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),

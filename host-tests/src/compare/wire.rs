@@ -4,7 +4,7 @@ use fixed::types::extra::{LeEqU16, LeEqU32};
 use fixed::{FixedI16, FixedI32};
 use spikewire::{Sample, Spike};
 
-use crate::reference::{Finite, Real, split_finite};
+use crate::reference::{Finite, Real, clamped, split_finite};
 
 /// A sample type of the crate, and the number that the reference reads it as.
 pub trait Wire: Sample {
@@ -73,39 +73,33 @@ impl Wire for i16 {
     }
 }
 
-impl<Frac: LeEqU16 + Send + Sync + 'static> Wire for FixedI16<Frac> {
-    type Real = f64;
+macro_rules! fixed_wire {
+    ($($Fixed:ident<$Limit:ident> $bits:ty { $($method:tt)* })*) => {$(
+        impl<Frac: $Limit + Send + Sync + 'static> Wire for $Fixed<Frac> {
+            type Real = f64;
 
-    fn real(self) -> f64 {
-        self.to_num()
-    }
+            fn real(self) -> f64 {
+                self.to_num()
+            }
 
-    fn ends() -> [f64; 2] {
-        [Self::MIN.to_num(), Self::MAX.to_num()]
-    }
+            fn ends() -> [f64; 2] {
+                [Self::MIN.to_num(), Self::MAX.to_num()]
+            }
 
-    fn nearest(value: f64) -> Self {
-        Self::from_bits(nearest_integer(value / Self::DELTA.to_num::<f64>()) as i16)
-    }
+            fn nearest(value: f64) -> Self {
+                Self::from_bits(nearest_integer(value / Self::DELTA.to_num::<f64>()) as $bits)
+            }
+
+            $($method)*
+        }
+    )*};
 }
-
-impl<Frac: LeEqU32 + Send + Sync + 'static> Wire for FixedI32<Frac> {
-    type Real = f64;
-
-    fn real(self) -> f64 {
-        self.to_num()
-    }
-
-    fn ends() -> [f64; 2] {
-        [Self::MIN.to_num(), Self::MAX.to_num()]
-    }
-
-    fn nearest(value: f64) -> Self {
-        Self::from_bits(nearest_integer(value / Self::DELTA.to_num::<f64>()) as i32)
-    }
-
-    fn residual_limit(magnitude: f64) -> Option<f64> {
-        Some(Self::MAX.to_num::<f64>() - magnitude)
+fixed_wire! {
+    FixedI16<LeEqU16> i16 {}
+    FixedI32<LeEqU32> i32 {
+        fn residual_limit(magnitude: f64) -> Option<f64> {
+            Some(Self::MAX.to_num::<f64>() - magnitude)
+        }
     }
 }
 
@@ -130,12 +124,7 @@ pub fn finite<S: Wire>(samples: &[S]) -> Finite<S::Real> {
 /// Values of the reference, cut to where the sample type saturates.
 pub fn saturated<S: Wire>(values: &[S::Real]) -> Vec<S::Real> {
     let [lowest, highest] = S::ends();
-    let cut = |value| match value {
-        value if value < lowest => lowest,
-        value if value > highest => highest,
-        value => value,
-    };
-    values.iter().map(|&value| cut(value)).collect()
+    values.iter().map(|&value| clamped(value, lowest, highest)).collect()
 }
 
 /// Spikes as the reference writes them.

@@ -127,21 +127,6 @@ pub(crate) fn float() -> BoxedStrategy<f32> {
     .boxed()
 }
 
-/// Any finite `f32`.
-pub(crate) fn finite_float() -> BoxedStrategy<f32> {
-    float().prop_filter("finite", |value| value.is_finite()).boxed()
-}
-
-/// Any finite `f32` above 0, handy ones often.
-pub(crate) fn positive_float() -> BoxedStrategy<f32> {
-    prop_oneof![
-        (1..32_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
-        between(0.01, 2.0),
-        finite_float().prop_map(f32::abs).prop_filter("above 0", |&value| value > 0.0),
-    ]
-    .boxed()
-}
-
 /// Values that stay for a while.
 fn steps<T: Clone + std::fmt::Debug + 'static>(value: BoxedStrategy<T>) -> BoxedStrategy<Vec<T>> {
     vec((value, 1..9_usize), 0..12)
@@ -162,21 +147,6 @@ fn walk() -> BoxedStrategy<Vec<i64>> {
                 .collect()
         })
         .boxed()
-}
-
-/// Recordings of `f32`, with values that are not finite among them.
-pub(crate) fn floats() -> BoxedStrategy<Vec<f32>> {
-    prop_oneof![
-        walk().prop_map(|walk| walk.into_iter().map(|value| value as f32 / 8.0).collect()),
-        vec(-4.0_f32..4.0, 0..90),
-        vec(float(), 0..60),
-        steps(float()),
-        (walk(), vec(proptest::option::weighted(0.1, float()), 90)).prop_map(|(walk, faults)| {
-            let faulty = |(value, fault): (i64, Option<f32>)| fault.unwrap_or(value as f32 / 8.0);
-            walk.into_iter().zip(faults).map(faulty).collect()
-        }),
-    ]
-    .boxed()
 }
 
 /// Integers of a type with this largest value, its ends often.
@@ -221,24 +191,42 @@ pub(crate) fn ranges<S: Drawn + Copy + PartialOrd>() -> BoxedStrategy<[S; 2]> {
 
 impl Drawn for f32 {
     fn recordings() -> BoxedStrategy<Vec<f32>> {
-        floats()
+        let others = vec(proptest::option::weighted(0.1, float()), 90);
+        prop_oneof![
+            walk().prop_map(|walk| walk.into_iter().map(|value| value as f32 / 8.0).collect()),
+            vec(-4.0_f32..4.0, 0..90),
+            vec(float(), 0..60),
+            steps(float()),
+            (walk(), others).prop_map(|(walk, others)| {
+                let either =
+                    |(eighths, other): (i64, Option<f32>)| other.unwrap_or(eighths as f32 / 8.0);
+                walk.into_iter().zip(others).map(either).collect()
+            }),
+        ]
+        .boxed()
     }
     fn value() -> BoxedStrategy<f32> {
-        finite_float()
+        float().prop_filter("finite", |value| value.is_finite()).boxed()
     }
+    /// Handy ones often.
     fn positive() -> BoxedStrategy<f32> {
-        positive_float()
+        prop_oneof![
+            (1..32_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
+            between(0.01, 2.0),
+            f32::value().prop_map(f32::abs).prop_filter("above 0", |&value| value > 0.0),
+        ]
+        .boxed()
     }
     fn tap() -> BoxedStrategy<f32> {
         prop_oneof![
             4 => (1..16_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
             4 => between(0.01, 1.0),
-            1 => finite_float().prop_map(|value| value.clamp(-4e29, 4e29)),
+            1 => f32::value().prop_map(|value| value.clamp(-4e29, 4e29)),
         ]
         .boxed()
     }
     fn shift() -> BoxedStrategy<f32> {
-        prop_oneof![Just(0.0), finite_float().prop_map(|value| value.clamp(-1e31, 1e31))].boxed()
+        prop_oneof![Just(0.0), f32::value().prop_map(|value| value.clamp(-1e31, 1e31))].boxed()
     }
 }
 
@@ -278,9 +266,7 @@ drawn!(I32F0, i32, I32F0::from_bits);
 
 /// All twelve channels of both flights.
 pub(crate) fn flight_channels() -> Vec<Vec<f32>> {
-    let flights = [flight::hexarotor(), flight::vtol_at_rest()];
-    let channels = |flight: &Vec<_>| (0..6).map(|i| flight::channel(flight, i)).collect::<Vec<_>>();
-    flights.iter().flat_map(channels).collect()
+    flight::flights().into_iter().flatten().collect()
 }
 
 /// All twelve channels in a sample type, of which 1 rad/s or 1 m/s² is `unit`.

@@ -9,7 +9,7 @@ use std::fmt::{Debug, Write};
 ///
 /// | item | |
 /// |---|---|
-/// | `CHANNELS`, `NAMES`, `COUNTS` | number of channels; their names; the number of counts in one unit of each |
+/// | `CHANNELS`, `NAMES`, `UNITS`, `COUNTS` | number of channels; their names; their units; the number of counts in one unit of each |
 /// | `Code`, `SCHEMES` | type of the channels' schemes; the schemes, in flash |
 /// | `Bank`, `BANK` | type of the bank of encoders; the bank before the first sample |
 /// | `LABEL` | period, names, units and counts as text, a part of the fingerprint |
@@ -26,6 +26,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     };
     let (channels, coding) = (flight.channels.len(), flight.coding());
     let names = listed(flight.channels.iter().map(|channel| &channel.name));
+    let units = listed(flight.channels.iter().map(|channel| &channel.unit));
     let counts = listed(flight.channels.iter().map(|channel| channel.counts));
     let slots = match flight.slot_ticks() {
         0 => String::new(),
@@ -44,6 +45,10 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     item(
         "Names of the channels, in the order of a sample.",
         format!("pub const NAMES: [&str; CHANNELS] = [{names}];"),
+    );
+    item(
+        "Units of the channels, empty where unknown.",
+        format!("pub const UNITS: [&str; CHANNELS] = [{units}];"),
     );
     item(
         "Number of counts in one unit of each channel.",

@@ -245,9 +245,9 @@ impl<S: Sample> Ranks<'_, S> {
         let mut lowest = first.wrapping_add(nearest);
         let mut above = lowest.wrapping_add(1);
 
-        let all = Interval { above: None, last: self.max };
+        let whole = Interval { above: None, last: self.max };
         let centre = *self.centres.get(lowest)?;
-        let cut = self.below(lowest).map_or(all, |low| all.above(low.midway(centre), self.min));
+        let cut = self.below(lowest).map_or(whole, |low| whole.above(low.midway(centre), self.min));
         let cut = self.centres.get(above).map_or(cut, |&high| cut.up_to(centre.midway(high)));
         let mut known = cut.if_any(self.min)?;
 

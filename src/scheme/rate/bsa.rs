@@ -166,12 +166,5 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
 
 rate_scheme!(Bsa);
 
-/// A struct of `taps`, `criterion` and `shift`.
 #[cfg(feature = "serde")]
-impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for Bsa<S, F> {
-    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let Filtered { taps, shift } = &self.filtered;
-        let limit = ("criterion", &self.limit);
-        crate::serial::fields("Bsa", ("taps", taps), limit, ("shift", shift), serializer)
-    }
-}
+super::filtered::serialize_filtered!(Bsa, "criterion", limit);

@@ -200,12 +200,5 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
     decode_rate!();
 }
 
-/// A struct of `taps`, `threshold` and `shift`.
 #[cfg(feature = "serde")]
-impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for BsaToolbox<S, F> {
-    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let Filtered { taps, shift } = &self.filtered;
-        let limit = ("threshold", &self.ratio);
-        crate::serial::fields("BsaToolbox", ("taps", taps), limit, ("shift", shift), serializer)
-    }
-}
+super::filtered::serialize_filtered!(BsaToolbox, "threshold", ratio);

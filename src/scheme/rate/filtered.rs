@@ -66,3 +66,19 @@ macro_rules! with_shift {
     };
 }
 pub(super) use with_shift;
+
+/// Serializes a scheme as a struct of `taps`, what it has of its own by this name, and `shift`.
+#[cfg(feature = "serde")]
+macro_rules! serialize_filtered {
+    ($Scheme:ident, $name:literal, $field:ident) => {
+        impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for $Scheme<S, F> {
+            fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+                let Filtered { taps, shift } = &self.filtered;
+                let (name, own) = (stringify!($Scheme), ($name, &self.$field));
+                crate::serial::fields(name, ("taps", taps), own, ("shift", shift), serializer)
+            }
+        }
+    };
+}
+#[cfg(feature = "serde")]
+pub(super) use serialize_filtered;

@@ -102,12 +102,5 @@ impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
 
 rate_scheme!(ThresholdHough);
 
-/// A struct of `taps`, `threshold` and `shift`.
 #[cfg(feature = "serde")]
-impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for ThresholdHough<S, F> {
-    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let Filtered { taps, shift } = &self.filtered;
-        let limit = ("threshold", &self.threshold);
-        crate::serial::fields("ThresholdHough", ("taps", taps), limit, ("shift", shift), serializer)
-    }
-}
+super::filtered::serialize_filtered!(ThresholdHough, "threshold", threshold);

@@ -1,10 +1,10 @@
 //! Adaptive step forward: step forward whose step doubles while its spikes go on in one direction.
 
 use super::band::Band;
-use super::doublings;
+use super::doublings::{self, hold_with_history};
 use crate::error::{tri, unwrap, within};
 use crate::num::{HAS_VECTORS, Tally};
-use crate::scheme::codec::{Until, decode_copied, encode_each};
+use crate::scheme::codec::{Until, encode_each};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
@@ -265,10 +265,6 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         state.tally.rejected()
     }
 
-    fn decoder_state(&self) -> AdaptiveStepState<S> {
-        AdaptiveStepState { value: S::ZERO, pace: Pace::REST }
-    }
-
     /// Adds the step, and adapts it as the encoder did.
     #[inline]
     fn decode(&self, state: &mut AdaptiveStepState<S>, spike: Spike) -> S {
@@ -282,21 +278,5 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         state.value
     }
 
-    #[inline]
-    fn decode_slice(
-        &self,
-        state: &mut AdaptiveStepState<S>,
-        spikes: &[impl Copy + Into<Spike>],
-        values: &mut [S],
-    ) -> usize {
-        decode_copied(self, state, spikes, values)
-    }
-
-    fn held(&self, state: &AdaptiveStepState<S>) -> Option<S> {
-        Some(state.value)
-    }
-
-    fn resync(&self, state: &mut AdaptiveStepState<S>, value: S) {
-        *state = AdaptiveStepState { value, pace: Pace::REST };
-    }
+    hold_with_history!(AdaptiveStepState, pace: Pace::REST);
 }

@@ -25,3 +25,32 @@ pub(super) const fn check<S: Sample>(
     }
     Ok(())
 }
+
+/// The methods of an adaptive code's [`Scheme`](crate::Scheme) that do not step: its decoder holds a value, and a history
+/// in this field, which is this one at rest.
+macro_rules! hold_with_history {
+    ($State:ident, $field:ident: $rest:expr) => {
+        fn decoder_state(&self) -> $State<S> {
+            $State { value: S::ZERO, $field: $rest }
+        }
+
+        #[inline]
+        fn decode_slice(
+            &self,
+            state: &mut $State<S>,
+            spikes: &[impl Copy + Into<Spike>],
+            values: &mut [S],
+        ) -> usize {
+            crate::scheme::codec::decode_copied(self, state, spikes, values)
+        }
+
+        fn held(&self, state: &$State<S>) -> Option<S> {
+            Some(state.value)
+        }
+
+        fn resync(&self, state: &mut $State<S>, value: S) {
+            *state = $State { value, $field: $rest };
+        }
+    };
+}
+pub(super) use hold_with_history;

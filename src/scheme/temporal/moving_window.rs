@@ -182,17 +182,17 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         blocks: &[[S; N]],
         spikes: &mut [[impl Destination<Spike>; N]],
     ) -> usize {
-        let mut own = *self;
+        let mut local = *self;
         let mut taken = 0;
         for (block, spikes) in blocks.iter().zip(spikes) {
-            if own.next != 0
-                || own.encode_groups::<N>(margin, from_ref(block), from_mut(spikes)) == 0
+            if local.next != 0
+                || local.encode_groups::<N>(margin, from_ref(block), from_mut(spikes)) == 0
             {
                 break;
             }
             taken += N;
         }
-        *self = own;
+        *self = local;
         taken
     }
 

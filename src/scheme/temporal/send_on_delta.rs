@@ -4,13 +4,42 @@ use core::hint::black_box;
 
 use super::StepState;
 use super::band::Band;
-use crate::error::{step, tri, unwrap, within};
+use crate::error::{step, tri, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{
     Code, ConfigError, Destination, Fingerprint, NeuronSpike, Polarity, Recovery, Sample, Scheme,
     Spike, Start,
 };
+
+/// The methods that limit the spikes of a sample, in the field `most`, for a code of [`Steps`].
+macro_rules! with_most {
+    () => {
+        /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
+        ///
+        /// # Panics
+        /// Panics if the number is not within 1 to `K`.
+        #[must_use]
+        pub const fn with_most(self, most: u8) -> Self {
+            $crate::error::unwrap(self.try_with_most(most))
+        }
+
+        /// Allows at most this many spikes a sample; `K` by default.
+        ///
+        /// # Errors
+        /// Returns an error if the number is not within 1 to `K`.
+        pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
+            $crate::error::tri!($crate::error::within(
+                "most spikes a sample",
+                most as f64,
+                1.0,
+                K as f32
+            ));
+            Ok(Self { most: most as i8, ..self })
+        }
+    };
+}
+pub(in crate::scheme) use with_most;
 
 /// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, with one spike for each.
 ///
@@ -75,23 +104,7 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
         Ok(Self { threshold, most: K as i8 })
     }
 
-    /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
-    ///
-    /// # Panics
-    /// Panics if the number is not within 1 to `K`.
-    #[must_use]
-    pub const fn with_most(self, most: u8) -> Self {
-        unwrap(self.try_with_most(most))
-    }
-
-    /// Allows at most this many spikes a sample; `K` by default.
-    ///
-    /// # Errors
-    /// Returns an error if the number is not within 1 to `K`.
-    pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
-        tri!(within("most spikes a sample", most as f64, 1.0, K as f32));
-        Ok(Self { most: most as i8, ..self })
-    }
+    with_most!();
 
     /// The threshold, in the samples' unit.
     pub const fn threshold(&self) -> S {

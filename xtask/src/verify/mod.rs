@@ -5,8 +5,8 @@ mod passed;
 
 use crate::checks::{
     everyday, fifo, firmware, fuzz, interface, link, logging, long, network, network_flies, nucleo,
-    package, peers, rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, tuned,
-    video,
+    package, peers, rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, templates,
+    tuned, video,
 };
 use crate::common::{cpu, usage};
 use crate::figures::{bench, demo, faults, flash};
@@ -190,6 +190,11 @@ const LONG: &[Step] = &[
     )
     .apart(BOARDS),
     step("flash", "the flash of one codec as linked, with two bounds", flash::verify),
+    step(
+        "templates",
+        "firmware from flight.toml with each HAL: built, and flown in its part's emulator",
+        templates::templates,
+    ),
     step(
         "nucleo",
         "the whole program on the page of boards, compiled and linked with its HAL",

@@ -5,6 +5,7 @@ use core::hint::black_box;
 use crate::error::{offset, step, tri, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
 use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::temporal::with_most;
 use crate::temporal::Steps;
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
 
@@ -102,23 +103,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         Ok(Self { reference, ..self })
     }
 
-    /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
-    ///
-    /// # Panics
-    /// Panics if the number is not within 1 to `K`.
-    #[must_use]
-    pub const fn with_most(self, most: u8) -> Self {
-        unwrap(self.try_with_most(most))
-    }
-
-    /// Allows at most this many spikes a sample; `K` by default.
-    ///
-    /// # Errors
-    /// Returns an error if the number is not within 1 to `K`.
-    pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
-        tri!(within("most spikes a sample", most as f64, 1.0, K as f32));
-        Ok(Self { most: most as i8, ..self })
-    }
+    with_most!();
 
     /// The threshold, in the samples' unit times a sample.
     pub const fn threshold(&self) -> S {

@@ -4,6 +4,7 @@ mod bundle;
 mod compiler;
 mod cost;
 mod declared;
+mod flights;
 mod guides;
 mod package;
 mod sizes;
@@ -23,6 +24,7 @@ use std::{
 
 pub use bundle::{bundle, verify as verify_bundle};
 pub use cost::cost;
+pub use flights::write_flights;
 pub use guides::guides;
 pub use sizes::write as write_sizes;
 pub use tests::{cores, verify, watched};
