@@ -1,7 +1,7 @@
 //! `cargo xtask c-bundle`: the C library for people without Rust, in one archive that make, CMake, Arduino, PlatformIO,
 //! Zephyr and ESP-IDF take as it is.
 
-use super::{archive, include, room, work};
+use super::{archive, include, room};
 use crate::common::{paths, shell};
 use crate::programs::boards::{BOARDS, Board, RISC_V};
 use crate::setup;
@@ -33,12 +33,8 @@ pub fn bundle() -> Result<PathBuf> {
     setup::packages("what compiles C for RISC-V", &PACKAGES)?;
     let version = crate::programs::published::version()?;
     let name = format!("spikewire-c-{version}");
-    let top = paths::target().join("c-bundle");
-    let place = top.join(&name);
-    if top.exists() {
-        fs::remove_dir_all(&top)?;
-    }
-    fs::create_dir_all(&top)?;
+    let top = tempfile::tempdir()?;
+    let place = top.path().join(&name);
     copy(&room().join("bundle"), &place)?;
     copy(include()?, &place.join("src"))?;
     for (core, directory) in CORES {
@@ -64,10 +60,12 @@ pub fn bundle() -> Result<PathBuf> {
     shell::run(shell::command("sh").args(["-c", hashes]).current_dir(&place))?;
 
     // The same bytes for the same files: no time, no owner, and always in one order.
-    let packed = top.join(format!("{name}.tar.gz"));
+    let packed = paths::target().join(format!("c-bundle/{name}.tar.gz"));
+    fs::create_dir_all(paths::target().join("c-bundle"))?;
     let pack = format!(
         "LC_ALL=C tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=go=rX,u+rw \
-         -cf - {name} | gzip -9n > {name}.tar.gz"
+         -cf - {name} | gzip -9n > {}",
+        packed.display()
     );
     shell::run(shell::command("sh").args(["-c", &pack]).current_dir(&top))?;
     println!("{}", packed.display());
@@ -78,14 +76,10 @@ pub fn bundle() -> Result<PathBuf> {
 /// Rust has: make, a C compiler and QEMU. Also checks that each manifest names the crate's version.
 pub fn verify() -> Result<()> {
     let packed = bundle()?;
-    let place = work().join("bundle");
-    if place.exists() {
-        fs::remove_dir_all(&place)?;
-    }
-    fs::create_dir_all(&place)?;
-    shell::run(shell::command("tar").arg("-xzf").arg(&packed).arg("-C").arg(&place))?;
+    let elsewhere = tempfile::tempdir()?;
+    shell::run(shell::command("tar").arg("-xzf").arg(&packed).arg("-C").arg(elsewhere.path()))?;
     let name = packed.file_name().context("the archive has a name")?.to_string_lossy();
-    let place = place.join(name.trim_end_matches(".tar.gz"));
+    let place = elsewhere.path().join(name.trim_end_matches(".tar.gz"));
     shell::output(shell::command("sha256sum").args(["-c", "SHA256SUMS"]).current_dir(&place))?;
     ensure_versions(&place)?;
     for (core, _) in CORES {

@@ -83,15 +83,16 @@ fn read(files: &Path) -> Result<Vec<Flight>> {
 
 /// Makes the crate of these flights, its headers, and the list of them for C; returns its directory.
 fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
+    // `emit` makes a new directory only; cargo builds it where it built the last one.
+    let new = tempfile::tempdir()?;
+    let emitted = new.path().join(name);
     let made = work().join("emitted").join(name);
-    if made.exists() {
-        fs::remove_dir_all(&made)?;
-    }
-    fs::create_dir_all(work().join("emitted"))?;
+    fs::create_dir_all(&made)?;
     let mut emit = host::spikewire("emit c --flight")?;
     emit.args(flights.iter().map(|own| files.join(&own.name).with_extension("toml")));
-    emit.arg("-o").arg(&made).arg("--spikewire").arg(paths::root());
+    emit.arg("-o").arg(&emitted).arg("--spikewire").arg(paths::root());
     shell::run(&mut emit)?;
+    shell::run(shell::command("cp").arg("-r").arg(emitted.join(".")).arg(&made))?;
     // The versions that the library was compiled with.
     fs::copy(room().join("Cargo.lock"), made.join("Cargo.lock"))?;
     let include = work().join(name);
