@@ -9,6 +9,8 @@ pub mod bench;
 pub mod brief;
 pub mod coding;
 pub mod emit;
+#[cfg(all(feature = "datasets", not(target_family = "wasm")))]
+pub mod dataset;
 pub mod encode;
 mod error;
 pub mod events;

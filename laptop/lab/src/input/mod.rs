@@ -52,7 +52,7 @@ impl Deref for InputOptions {
 }
 
 /// The channel of a recording, and how to read it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
@@ -103,7 +103,7 @@ impl Default for ChannelOptions {
 }
 
 /// The delimiter of a table's columns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Delimiter(pub u8);
 
 impl FromStr for Delimiter {

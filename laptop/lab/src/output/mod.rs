@@ -6,6 +6,8 @@ mod kinds;
 
 #[cfg(not(target_family = "wasm"))]
 pub use beside::abandon;
+#[cfg(all(feature = "datasets", not(target_family = "wasm")))]
+pub(crate) use beside::UNFINISHED_NAME;
 pub use kinds::OutputKind;
 
 use crate::Result;
