@@ -4,10 +4,10 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use std::io::{self, Cursor, ErrorKind, Read};
 
 /// First bytes of a file compressed by Zstandard.
-pub const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+pub(crate) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// The content of all frames of a file: packers that run on several cores write one frame for each piece.
-pub struct Frames<R> {
+pub(crate) struct Frames<R> {
     input: R,
     decoder: FrameDecoder,
     is_within: bool,
@@ -15,7 +15,7 @@ pub struct Frames<R> {
 
 impl<R: Read> Frames<R> {
     /// Decompresses an input.
-    pub fn new(input: R) -> Self {
+    pub(crate) fn new(input: R) -> Self {
         Self { input, decoder: FrameDecoder::new(), is_within: false }
     }
 

@@ -157,8 +157,7 @@ impl Blackbox {
         if frame.is_ok()
             && let Some(damaged) = self.damaged.take()
         {
-            let what = format!("{} bytes are no frames", place - damaged);
-            self.faults.skip(damaged, what)?;
+            self.faults.lose(damaged, format!("{} bytes are no frames", place - damaged));
         }
         match frame {
             Ok(Frame::Message { topic, time, numbers }) => {
@@ -359,7 +358,7 @@ impl Log for Blackbox {
             if self.window.left().is_empty() {
                 if let Some(damaged) = self.damaged.take() {
                     let what = format!("{} bytes are no frames", self.window.place() - damaged);
-                    self.faults.skip(damaged, what)?;
+                    self.faults.lose(damaged, what);
                 }
                 if self.session.take().is_some() {
                     self.faults.note("the log has no end, as when power is cut".to_owned());

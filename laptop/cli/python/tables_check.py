@@ -54,7 +54,7 @@ def write(directory, recording):
     yield at("table.csv.bz2"), []
     at("table.csv.xz").write_bytes(lzma.compress(text[:9999].encode()) + lzma.compress(text[9999:].encode(), preset=9))
     yield at("table.csv.xz"), []
-    at("aligned.txt").write_text(table.to_string(index=False))
+    at("aligned.txt").write_text(table.to_string(index=False, float_format=lambda own: repr(float(own))))
     yield at("aligned.txt"), []
     table.to_csv(at("bare.csv"), index=False, header=False)
     yield at("bare.csv"), ["--columns", ",".join(places), *time]

@@ -63,6 +63,7 @@ pub fn run() -> ExitCode {
         Command::Tune(options) => commands::tune::run(&options),
         Command::Frames(options) => commands::frames::run(&options),
     });
+    inputs::delete_copy();
     match done {
         Ok(()) => ExitCode::SUCCESS,
         // Whoever reads has read enough.

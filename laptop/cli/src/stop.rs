@@ -1,6 +1,7 @@
 //! Handles Ctrl-C: a command that runs until it is stopped ends in order and keeps its output; any other is ended at
 //! once, and leaves no half-written file.
 
+use crate::inputs::delete_copy;
 use anyhow::{Context, Result};
 use lab::output::abandon;
 use spikewire::Tick;
@@ -23,6 +24,7 @@ pub(crate) fn handle() -> Result<()> {
     ctrlc::set_handler(|| {
         if IS_WANTED.swap(true, Ordering::Relaxed) || !IS_AWAITED.load(Ordering::Relaxed) {
             abandon();
+            delete_copy();
             process::exit(INTERRUPTED);
         }
     })?;

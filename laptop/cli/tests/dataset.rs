@@ -3,7 +3,9 @@
 mod common;
 
 use common::{flight, flight_logs, good, ran, refused};
-use flight_logs::made::{Kind, blackbox, dataflash, dataflash_text, tlog};
+use flight_logs::made::{
+    Kind, blackbox, dataflash, dataflash_sample, dataflash_text, frame, tlog,
+};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -125,7 +127,7 @@ fn killed(arguments: &str, dataset: &Path, done: usize) {
 
 #[test]
 fn a_run_that_is_killed_twice_is_continued_without_a_duplicate_or_a_hole() {
-    const ROWS: usize = 200_000;
+    const ROWS: usize = 60_000;
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
     let count = logs(&at("logs"), ROWS);
@@ -217,6 +219,12 @@ fn parts_give_the_bits_of_a_single_encode() {
         let (_, names) = CHANNELS.iter().find(|(own, _)| *own == kind).unwrap();
         let single = ran!("encode {SCHEME} --columns {names} {}", row["log"].as_str().unwrap());
         let restored = ran!("decode --spikes {}", part(row).display()).output;
+        // The samples are a table as well.
+        if kind == "table" {
+            let values = at("out").join(row["values"].as_str().unwrap());
+            let again = ran!("encode {SCHEME} --columns {names} {}", values.display());
+            assert_eq!(again.output, single.output, "{row}");
+        }
         assert_eq!(restored, single.output, "{row}");
         let decoded = ran!("decode {}", part(row).display()).output;
         assert_eq!(decoded, good("decode", &single.output).output, "{row}");
@@ -251,14 +259,14 @@ fn a_flight_codes_as_its_sender_does() {
 scheme = \"sod\"
 sample = \"i16\"
 period = 5000
-keyframe-every = 100
-threshold = 20
+keyframe_every = 100
 
 [[channel]]
 name = \"roll\"
 source = \"gyro_x\"
 unit = \"rad/s\"
 counts = 1000
+parameters = { threshold = 20 }
 ";
     fs::write(at("flight.toml"), text).unwrap();
     let (flight_file, table) = (at("flight.toml"), flight("hexarotor.csv"));
@@ -302,4 +310,126 @@ fn what_cannot_be_asked_is_refused() {
         refused(&asked, "", &[words]);
     }
     refused(&format!("decode --spikes {table}"), "", &["--spikes takes a Parquet file"]);
+}
+
+/// Returns the processor time of all programs that this process has run to their end, in seconds.
+fn spent() -> f64 {
+    /// Ticks of the kernel's clock in a second, on every machine that runs Linux.
+    const TICKS: f64 = 100.0;
+    let text = fs::read_to_string("/proc/self/stat").unwrap();
+    let (_, fields) = text.rsplit_once(')').unwrap();
+    let fields: Vec<&str> = fields.split_whitespace().collect();
+    fields[13..15].iter().map(|own| own.parse::<f64>().unwrap()).sum::<f64>() / TICKS
+}
+
+/// Runs the program, and returns the largest memory that it took, in MB. It is killed once it has written `until` rows.
+fn measured(arguments: &str, dataset: &Path, until: usize) -> f64 {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
+        .args(arguments.split_whitespace())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut most = 0.0_f64;
+    while child.try_wait().unwrap().is_none() {
+        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kilobytes = line.and_then(|own| own.trim().trim_end_matches(" kB").parse::<f64>().ok());
+        most = most.max(kilobytes.unwrap_or_default() / 1000.0);
+        if rows(dataset).len() >= until {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            return most;
+        }
+        sleep(Duration::from_millis(20));
+    }
+    most
+}
+
+/// Takes minutes: `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`, on Linux. The tables and
+/// the `ULog` are of real flights, cut at a thousand places and multiplied; the other formats hold waves.
+#[test]
+#[ignore = "a measurement"]
+fn a_thousand_logs_cost_little_more_than_each_alone() {
+    const LOGS: usize = 1000;
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    fs::create_dir(at("logs")).unwrap();
+    let table = fs::read_to_string(flight("hexarotor.csv")).unwrap();
+    let (header, flown) = table.split_once('\n').unwrap();
+    let flown: Vec<(i64, &str)> = flown
+        .lines()
+        .map(|line| {
+            let (time, values) = line.split_once(',').unwrap();
+            (time.parse().unwrap(), values)
+        })
+        .collect();
+    let end = flown.last().unwrap().0 + 5000;
+    let ulog = fs::read(&flight_logs()[0]).unwrap();
+    let end_of_dataflash = dataflash().len() - (0..100).map(|own| dataflash_sample(own).len()).sum::<usize>();
+    let end_of_head = blackbox().len()
+        - b"E\xffEnd of log\0".len()
+        - (0..200).map(|own| frame(own).len()).sum::<usize>();
+    for log in 0..LOGS {
+        // Between 3000 and 13000 samples, a different number for each log.
+        let samples = 3000 + (log * 7919 % 10_007) as u32;
+        let (ending, content) = match log % 7 {
+            0 => {
+                let rows = (0..samples as usize * 2).map(|row| {
+                    let (time, values) = flown[(row + log) % flown.len()];
+                    let turn = ((row + log) / flown.len()) as i64 * end;
+                    format!("{},{values}\n", time + turn)
+                });
+                ("csv", (format!("{header}\n") + &rows.collect::<String>()).into_bytes())
+            }
+            1 => ("ulg", ulog[..ulog.len() / 2 + log * 400].to_vec()),
+            2 => {
+                let all = (0..samples).flat_map(dataflash_sample);
+                ("bin", [&dataflash()[..end_of_dataflash], &all.collect::<Vec<_>>()].concat())
+            }
+            3 => {
+                let chunks = (0..samples / 500).flat_map(|chunk| {
+                    let own = (chunk * 500..(chunk + 1) * 500).flat_map(|own| Kind::Bag.record(own));
+                    Kind::Bag.chunk("lz4", &own.collect::<Vec<_>>())
+                });
+                ("bag", Kind::Bag.start().into_iter().chain(chunks).collect())
+            }
+            4 => ("mcap", Kind::Mcap.of(0..samples)),
+            5 => {
+                let frames = (0..samples * 3).flat_map(frame);
+                let end = b"E\xffEnd of log\0".iter().copied();
+                let head = blackbox()[..end_of_head].to_vec();
+                ("bbl", head.into_iter().chain(frames).chain(end).collect())
+            }
+            _ => {
+                let own = tlog();
+                ("tlog", own.repeat(samples as usize / 200))
+            }
+        };
+        fs::write(at("logs").join(format!("{log:04}.{ending}")), content).unwrap();
+    }
+    let out = at("out");
+    let asked = arguments(&at("logs"), &out) + " --accept-cut";
+    let start = spent();
+    let most = [300, 700, usize::MAX].map(|until| measured(&asked, &out, until));
+    let together = spent() - start;
+    let all = rows(&out);
+    let logs: BTreeSet<&str> = all.iter().map(|row| row["log"].as_str().unwrap()).collect();
+    assert_eq!((all.len(), logs.len()), (LOGS, LOGS));
+    assert!(all.iter().all(|row| row["refused"].is_null()));
+    let start = spent();
+    for row in &all {
+        let (_, names) = CHANNELS.iter().find(|(kind, _)| row["kind"] == *kind).unwrap();
+        let options = if row["kind"] == "table" { "" } else { "--accept-cut" };
+        let log = row["log"].as_str().unwrap();
+        ran!("encode {SCHEME} --columns {names} {options} {log} -o {}", at("single.csv").display());
+    }
+    let alone = spent() - start;
+    let samples: u64 = all.iter().map(|row| row["samples"].as_u64().unwrap()).sum();
+    println!(
+        "{samples} samples; together {together:.2} s of processor time, alone {alone:.2} s: {:.2}; {most:.1?} MB",
+        together / alone
+    );
+    assert!(together <= 1.2 * alone);
+    assert!(most.iter().all(|most| *most < 200.0));
 }

@@ -34,7 +34,7 @@ pub(crate) struct Dataset {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
     /// Files, directories and patterns such as 'logs/**/*.ulg'. In a directory, logs are found by their content, and
-    /// tables by the endings .csv, .tsv and .txt
+    /// tables by their endings, such as .csv and .parquet
     logs: Vec<PathBuf>,
     /// File with more of them, one on each line; `-` is standard input
     #[arg(long, value_name = "FILE")]

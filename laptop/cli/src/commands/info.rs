@@ -1,5 +1,6 @@
 //! `spikewire info`: lists the content of a log or a table.
 
+use crate::inputs::as_file;
 use crate::words::option;
 use anyhow::Result;
 use catalogue::run::Worded;
@@ -19,7 +20,8 @@ Example:
   spikewire info flight.ulg")]
 pub(crate) struct Info {
     /// Log or table: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an
-    /// MCAP file, Betaflight's blackbox or a CSV table, also compressed; `-` reads a table from standard input
+    /// MCAP file, Betaflight's blackbox, or a table in CSV, JSON lines, Parquet or `NumPy`'s arrays, also compressed; `-` is
+    /// standard input
     log: PathBuf,
     /// Report time steps that are longer than this many usual steps
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
@@ -36,6 +38,7 @@ pub(crate) struct Info {
 pub(crate) fn run(options: &Info) -> Result<()> {
     let Info { log, gap, accept_cut } = options;
     let (gap, accept_cut) = (*gap, *accept_cut);
+    let log = &as_file(log)?;
     let kind = if log == Path::new("-") { None } else { Kind::of(log)? };
     let mut output = Output::to(None)?;
     let Some(kind) = kind else {

@@ -1,6 +1,6 @@
 //! `spikewire tune`: finds the parameters of a scheme from flight logs.
 
-use crate::inputs::ChannelOptions;
+use crate::inputs::{ChannelOptions, as_file};
 use crate::options::{FREE, answer, augment, given, option_group, whole};
 use crate::stop::Stop;
 use crate::words::{option, tell};
@@ -257,7 +257,7 @@ impl Tune {
     fn logs(&self) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
         for input in &self.inputs {
-            let recordings = Recording::read_all(&self.channel.of(input))?;
+            let recordings = Recording::read_all(&self.channel.of(&as_file(input)?))?;
             if let Some(first) = recordings.first() {
                 tell(&first.notes());
             }

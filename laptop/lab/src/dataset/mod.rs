@@ -137,8 +137,8 @@ pub struct Outcome {
 pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome> {
     request.check()?;
     let settings = request.settings();
-    let mut manifest = Manifest::open(&request.output, &settings)?;
     let (logs, passed_over) = paths::find(&request.logs, &request.output)?;
+    let mut manifest = Manifest::open(&request.output, &settings)?;
     let mut outcome = Outcome { logs: logs.len(), passed_over, ..Outcome::default() };
     let mut left = Vec::new();
     for log in &logs {
@@ -298,14 +298,11 @@ impl Request {
                 ..channel
             };
         }
-        match kind {
-            None => channel.accept_cut = false,
-            Some(kind) => {
-                (channel.delimiter, channel.rate) = (None, None);
-                if kind == Kind::Ulog {
-                    (channel.time, channel.time_unit) = (None, None);
-                }
-            }
+        if kind.is_some() {
+            (channel.delimiter, channel.rate) = (None, None);
+        }
+        if kind == Some(Kind::Ulog) {
+            (channel.time, channel.time_unit) = (None, None);
         }
         InputOptions { input: log.to_owned(), channel }
     }

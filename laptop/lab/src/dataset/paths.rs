@@ -9,9 +9,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Endings of tables, by which they are recognised in a directory.
-const TABLES: [&str; 3] = ["csv", "tsv", "txt"];
+const TABLES: [&str; 8] =
+    ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
 /// Endings of compressed files.
-const PACKED: [&str; 3] = ["gz", "zst", "zstd"];
+const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
 /// Returns the logs by their full paths, each once and in order, and the number of other files in directories. Files
 /// that are given by name are always taken.
@@ -19,7 +20,9 @@ const PACKED: [&str; 3] = ["gz", "zst", "zstd"];
 /// # Errors
 /// Returns an error if a file is missing, or if a directory cannot be read.
 pub(super) fn find(given: &[PathBuf], output: &Path) -> Result<(Vec<PathBuf>, usize)> {
-    let mut found = Found { logs: BTreeSet::new(), passed_over: 0, output: full(output)? };
+    // It may not be there yet.
+    let output = output.canonicalize().unwrap_or_default();
+    let mut found = Found { logs: BTreeSet::new(), passed_over: 0, output };
     for path in given {
         if path.exists() {
             found.take(path)?;

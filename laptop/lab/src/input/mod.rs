@@ -2,11 +2,15 @@
 
 mod clock;
 mod csv;
+mod cut;
 mod header;
 mod kinds;
 pub mod messages;
 mod names;
 mod rollover;
+#[cfg(not(target_family = "wasm"))]
+mod rows;
+mod spaces;
 mod text;
 mod time;
 mod times;
@@ -36,8 +40,9 @@ pub const CHUNK: usize = 8192;
 /// A recording, and how to read it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// CSV table with a header, or a log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS
-    /// 1 or 2, MCAP, Betaflight's blackbox; also compressed. `-` reads a CSV table from standard input.
+    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`,
+    /// telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed. `-` reads a table from
+    /// standard input.
     pub input: PathBuf,
     /// The channel to read.
     pub channel: ChannelOptions,
@@ -79,7 +84,7 @@ pub struct ChannelOptions {
     /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise they are
     /// an error.
     pub skip_non_finite: bool,
-    /// Whether a log that is cut short or damaged is read as far as it is whole.
+    /// Whether a log that is cut short or damaged is read as far as it is whole, and a table up to its last whole line.
     pub accept_cut: bool,
 }
 
@@ -245,15 +250,20 @@ impl InputOptions {
             ("topic", self.topic.is_some()),
             ("field", !self.field.is_empty()),
             ("fields", !self.fields.is_empty()),
-            ("accept_cut", self.accept_cut),
         ];
+        let name = self.name();
         if self.is_stdin() {
             self.refuse(&of_logs, "a CSV table")?;
-            return csv::Table::open(io::stdin(), "standard input", self);
+            return csv::Table::open(io::stdin(), &name, self);
         }
-        let name = self.input.display().to_string();
         let file = File::open(&self.input).map_err(|error| Error::open(&name, error))?;
         self.refuse(&of_logs, "a CSV table")?;
+        #[cfg(not(target_family = "wasm"))]
+        if self.input.is_file()
+            && let Some(rows) = rows::of_file(&self.input, &name)?
+        {
+            return csv::Table::of_rows(rows, &name, self);
+        }
         csv::Table::open(file, &name, self)
     }
 
