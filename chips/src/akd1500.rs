@@ -5,16 +5,16 @@ use embedded_hal::spi::{Operation, SpiDevice};
 use super::ChipError;
 use super::error::{at_most, in_range};
 
-/// AKD1500 over SPI: reads and writes the chip's memory. An inference also needs a program from the vendor's compiler, which
-/// is loaded by writing it to memory.
+/// AKD1500 over SPI: reads and writes the chip's memory. An inference also needs a program from the vendor's compiler,
+/// which is loaded by writing it to memory.
 ///
 /// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
-/// - **Blocks:** 1, 4, 8, 16 or 32 words each; a longer run takes several.
-/// - **Addresses:** multiples of 4 from `0xFC00_0000` to `0xFCFF_FFFC`, as in the vendor's driver. The bus carries the low
-///   26 bits, and the chip adds the rest.
-/// - **Faults:** chip select begins every block anew, so that a lost or doubled clock spoils one block only. There is no
-///   checksum, so [`program`](Self::program) reads everything back. A disturbed header may write a block to another
-///   address: after [`ReadBack`](ChipError::ReadBack) write all memory again that must be right. If the intended address
+/// - **Blocks:** a transfer carries 1, 4, 8, 16 or 32 words of 32 bits; the driver splits longer runs.
+/// - **Addresses:** multiples of 4 from `0xFC00_0000` to `0xFCFF_FFFC`, as in the vendor's driver. The bus carries the
+///   low 26 bits, and the chip adds the rest.
+/// - **Faults:** chip select begins every block anew, so that a lost or doubled clock pulse spoils one block only.
+///   There is no checksum, so [`program`](Self::program) reads everything back. A disturbed header may write a block to
+///   another address: after [`ReadBack`](ChipError::ReadBack) rewrite all memory that matters. If the intended address
 ///   already held the same words, the fault goes unnoticed.
 ///
 /// Checked against the vendor's sources, and against a model of the transport made from them; never against a chip.
@@ -42,24 +42,26 @@ pub struct Akd1500<D> {
 
 const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
-/// Sizes of a block in words, each with its code; longest first.
+/// Block sizes in 32-bit words, longest first, each with its code in the header.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
-/// First address; the chip adds its high 6 bits to the address on the bus.
+/// First address of the chip's memory. The bus carries only the low 26 bits of an address; the chip adds the high 6
+/// bits, which are those of this one.
 const BASE: u32 = 0xFC00_0000;
-/// End of the addresses, exclusive.
+/// First address beyond the chip's memory.
 const END: u32 = 0xFD00_0000;
 const MAX_BLOCK_BYTES: usize = 128;
 
 impl<D: SpiDevice> Akd1500<D> {
-    /// Makes a driver on an SPI device.
+    /// Makes a driver for the chip on this SPI device.
     pub const fn new(device: D) -> Self {
         Self { device }
     }
 
-    /// Writes words from `address` on.
+    /// Writes consecutive 32-bit words, the first to `address`.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, after which some blocks may be written; or if the address is out of range.
+    /// Returns an error if `address` or the end of the words is out of range. Also returns an error if the bus failed;
+    /// some blocks may then have been written.
     pub fn write(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         for (address, code, block) in blocks(address, words) {
@@ -77,10 +79,10 @@ impl<D: SpiDevice> Akd1500<D> {
         Ok(())
     }
 
-    /// Reads words from `address` on.
+    /// Reads consecutive 32-bit words, the first from `address`.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, or if the address is out of range.
+    /// Returns an error if the bus failed, or if `address` or the end of the words is out of range.
     pub fn read(&mut self, address: u32, words: &mut [u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         let mut address = address;
@@ -101,10 +103,11 @@ impl<D: SpiDevice> Akd1500<D> {
         Ok(())
     }
 
-    /// Writes words and reads them back.
+    /// Writes consecutive 32-bit words, the first to `address`, and reads them back.
     ///
     /// # Errors
-    /// Returns the errors of [`write`](Self::write), or the first word that reads back differently.
+    /// Returns the errors of [`write`](Self::write), and [`ReadBack`](ChipError::ReadBack) for the first word that
+    /// reads back differently.
     pub fn program(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         self.write(address, words)?;
         for (address, _, block) in blocks(address, words) {
@@ -121,7 +124,7 @@ impl<D: SpiDevice> Akd1500<D> {
         Ok(())
     }
 
-    /// Returns the SPI device.
+    /// Consumes the driver and returns its SPI device.
     pub fn release(self) -> D {
         self.device
     }
@@ -135,13 +138,13 @@ fn check<E>(address: u32, words: usize) -> Result<(), ChipError<E>> {
     at_most("length in bytes", bytes, END.saturating_sub(address))
 }
 
-/// Returns the header of a block: the command, and the word address in 24 bits.
+/// Returns the header of a block: the command, and bits 2 to 25 of the address.
 fn header(command: u8, address: u32) -> [u8; 4] {
     let [_, high, middle, low] = (address >> 2).to_be_bytes();
     [command, high, middle, low]
 }
 
-/// Returns the size and the code of the longest block of at most this many words.
+/// Returns the size and the header code of the longest block that `words` words fill; `None` if there are no words.
 fn block_of(words: usize) -> Option<(usize, u8)> {
     BLOCKS.into_iter().find(|&(count, _)| count <= words)
 }
@@ -157,7 +160,7 @@ fn blocks(address: u32, words: &[u32]) -> impl Iterator<Item = (u32, u8, &[u32])
     })
 }
 
-/// An event of a convolutional layer.
+/// An activation of a convolutional layer, as an event of two 32-bit words.
 ///
 /// ```
 /// use spikewire_chips::{ChipError, ConvolutionEvent};
@@ -182,10 +185,10 @@ pub struct ConvolutionEvent {
 }
 
 impl ConvolutionEvent {
-    /// Returns the two words of the event.
+    /// Encodes the event as two words.
     ///
     /// # Errors
-    /// Returns an error if a value has too many bits.
+    /// Returns an error if a field exceeds the range that its documentation gives.
     pub fn words<E>(self) -> Result<[u32; 2], ChipError<E>> {
         let [x, y, feature] = [self.x, self.y, self.feature].map(u32::from);
         at_most("x", x, 0xFFF)?;
@@ -205,7 +208,7 @@ impl ConvolutionEvent {
     }
 }
 
-/// An event of a dense layer.
+/// An activation of a dense (fully connected) layer, as an event of two 32-bit words.
 ///
 /// ```
 /// use spikewire_chips::{ChipError, DenseEvent};
@@ -230,17 +233,17 @@ impl DenseEvent {
     const MAX_ACTIVATION: u32 = (1 << 26) - 1;
     const DENSE: u32 = 1 << 31;
 
-    /// Returns the two words of the event.
+    /// Encodes the event as two words.
     ///
     /// # Errors
-    /// Returns an error if a value has too many bits.
+    /// Returns an error if a field exceeds the range that its documentation gives.
     pub fn words<E>(self) -> Result<[u32; 2], ChipError<E>> {
         at_most("feature", self.feature, Self::MAX_FEATURE)?;
         at_most("activation", self.activation, Self::MAX_ACTIVATION)?;
         Ok([self.feature, Self::DENSE | self.activation])
     }
 
-    /// Decodes an event from two words; `None` if they are not those of a dense layer.
+    /// Decodes an event from two words. Returns `None` if the words do not encode an event of a dense layer.
     pub fn from_words([first, second]: [u32; 2]) -> Option<Self> {
         (second & Self::DENSE != 0).then_some(Self {
             feature: first & Self::MAX_FEATURE,

@@ -6,43 +6,45 @@ use core::fmt;
 use super::Phase;
 use super::family::AerError;
 
-/// The reason that a call on a chip failed. `B` is the error type of its bus, `P` that of its port.
+/// The reason that a call on a chip failed. `B` is the error type of the chip's bus, `P` that of its port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum ChipError<B, P = Infallible> {
-    /// The bus failed.
+    /// The SPI bus or the register access failed, with this error.
     Bus(B),
-    /// The port failed.
+    /// The port, which drives the chip's other pins, failed with this error.
     Port(P),
-    /// The chip did not answer in this phase of a handshake; the phase shows whether it has taken the word.
+    /// The chip did not answer in this phase of a handshake. The phase shows whether the chip has taken the word.
     Handshake(Phase),
-    /// The chip did not finish its time step.
+    /// The chip did not finish its time step while the driver waited.
     Unfinished,
-    /// The chip may be out of step with the bus: reset it first.
+    /// Chip and bus may be out of sync: reset the chip first.
     NotReset,
-    /// The chip runs: its memories can be accessed only while its activity is gated.
+    /// The chip runs, but the call needs a gated chip: memories can be accessed only while the chip's activity is
+    /// gated.
     NotGated,
-    /// The chip's activity is gated, so it takes no events.
+    /// The chip's activity is gated, so the chip takes no events.
     Gated,
-    /// The chip did not answer after its gate was opened: reset it first.
+    /// The chip did not answer after its gate was opened: reset the chip first.
     NotStarted,
-    /// The start could not be verified, as no neuron can take a time step without changing: each is at its threshold or
-    /// at the end of its range, or learns. The chip is still gated, and nothing was changed.
+    /// The driver could not verify that the chip runs, because no neuron can take a time step without changing: each
+    /// neuron is at its threshold or at the end of its range, or learns. The chip is still gated, and nothing was
+    /// changed.
     NoProbe,
-    /// The chip's outputs do not end, so that it cannot be gated; see [`open_loop`](super::Running::open_loop).
+    /// The chip keeps sending outputs, so that it cannot be gated; see [`open_loop`](super::Running::open_loop).
     Busy,
-    /// Weights from one input or neuron have both signs, which this chip cannot hold.
+    /// The weights from one input or neuron have both signs, which this chip cannot store.
     MixedSigns {
-        /// The presynaptic neuron, or the input's row.
+        /// Row of these weights: the number of the presynaptic neuron, or the row of the input.
         pre: u8,
     },
     /// A value is out of its range.
     OutOfRange {
         /// The name of the value.
         what: &'static str,
-        /// The value that was given.
+        /// The value that the caller gave.
         value: i64,
         /// Smallest value allowed.
         min: i64,
@@ -51,10 +53,10 @@ pub enum ChipError<B, P = Infallible> {
     },
     /// The weight of a virtual event is 0, which the chip would take for a full spike.
     ZeroWeight,
-    /// Memory reads back differently from what was written: write it again. For a chip with a reset all memory is in
-    /// doubt: reset it, and write all of it again.
+    /// Memory reads back a different value than was written. On a chip without a reset line, write the value again. On
+    /// a chip with one all memory is in doubt: reset the chip, and write all of its memory again.
     ReadBack {
-        /// Address of the difference.
+        /// Address at which the values differ.
         address: u32,
         /// The value written.
         written: u32,

@@ -1,9 +1,9 @@
-//! ODIN: 256 neurons and 64k synapses that can learn; 17-bit words.
+//! ODIN: 256 neurons, and 65 536 synapses that can learn. Its input words have 17 bits.
 
 use super::error::in_range;
 use super::{ChipError, Input, Network, OdinChip, OutputSource};
 
-/// ODIN; see [`OdinChip`].
+/// The driver of ODIN; [`OdinChip`] documents it.
 ///
 /// Source: RTL and documentation, ChFrenkel/ODIN.
 ///
@@ -20,20 +20,21 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN, in 128 bits. The chip's Izhikevich neurons are not supported.
+/// A leaky integrate-and-fire neuron of ODIN, which takes 128 bits of memory. The driver does not support the chip's
+/// Izhikevich neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinNeuron {
-    /// Bits 9-16: potential at which the neuron fires and returns to 0, 1 to 255.
+    /// Potential at which the neuron fires and returns to 0, 1 to 255. Bits 9 to 16.
     pub threshold: u8,
-    /// Bits 1-7, and bit 8 unless 0: amount by which the potential falls in a time step, 0 to 127.
+    /// Amount by which a time step lowers the potential, 0 to 127. Bits 1 to 7; bit 8 is 1 unless the amount is 0.
     pub leak: u8,
-    /// Bits 70-77: the potential, which saturates at 0 and 255.
+    /// The potential, which saturates at 0 and 255. Bits 70 to 77.
     pub potential: u8,
-    /// Bits 17-39: how the synapses onto the neuron learn; `None` if they do not.
+    /// How the synapses onto the neuron learn; `None` if they do not learn. Bits 17 to 39.
     pub learning: Option<OdinLearning>,
-    /// Bit 127: whether the neuron is disabled and never fires. Its potential still changes.
+    /// Whether the neuron is disabled, so that it never fires. Its potential still changes. Bit 127.
     pub is_disabled: bool,
 }
 
@@ -41,63 +42,66 @@ impl OdinNeuron {
     /// A neuron with potential 0 and the highest threshold, without leak and learning.
     pub const REST: Self =
         Self { threshold: 255, leak: 0, potential: 0, learning: None, is_disabled: false };
-    /// A neuron that is not in use.
+    /// A neuron that is not in use and never fires.
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
-/// How the synapses onto a neuron learn (SDSP). They grow while its potential is high and its calcium lies between the
-/// outer thresholds; they shrink while its potential is low and its calcium lies between the lower two.
+/// How the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A presynaptic spike strengthens a
+/// synapse if the neuron's potential is high and its calcium lies between the outer two thresholds; it weakens the
+/// synapse if the potential is low and the calcium lies between the lower two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinLearning {
-    /// Bits 18-25: potential from which synapses grow.
+    /// Potential at or above which synapses grow; below it they shrink. Bits 18 to 25.
     pub potential: u8,
-    /// Bits 26-34, 3 each: the thresholds of calcium, 0 to 7.
+    /// The three thresholds of the calcium, 0 to 7 each. Bits 26 to 34, 3 bits each.
     pub calcium: [u8; 3],
-    /// Bits 35-39: number of time steps after which calcium falls by 1, 1 to 31; 0 means never.
+    /// Number of time steps after which the calcium falls by 1, 1 to 31; 0 if it never falls. Bits 35 to 39.
     pub calcium_leak: u8,
 }
 
-/// A synapse of ODIN. Its sign is that of the presynaptic neuron.
+/// A synapse of ODIN. Its sign is not stored here: it is that of the presynaptic neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinSynapse {
     /// Weight, 0 to 7.
     pub weight: u8,
-    /// Mapping bit. A synapse without it neither acts nor learns, unless registers
-    /// [24](OdinRegisters::propagates_unmapped) and [23](OdinRegisters::updates_unmapped) say otherwise.
+    /// Mapping bit. A synapse without this bit acts only if register [24](OdinRegisters::propagates_unmapped) is set,
+    /// and learns only if register [23](OdinRegisters::updates_unmapped) is set.
     pub is_mapped: bool,
 }
 
-/// ODIN's configuration registers. They cannot be read back and have no value after reset.
+/// ODIN's configuration registers. They cannot be read back, and a reset leaves them undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(clippy::struct_excessive_bools, reason = "each is a register")]
 pub struct OdinRegisters {
-    /// Register 1: whether neurons' spikes go to the output bus only, and not to other neurons.
+    /// Register 1: whether the loop is open, that is, whether the spikes of neurons go only to the output bus and not
+    /// to other neurons.
     pub is_open_loop: bool,
     /// Registers 2 to 17: bit `n % 16` of word `n / 16` is 1 if neuron `n` inhibits.
     pub inhibitory: [u16; 16],
-    /// Register 18: interval within a burst in clocks, 20 bits; 0 disables bursts.
+    /// Register 18: interval between the spikes of a burst, in clock cycles, 20 bits; 0 disables bursts.
     pub burst_clocks: u32,
     /// Register 19: which spikes go to the output bus.
     pub output_source: OutputSource,
-    /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses, whose states go to the output
-    /// bus instead of spikes.
+    /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. The output bus then shows the
+    /// states of the neuron and the synapse instead of spikes.
     pub monitored: Option<(u8, u8)>,
     /// Register 23: whether synapses without the mapping bit learn.
     pub updates_unmapped: bool,
     /// Register 24: whether synapses without the mapping bit act.
     pub propagates_unmapped: bool,
-    /// Register 25: whether synapses learn from [`OdinInput::Synapse`] too.
+    /// Register 25: whether synapses also learn from [`OdinInput::Synapse`] events.
     pub learns_from_synapse: bool,
 }
 
 impl OdinRegisters {
-    /// Open loop, all neurons excitatory, without bursts, monitoring and unmapped synapses.
+    /// Registers for an open loop with excitatory neurons only, without bursts and monitoring, in which synapses
+    /// without the mapping bit neither act nor learn.
     pub const PLAIN: Self = Self {
         is_open_loop: true,
         inhibitory: [0; 16],
@@ -115,48 +119,48 @@ impl OdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OdinInput {
-    /// Neuron `pre` fired, for one synapse only. The synapse acts if it has the mapping bit, or with
-    /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped).
+    /// A spike of neuron `pre` that acts on one synapse only. The synapse acts if it has the mapping bit, or if
+    /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is set.
     Synapse {
-        /// The neuron that fired.
+        /// The presynaptic neuron.
         pre: u8,
         /// The postsynaptic neuron.
         post: u8,
     },
-    /// Neuron `pre` fired: all its synapses act.
+    /// A spike of neuron `pre` that acts on all of its synapses.
     Spike {
         /// The neuron that fired.
         pre: u8,
     },
-    /// An event that acts on one neuron without a synapse.
+    /// A virtual event, which acts on one neuron without a synapse.
     Virtual {
-        /// The neuron.
+        /// The neuron on which the event acts.
         neuron: u8,
         /// Weight, 1 to 7.
         weight: u8,
-        /// Whether the event inhibits.
+        /// Whether the weight lowers the potential.
         is_inhibitory: bool,
     },
-    /// A time step for one neuron, queued with virtual events and spikes.
+    /// A time step for one neuron, which waits in the chip's queue with virtual events and spikes.
     VirtualLeak {
-        /// The neuron.
+        /// The neuron that takes the time step.
         neuron: u8,
     },
-    /// A time step for one neuron, without queueing.
+    /// A time step for one neuron, which does not wait in the chip's queue.
     Leak {
-        /// The neuron.
+        /// The neuron that takes the time step.
         neuron: u8,
     },
     /// A time step for all neurons.
     LeakAll,
-    /// Moves the synapses *from* one neuron a step towards their stable states, 0 and 7. (The chip's manual says the
-    /// synapses onto it; its RTL differs.) Synapses without the mapping bit stay as they are, unless
+    /// Moves each synapse *from* one neuron a step towards its nearer stable state, 0 or 7. (The chip's manual says the
+    /// synapses onto the neuron; its RTL differs.) Synapses without the mapping bit do not move, unless
     /// [`updates_unmapped`](OdinRegisters::updates_unmapped) is set.
     Bistability {
-        /// The neuron.
+        /// The presynaptic neuron.
         neuron: u8,
     },
-    /// Moves all synapses a step towards their stable states.
+    /// Moves all synapses a step towards their nearer stable states, 0 or 7.
     BistabilityAll,
 }
 
@@ -165,8 +169,8 @@ impl Input for OdinInput {
     const PROBED: u8 = 255;
     const NEURON_BYTES: u8 = 16;
     const PARAMETERS: [u8; 16] = 0xFFFF_FFFF_FFC0_003F_FFFF_FFFF_FFFF_FFFF_u128.to_le_bytes();
-    /// `BistabilityAll` takes 64 clocks for each neuron, and waits for up to 33 spikes of 512 clocks each. The others
-    /// take 1600 at most: `LeakAll` takes 512, after at most two spikes.
+    /// `BistabilityAll` takes 64 clock cycles for each neuron, and waits for up to 33 spikes of 512 clock cycles each.
+    /// All other words take 1600 at most: `LeakAll` takes 512, after at most two spikes.
     const MAX_CLOCKS: u32 = 34_000;
     const QUEUE: u32 = 32;
     const OPEN_LOOP: u16 = 1;
@@ -250,11 +254,11 @@ impl Input for OdinInput {
 
     fn before_step(neuron: &OdinNeuron) -> Option<OdinNeuron> {
         let &OdinNeuron { threshold, leak, potential, learning, is_disabled } = neuron;
-        // A time step changes calcium, too.
+        // A time step also changes the calcium, which only neurons that learn have.
         if learning.is_some() {
             return None;
         }
-        // The potential of a neuron that never fires is of no account.
+        // A disabled neuron never fires, so its potential has no effect and may change.
         if is_disabled || potential == 0 && threshold > 0 {
             return Some(*neuron);
         }
@@ -262,7 +266,7 @@ impl Input for OdinInput {
         Some(OdinNeuron { potential: before, ..*neuron })
     }
 
-    /// Encodes a weight; the mapping bit is set unless the weight is 0.
+    /// Encodes a signed weight without its sign. Sets the mapping bit unless the weight is 0.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
         in_range("weight", weight.into(), -7, 7)?;
         Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })

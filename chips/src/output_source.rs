@@ -1,15 +1,15 @@
-//! The choice of spikes on tinyODIN's and ODIN's output bus.
+//! The setting that selects which spikes tinyODIN and ODIN send to their output bus.
 
-/// Which spikes go to the output bus.
+/// Which spikes the chip sends to its output bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OutputSource {
-    /// Spikes of neurons, when they fire.
+    /// The spikes of neurons, at the moment when they fire.
     #[default]
     Neurons,
-    /// Spikes of the chip's queue, when they have been processed. In closed loop they come from neurons and inputs, in
-    /// open loop from inputs alone. ODIN puts out only those that its monitored neuron gets.
+    /// The spikes from the chip's queue, when the chip has processed them. In closed loop they are spikes of neurons
+    /// and of inputs, in open loop only of inputs. ODIN sends only the spikes that act on its monitored neuron.
     Queue,
 }
 

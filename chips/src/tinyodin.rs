@@ -1,9 +1,9 @@
-//! tinyODIN: 256 neurons and 64k synapses of 4 bits; 10-bit words.
+//! tinyODIN: 256 neurons, and 65 536 synapses of 4 bits. Its input words have 10 bits.
 
 use super::error::in_range;
 use super::{ChipError, Input, Network, OdinChip, OutputSource};
 
-/// tinyODIN; see [`OdinChip`].
+/// The driver of tinyODIN; [`OdinChip`] documents it.
 ///
 /// Source: RTL and documentation, ChFrenkel/tinyODIN.
 ///
@@ -22,39 +22,41 @@ pub type TinyOdin<D, P> = OdinChip<TinyOdinInput, D, P>;
 pub type TinyOdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<TinyOdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of tinyODIN, in 32 bits: 0-11 potential, 12-23 threshold, 24-30 leak, 31 disable.
+/// A leaky integrate-and-fire neuron of tinyODIN. In the chip it takes 32 bits: potential in bits 0 to 11, threshold in
+/// 12 to 23, leak in 24 to 30, and the disabling bit 31.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinNeuron {
-    /// Potential at which the neuron fires and returns to 0, 1 to 2047. (Memory that was never written may hold 0; such
-    /// a neuron fires at every event.)
+    /// Potential at which the neuron fires and returns to 0, 1 to 2047. (Memory that was never written may hold 0; a
+    /// neuron with threshold 0 fires at every event.)
     pub threshold: u16,
     /// Amount by which a time step moves the potential towards 0, 0 to 127.
     pub leak: u8,
     /// The potential, which saturates at -2048 and 2047.
     pub potential: i16,
-    /// Whether the neuron is disabled and never fires. Its potential still changes.
+    /// Whether the neuron is disabled, so that it never fires. Its potential still changes.
     pub is_disabled: bool,
 }
 
 impl TinyOdinNeuron {
     /// A neuron with potential 0 and the highest threshold, without leak.
     pub const REST: Self = Self { threshold: 2047, leak: 0, potential: 0, is_disabled: false };
-    /// A neuron that is not in use.
+    /// A neuron that is not in use and never fires.
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
-/// tinyODIN's configuration registers. They cannot be read back and have no value after reset.
+/// tinyODIN's configuration registers. They cannot be read back, and a reset leaves them undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinRegisters {
-    /// Register 1: whether neurons' spikes go to the output bus only, and not to other neurons.
+    /// Register 1: whether the loop is open, that is, whether the spikes of neurons go only to the output bus and not
+    /// to other neurons.
     pub is_open_loop: bool,
     /// Register 2: which spikes go to the output bus.
     pub output_source: OutputSource,
-    /// Register 3: the highest neuron in use. A spike takes 2 clocks for each neuron up to this one.
+    /// Register 3: the highest neuron in use. A spike takes 2 clock cycles for each neuron up to this one.
     pub last_neuron: u8,
 }
 
@@ -63,21 +65,21 @@ pub struct TinyOdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum TinyOdinInput {
-    /// Neuron `pre` fired: all its synapses act.
+    /// A spike of neuron `pre` that acts on all of its synapses.
     Spike {
-        /// The neuron, 0 to 255.
+        /// The neuron that fired, 0 to 255.
         pre: u8,
     },
-    /// An event that acts on one neuron without a synapse.
+    /// A virtual event, which acts on one neuron without a synapse.
     Virtual {
-        /// The neuron, 0 to 15.
+        /// The neuron on which the event acts, 0 to 15.
         neuron: u8,
         /// Weight, -8 to 7 except 0, which the chip would take for a full spike.
         weight: i8,
     },
     /// A time step for one neuron.
     Leak {
-        /// The neuron, 0 to 254; 255 would stand for all.
+        /// The neuron that takes the time step, 0 to 254. (The chip would take 255 for all neurons.)
         neuron: u8,
     },
     /// A time step for all neurons.
@@ -89,8 +91,8 @@ impl Input for TinyOdinInput {
     const PROBED: u8 = 254;
     const NEURON_BYTES: u8 = 4;
     const PARAMETERS: [u8; 16] = [0, 0xF0, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-    /// `LeakAll` takes 2 clocks for each neuron up to the highest in use, and waits for up to two spikes that take as
-    /// many.
+    /// `LeakAll` takes 2 clock cycles for each neuron up to the highest in use. Before that, it waits for up to two
+    /// spikes, which take as long each.
     const MAX_CLOCKS: u32 = 1_600;
     const QUEUE: u32 = 128;
     const OPEN_LOOP: u16 = 1;

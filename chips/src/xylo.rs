@@ -1,10 +1,11 @@
-//! `SynSense` Xylo: spike counts of 16 channels for each time step, in two registers.
+//! `SynSense` Xylo: in each time step the chip takes spike counts of 16 channels, packed into two registers.
 
 use super::ChipError;
 
-/// Access to the chip's registers. The user implements it, as the bytes on the chip's bus are not public.
+/// Access to the chip's registers. The driver's user implements it, because the protocol of the chip's bus is not
+/// public.
 pub trait Registers {
-    /// Error type of the bus.
+    /// Error type of the bus that accesses the registers.
     type Error;
 
     /// Writes a register.
@@ -20,7 +21,7 @@ pub trait Registers {
     fn read(&mut self, address: u16) -> Result<u32, Self::Error>;
 }
 
-/// Packs counts into two register values: channel `k` in nibble `k`, saturating at 15.
+/// Packs the counts of 16 channels into two register values, channel `k` into nibble `k`. Counts above 15 become 15.
 ///
 /// ```
 /// use spikewire_chips::pack_counts;
@@ -35,7 +36,7 @@ pub fn pack_counts(counts: [u8; 16]) -> [u32; 2] {
     [packed as u32, (packed >> 32) as u32]
 }
 
-/// One of the two banks of input registers.
+/// One of the two banks of input registers, which the chip reads in turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -46,7 +47,7 @@ pub enum InputBank {
     Second,
 }
 
-/// The registers of a member of the Xylo family.
+/// The register addresses and masks of a chip of the Xylo family.
 ///
 /// Checked only against the sources of `rockpool`: `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for
 /// A2. Both poll for the end of a time step as [`step`](Xylo::step) does.
@@ -58,7 +59,7 @@ pub struct XyloMap {
     pub input: u16,
     /// Register that triggers a time step; write-only.
     pub control: u16,
-    /// The only value that may be written to `control`; bit 0 is the reset.
+    /// The only value that may be written to [`control`](Self::control). (Bit 0 of the register resets the chip.)
     pub trigger: u32,
     /// Register that shows whether the time step is done.
     pub status: u16,
@@ -68,8 +69,8 @@ pub struct XyloMap {
     pub outputs: u16,
     /// Mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
-    /// Register that shows which input bank the next time step reads, and the mask of its bit, which is 1 for the
-    /// second. `None` if the public sources do not give the bit.
+    /// Address of the register that shows which input bank the next time step reads, and the mask of its bit, which is
+    /// 1 for the second bank. `None` if the public sources do not give them.
     pub next_bank: Option<(u16, u32)>,
 }
 
@@ -86,8 +87,8 @@ impl XyloMap {
         next_bank: Some((0x171, 1 << 16)),
     };
 
-    /// Xylo Audio A2: 8 outputs. The word that triggers a time step must come from the vendor: `rockpool` leaves it to
-    /// `samna`, which is not open.
+    /// Xylo Audio A2: 8 outputs. The vendor must supply `trigger`, the word that triggers a time step: the open
+    /// `rockpool` leaves it to `samna`, whose source is not public.
     pub const fn a2(trigger: u32) -> Self {
         Self {
             input: 0x11,
@@ -107,14 +108,15 @@ impl XyloMap {
 /// Count the events of a time step with [`Bins<16>`](spikewire::Bins), with a limit of 15 so that events beyond it are
 /// counted as saturated.
 ///
-/// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which.
-/// - **Order:** set the counts, then run the step. While a step is being run no counts are accepted, and
-///   [`step`](Self::step) waits for it without a second trigger.
-/// - **Counts stay** in the chip. A step without new counts uses those in the bank again, unless they are
-///   [cleared](Self::clear_input), as the vendor's programs do.
-/// - **Faults:** the chip confirms no write, and the public sources do not say which registers can be read back. Therefore
-///   the [`Registers`] that you supply must report every write that fails. A lost write leaves the old counts, and a lost
-///   trigger leaves the outputs of the step before.
+/// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which
+///   one, and writes there.
+/// - **Order:** set the counts, then run the step. While the chip runs a step the driver accepts no counts, and
+///   [`step`](Self::step) waits for the step without triggering a second one.
+/// - **Counts stay** in the chip. A step without new counts uses the old counts of its bank again, unless they are
+///   [cleared](Self::clear_input), as in the vendor's programs.
+/// - **Faults:** the chip confirms no write, and the public sources do not say which registers can be read back.
+///   Therefore the [`Registers`] that you supply must report every write that fails. A lost write leaves the old
+///   counts, and a lost trigger leaves the outputs of the step before.
 ///
 /// Checked against the vendor's sources alone, never against a chip.
 ///
@@ -128,7 +130,8 @@ pub struct Xylo<R> {
 }
 
 impl<R: Registers> Xylo<R> {
-    /// Makes a driver on these registers. [`step`](Self::step) reads the status up to `polls` times.
+    /// Makes a driver for the chip with the registers of `map`. [`step`](Self::step) reads the status up to `polls`
+    /// times.
     pub const fn new(registers: R, map: XyloMap, polls: u32) -> Self {
         Self { registers, map, polls, is_under_way: false }
     }
@@ -136,8 +139,8 @@ impl<R: Registers> Xylo<R> {
     /// Sets the counts of a time step in one bank.
     ///
     /// # Errors
-    /// Returns an error if the bus failed: then set them again. Returns [`Unfinished`](ChipError::Unfinished) if a step
-    /// is being run: then nothing was written.
+    /// Returns an error if the bus failed; then set the counts again. Returns [`Unfinished`](ChipError::Unfinished) if
+    /// the chip runs a step; nothing was written then.
     pub fn set_input(
         &mut self,
         bank: InputBank,
@@ -155,10 +158,10 @@ impl<R: Registers> Xylo<R> {
         self.registers.write(first.wrapping_add(1), high).map_err(ChipError::Bus)
     }
 
-    /// Asks the chip which bank the next time step reads; returns `None` if the map has no register for it.
+    /// Asks the chip which bank the next time step reads. Returns `None` if [`XyloMap::next_bank`] is `None`.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, and [`Unfinished`](ChipError::Unfinished) if a step is being run.
+    /// Returns an error if the bus failed, and [`Unfinished`](ChipError::Unfinished) if the chip runs a step.
     pub fn next_bank(&mut self) -> Result<Option<InputBank>, ChipError<R::Error>> {
         if self.is_under_way {
             return Err(ChipError::Unfinished);
@@ -168,8 +171,8 @@ impl<R: Registers> Xylo<R> {
         Ok(Some(if is_second { InputBank::Second } else { InputBank::First }))
     }
 
-    /// Sets the counts that the next time step reads: in the bank that it reads, or in both if the map has no register
-    /// for it.
+    /// Sets the counts that the next time step reads: in the bank that the step will read, or in both banks if
+    /// [`XyloMap::next_bank`] is `None`.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -193,9 +196,10 @@ impl<R: Registers> Xylo<R> {
     /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
     ///
     /// # Errors
-    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet; call this again, and it waits for
-    /// that step. Returns another error if the bus failed; call this again. If the bus failed after the trigger,
-    /// nothing is lost. If it failed at the trigger, the step may have begun, and the next call triggers again.
+    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet: call `step` again, which goes on
+    /// waiting. Returns [`Bus`](ChipError::Bus) if the bus failed: call `step` again. If the bus failed after the
+    /// trigger, nothing is lost. If the bus failed at the trigger, the step may have begun, and the next call triggers
+    /// a second one.
     pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
         let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
         if !self.is_under_way {
@@ -212,7 +216,7 @@ impl<R: Registers> Xylo<R> {
         Err(ChipError::Unfinished)
     }
 
-    /// Returns the registers.
+    /// Consumes the driver and returns the access to the registers.
     pub fn release(self) -> R {
         self.registers
     }

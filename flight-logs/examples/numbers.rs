@@ -1,4 +1,5 @@
-//! Prints every number of every message of a log, a line each: topic, time in µs, then `field=number`.
+//! Prints every number in every message of a log. Each line is a message: its topic, its time in µs, then
+//! `field=number` for each number.
 //!
 //! `cargo run --example numbers -- flight.bin`
 
@@ -17,7 +18,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut fields: Vec<Vec<(String, Field)>> = Vec::new();
     while let Some(entry) = log.next()? {
         for topic in &log.topics()[fields.len()..] {
-            let names = topic.definition.as_ref().map_or_else(|_| Vec::new(), |own| own.names().0);
+            let names = topic
+                .definition
+                .as_ref()
+                .map_or_else(|_| Vec::new(), |definition| definition.names().0);
             let all = names.iter().flat_map(|name| expanded(name));
             let found = all.filter_map(|name| {
                 let field = topic.definition.as_ref().ok()?.number(&name).ok()?;
@@ -41,13 +45,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the name of each number in an array `few[0..3]`, or the name itself.
+/// Expands the name of an array, `few[0..3]`, to the names of its items, `few[0]` to `few[2]`. Returns any other name
+/// alone.
 fn expanded(name: &str) -> Vec<String> {
     let array = || {
         let (stem, rest) = name.split_once("[0..")?;
         let (count, behind) = rest.split_once(']')?;
         let count: usize = count.parse().ok()?;
-        Some((0..count).map(|place| format!("{stem}[{place}]{behind}")).collect())
+        Some((0..count).map(|index| format!("{stem}[{index}]{behind}")).collect())
     };
     array().unwrap_or_else(|| vec![name.to_owned()])
 }

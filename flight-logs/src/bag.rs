@@ -1,4 +1,5 @@
-//! Reads ROS 1 bags, version 2.0: records of named fields and data, with messages in chunks that may be compressed.
+//! Reads ROS 1 bags, version 2.0. A bag is a sequence of records, each with a header of named fields and with data.
+//! Messages lie in chunk records, which may be compressed.
 //!
 //! The index is not used, so bags that were never closed or indexed can be read too.
 
@@ -12,12 +13,12 @@ use crate::Result;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The first bytes of a bag of any version.
+/// First bytes of a ROS 1 bag, whatever its version.
 pub(crate) const START: &[u8] = b"#ROSBAG V";
-/// First bytes of a bag of the version that can be read.
+/// First bytes of a ROS 1 bag of version 2.0, the only one supported.
 const VERSION: &[u8] = b"#ROSBAG V2.0\n";
 
-/// Kinds of records.
+/// Kinds of records: the values of the header field `op`.
 mod op {
     pub(crate) const MESSAGE: u8 = 2;
     pub(crate) const BAG: u8 = 3;
@@ -27,16 +28,16 @@ mod op {
     pub(crate) const CONNECTION: u8 = 7;
 }
 
-/// A bag that is read from its start to its end.
+/// Reader of a ROS 1 bag, from start to end.
 pub(crate) struct Bag {
     walk: Walk,
-    /// Index of each connection's topic.
+    /// Index in `walk.topics` of the topic of each connection, by the connection's number.
     connections: HashMap<u32, usize>,
     header: Vec<u8>,
     data: Vec<u8>,
 }
 
-/// The fields of a record's header.
+/// The named fields in a record's header, encoded one after the other.
 struct Fields<'a>(&'a [u8]);
 
 impl<'a> Fields<'a> {
@@ -68,7 +69,7 @@ impl<'a> Fields<'a> {
         Some(String::from_utf8_lossy(self.get(name)?).into_owned())
     }
 
-    /// Reads a field with seconds and nanoseconds, in ns.
+    /// Reads the field `name`, a time stored as seconds and nanoseconds; returns it in ns.
     fn time(&self, name: &str) -> Option<i64> {
         let mut field = self.get(name)?;
         let (seconds, nanoseconds) = (u32_from(&mut field)?, u32_from(&mut field)?);
@@ -107,14 +108,17 @@ impl Bag {
             return self.walk.faults.skip(at, "a connection without a number or a type");
         };
         if !self.connections.contains_key(&id) {
-            let place = topic.place_in(&mut self.walk.topics);
-            self.connections.insert(id, place);
+            let index = topic.index_in(&mut self.walk.topics);
+            self.connections.insert(id, index);
         }
         Ok(())
     }
 }
 
-/// Reads the header or the data of a record, after its length.
+/// Reads the header or the data of a record into `part`: a length of four bytes, then as many bytes.
+///
+/// # Errors
+/// Returns the reason if the file ends before, or cannot be read.
 fn part(bytes: &mut Bytes, part: &mut Vec<u8>) -> Result<(), String> {
     const CUT: &str = "the bag ends within the record";
     let mut take = |count| match bytes.take(count, part) {
@@ -126,16 +130,16 @@ fn part(bytes: &mut Bytes, part: &mut Vec<u8>) -> Result<(), String> {
     take(length.into()).map(drop)
 }
 
-/// Returns the number of a connection, and its topic.
+/// Parses a connection record; returns the connection's number and its topic, or `None` if a field is missing.
 fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
-    let own = Fields(data);
-    let (id, name, kind) = (fields.u32("conn")?, fields.text("topic")?, own.text("type")?);
-    let text = own.text("message_definition").unwrap_or_default();
+    let data_fields = Fields(data);
+    let (id, name, kind) = (fields.u32("conn")?, fields.text("topic")?, data_fields.text("type")?);
+    let text = data_fields.text("message_definition").unwrap_or_default();
     Some((id, Topic::new(name, kind, Dialect::Ros1, &text)))
 }
 
 impl Chunked for Bag {
-    /// The record's offset in the file; its content is in `header` and `data`.
+    /// Offset of the record in the file. Its content is in `header` and `data`.
     type Record = u64;
 
     fn walk(&self) -> &Walk {
@@ -193,7 +197,7 @@ impl Chunked for Bag {
         }
         self.walk.faults.end(at, what)?;
         self.walk.is_over = true;
-        // Of a chunk, what is there may hold messages.
+        // An incomplete chunk may still hold whole messages.
         let is_chunk = Fields(&self.header).op() == Some(op::CHUNK);
         Ok(is_chunk.then_some(at))
     }

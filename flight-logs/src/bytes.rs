@@ -1,4 +1,4 @@
-//! Reads the bytes of a log from start to end, and counts them.
+//! Reads a file from start to end, decompressed if necessary, and parses little-endian integers.
 
 use crate::files::File;
 use crate::packed::Packing;
@@ -7,22 +7,24 @@ use crate::{Error, ErrorKind, Result};
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::Path;
 
-/// The bytes of a file, decompressed if the whole file is compressed.
+/// Content of a file, decompressed if the whole file is compressed.
 pub(crate) struct Bytes {
     input: Box<dyn Read>,
     at: u64,
 }
 
 impl Bytes {
+    /// Opens a file, and recognises its compression by the first bytes.
+    ///
     /// # Errors
-    /// Returns an error if the file is missing or cannot be unpacked.
+    /// Returns an error if the file cannot be opened, or its start cannot be read.
     pub(crate) fn open(path: &Path) -> Result<Self> {
         let input =
             unpacked(open(path)?).map_err(|error| Error::of(path, ErrorKind::Read(error)))?;
         Ok(Self { input, at: 0 })
     }
 
-    /// Copies all bytes.
+    /// Writes the rest of the content to `output`; returns the number of bytes.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be decompressed or written.
@@ -30,13 +32,13 @@ impl Bytes {
         io::copy(&mut self.input, output)
     }
 
-    /// Returns the number of bytes read so far.
+    /// Returns the number of bytes of content read so far.
     pub(crate) fn at(&self) -> u64 {
         self.at
     }
 
-    /// Reads `count` bytes, or fewer at the end; returns whether the file had as many. A false length in the file takes
-    /// no memory, as memory grows only with the bytes that arrive.
+    /// Replaces `bytes` by the next `count` bytes of content, or by fewer at the end; returns whether there were as
+    /// many. Memory grows only with the bytes that arrive, so a wrong length in a damaged file takes none.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read or decompressed.
@@ -47,7 +49,7 @@ impl Bytes {
         Ok(taken as u64 == count)
     }
 
-    /// Skips `count` bytes; returns whether the file had as many.
+    /// Skips `count` bytes; returns whether there were as many.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read or decompressed.
@@ -58,7 +60,7 @@ impl Bytes {
     }
 }
 
-/// Opens a file.
+/// Opens a file without decompressing it.
 ///
 /// # Errors
 /// Returns an error if the file cannot be opened.
@@ -66,10 +68,10 @@ pub(crate) fn open(path: &Path) -> Result<File> {
     File::open(path).map_err(|error| Error::of(path, ErrorKind::Open(error)))
 }
 
-/// Returns whether the whole file is compressed.
+/// Returns whether the file as a whole is compressed, by gzip or Zstandard.
 ///
 /// # Errors
-/// Returns an error if the file cannot be read.
+/// Returns an error if the file cannot be opened or read.
 pub(crate) fn is_packed(path: &Path) -> Result<bool> {
     let mut start = Vec::new();
     let read = open(path)?.take(Packing::START as u64).read_to_end(&mut start);
@@ -77,7 +79,7 @@ pub(crate) fn is_packed(path: &Path) -> Result<bool> {
     Ok(Packing::of(&start).is_some())
 }
 
-/// Returns the content of a file, compressed or not.
+/// Returns a reader of the file's content, decompressed if it starts as gzip or Zstandard does.
 fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     const BUFFER: usize = 1 << 18;
     let mut head = Vec::new();
@@ -91,7 +93,8 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     })
 }
 
-/// Decompresses a part of a log; returns as much as can be decompressed, and the fault if that is not all.
+/// Decompresses `packed`, which should give `size` bytes; `how` is the name of the compression. Returns the bytes that
+/// could be decompressed, and a description of the fault if these are not all.
 pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
     let mut bytes = Vec::new();
     let mut limited =
@@ -117,28 +120,28 @@ pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<St
     (bytes, fault)
 }
 
-/// Takes a 2-byte number from the front.
+/// Removes a little-endian `u16` from the front of `bytes`; returns `None` if they are too short.
 pub(crate) fn u16_from(bytes: &mut &[u8]) -> Option<u16> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u16::from_le_bytes(*first))
 }
 
-/// Takes a 4-byte number from the front.
+/// Removes a little-endian `u32` from the front of `bytes`; returns `None` if they are too short.
 pub(crate) fn u32_from(bytes: &mut &[u8]) -> Option<u32> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u32::from_le_bytes(*first))
 }
 
-/// Takes an 8-byte number from the front.
+/// Removes a little-endian `u64` from the front of `bytes`; returns `None` if they are too short.
 pub(crate) fn u64_from(bytes: &mut &[u8]) -> Option<u64> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u64::from_le_bytes(*first))
 }
 
-/// Takes `count` bytes from the front.
+/// Removes `count` bytes from the front of `bytes`; returns `None` if they are too short.
 pub(crate) fn take<'a>(bytes: &mut &'a [u8], count: u64) -> Option<&'a [u8]> {
     let (first, rest) = bytes.split_at_checked(usize::try_from(count).ok()?)?;
     *bytes = rest;

@@ -1,4 +1,5 @@
-//! Reads files whose messages lie in chunks or between them.
+//! Reads logs that consist of records, some of which are chunks that contain further records: ROS 1 bags and MCAP
+//! files.
 
 use super::bytes::Bytes;
 use super::faults::Faults;
@@ -7,23 +8,23 @@ use super::{Entry, Log};
 use crate::{Error, ErrorKind, Result};
 use std::path::Path;
 
-/// The current chunk, decompressed.
+/// The current chunk, decompressed, and the position in it.
 #[derive(Default)]
 pub(crate) struct Chunk {
     bytes: Vec<u8>,
     taken: usize,
     /// Offset of the chunk in the file.
     at: u64,
-    /// Whether the chunk ends early, which has been counted as a fault already.
+    /// Whether the chunk is known to be incomplete. The fault has then been counted already.
     is_cut: bool,
 }
 
 impl Chunk {
-    /// Begins a chunk of `bytes`, and counts its fault. If the file ends within the chunk the fault is counted
-    /// elsewhere.
+    /// Makes `bytes` the current chunk, and counts `fault`, if there is one. With `is_last` the file ends within the
+    /// chunk, which the caller has counted already.
     ///
     /// # Errors
-    /// Returns an error if the chunk is damaged and damage is refused.
+    /// Returns an error if there is a fault and damage is refused.
     pub(crate) fn begin(
         &mut self,
         at: u64,
@@ -35,17 +36,17 @@ impl Chunk {
         fault.filter(|_| !is_last).map_or(Ok(()), |what| faults.skip(at, what))
     }
 
-    /// Returns the bytes of the whole chunk.
+    /// Returns all bytes of the chunk, decompressed.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Returns the bytes that are not read yet.
+    /// Returns the bytes of the chunk that are not read yet.
     pub(crate) fn left(&self) -> &[u8] {
         &self.bytes[self.taken..]
     }
 
-    /// Returns the number of bytes read so far.
+    /// Returns the number of bytes of the chunk read so far.
     pub(crate) fn taken(&self) -> usize {
         self.taken
     }
@@ -55,12 +56,13 @@ impl Chunk {
         self.at
     }
 
-    /// Marks the bytes before `end` as read.
+    /// Marks the bytes of the chunk before index `end` as read.
     pub(crate) fn take_to(&mut self, end: usize) {
         self.taken = end;
     }
 
-    /// Discards the remaining bytes, and counts them as damage: they form no record.
+    /// Discards the rest of the chunk, because its bytes form no record, and counts it as damage unless the chunk is
+    /// known to be incomplete.
     ///
     /// # Errors
     /// Returns an error if damage is refused.
@@ -71,12 +73,12 @@ impl Chunk {
     }
 }
 
-/// A position in a log of chunks.
+/// State of reading a log of records and chunks, common to the formats that have them.
 pub(crate) struct Walk {
     pub bytes: Bytes,
     pub faults: Faults,
     pub topics: Vec<Topic>,
-    /// The current chunk.
+    /// The current chunk; empty between chunks.
     pub chunk: Chunk,
     /// The content of the last message.
     pub message: Vec<u8>,
@@ -85,10 +87,10 @@ pub(crate) struct Walk {
 }
 
 impl Walk {
-    /// Opens a log, which must start with the bytes of its version.
+    /// Opens a log, which must start with the bytes `version`.
     ///
     /// # Errors
-    /// Returns an error if the log cannot be read, or if it is of another version, with the text `other`.
+    /// Returns an error if the log cannot be read, or if it starts with other bytes: the error's text is then `other`.
     pub(crate) fn open(path: &Path, faults: Faults, version: &[u8], other: &str) -> Result<Self> {
         let (mut bytes, mut start) = (Bytes::open(path)?, Vec::new());
         let taken = bytes.take(version.len() as u64, &mut start);
@@ -107,33 +109,35 @@ impl Walk {
     }
 }
 
-/// A log of records, some of which are chunks of records.
+/// A log that consists of records, some of which are chunks of records. Any such log implements [`Log`].
 pub(crate) trait Chunked {
-    /// A record outside chunks, as it is read.
+    /// A record outside of chunks, as the function `record` returns it.
     type Record;
 
-    /// Returns the position in the log.
+    /// Returns the state of reading.
     fn walk(&self) -> &Walk;
 
-    /// Returns the position in the log, for changes.
+    /// Returns the state of reading, to change it.
     fn walk_mut(&mut self) -> &mut Walk;
 
-    /// Reads the next record of the chunk; returns the entry if it is a message.
+    /// Reads the next record in the current chunk. If the record is a message, returns its entry and stores its content
+    /// in the state.
     ///
     /// # Errors
     /// Returns an error if the log is damaged and damage is refused.
     fn of_chunk(&mut self) -> Result<Option<Entry>>;
 
-    /// Reads the next record outside chunks; `None` at the end.
+    /// Reads the next record outside of chunks; returns `None` at the end of the log.
     ///
     /// # Errors
-    /// See [`of_chunk`](Self::of_chunk).
+    /// Returns an error if the log is damaged and damage is refused.
     fn record(&mut self) -> Result<Option<Self::Record>>;
 
-    /// Processes a record outside chunks; returns the entry if it is a message.
+    /// Processes a record outside of chunks. If the record is a message, returns its entry; if it is a chunk, makes it
+    /// the current one.
     ///
     /// # Errors
-    /// See [`of_chunk`](Self::of_chunk).
+    /// Returns an error if the log is damaged and damage is refused.
     fn outside(&mut self, record: Self::Record) -> Result<Option<Entry>>;
 }
 

@@ -1,52 +1,55 @@
-//! Definitions of messages: lines `type name`. In ROS, definitions of nested messages follow after lines `MSG:
+//! Layouts of messages, parsed from the definitions in a log, and paths to the numbers and texts in a message.
+//!
+//! A definition has a line `type name` for each field. In ROS, definitions of nested messages follow after a line `MSG:
 //! package/Type`.
 
 use super::known::known;
 use std::collections::HashMap;
 
-/// The layout of a message and of the messages nested in it.
+/// Layout of a message and of the messages nested in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definition {
-    /// The layout of the message itself, followed by those of nested messages.
+    /// Layout of the message itself, followed by the layouts of nested messages.
     structs: Vec<Struct>,
 }
 
-/// The fields of a message in order.
+/// Layout of one message: its fields.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Struct {
-    /// The fields, in the order of their bytes.
+    /// Fields, in the order of their bytes.
     pub fields: Vec<Field>,
 }
 
 /// A field of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// Name of the field.
+    /// Name of the field, unique in its message.
     pub name: String,
-    /// Type of its content.
+    /// Type of the field's value, or of each item if the field is an array.
     pub kind: Kind,
-    /// Whether it is a single value or an array.
+    /// Whether the field is a single value or an array.
     pub shape: Shape,
 }
 
-/// The type of a field's content.
+/// Type of a field's value, or of each item of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
     Number(Number),
-    /// A number that cannot be asked for by name: PX4's time stamp, or padding.
+    /// A number that is not selected by name: PX4's time stamp, or padding.
     Hidden(Number),
-    /// A text.
+    /// A text of UTF-8, preceded by its length.
     Text,
-    /// A character of a text of fixed length.
+    /// A character of a text of fixed length: an array of this type is a text.
     Character,
-    /// A text of two or four bytes for each character; the definition does not say which.
+    /// A text of 2 or 4 bytes for each character; the definition does not tell which, so fields after it cannot be
+    /// read.
     WideText,
-    /// A nested message; holds its index, for [`Definition::nested`].
+    /// A nested message. Pass its index to [`Definition::nested`].
     Nested(usize),
 }
 
-/// The types of numbers.
+/// Type of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Number {
     /// Boolean: one byte, 0 or 1.
@@ -74,7 +77,7 @@ pub enum Number {
 }
 
 impl Number {
-    /// Returns the size in bytes.
+    /// Returns the size of the number in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::Bool | Self::I8 | Self::U8 => 1,
@@ -90,48 +93,48 @@ impl Number {
 pub enum Shape {
     /// A single value.
     One,
-    /// An array of this length.
+    /// An array with this number of items.
     Fixed(usize),
-    /// An array whose length is stored in the message.
+    /// An array whose number of items is stored in the message.
     Counted,
 }
 
-/// The language in which a definition is written.
+/// Language in which a definition is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialect {
-    /// Definitions of ROS 1.
+    /// Message definitions of ROS 1, `.msg`.
     Ros1,
-    /// Definitions of ROS 2.
+    /// Message definitions of ROS 2, `.msg`.
     Ros2,
-    /// Formats of a PX4 log.
+    /// Format definitions in a PX4 log, such as `float[3] gyro_rad`.
     Px4,
 }
 
-/// The steps from a message to a number in it.
+/// Path from a message to a number or text in it, through fields and array items.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Path(pub Vec<Step>);
 
-/// A step on the path to a number.
+/// One step of a [`Path`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// To the field with this index.
+    /// To the field with this index in the message.
     Field(usize),
-    /// To the item with this index, in an array.
+    /// To the item with this index in the array.
     Item(usize),
 }
 
-/// The reason that a name does not identify a number.
+/// Reason that a name does not select a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoNumber {
-    /// There is no field of this name.
+    /// No field has this name.
     Missing,
-    /// The name is that of a text.
+    /// The name selects a text.
     Text,
-    /// The name is that of a message or of an array.
+    /// The name selects a message or an array, and therefore several numbers.
     Several,
 }
 
-/// The paths to the two numbers of a time.
+/// Paths to the two numbers that make up a time stamp.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stamp {
     /// Path to the seconds.
@@ -140,23 +143,23 @@ pub struct Stamp {
     pub nanoseconds: Path,
 }
 
-/// Maximum depth of nested messages; it stops definitions that contain themselves.
+/// Maximum depth of nested messages.
 const DEEPEST: usize = 16;
-/// Maximum length of an array of fixed length; a longer one is taken as a fault.
+/// Maximum number of items in an array of fixed length; a definition with more is refused.
 const LONGEST: usize = 1 << 28;
 /// Name of the field with the time at which PX4 logged a message.
 const TIME: &str = "timestamp";
-/// Prefix of the names of PX4's padding.
+/// Start of the names of padding fields in PX4 logs.
 const PADDING: &str = "_padding";
 
 impl Definition {
     /// Parses the text of a definition in a log; `name` is the message's type, such as `sensor_msgs/Imu`.
     ///
     /// # Errors
-    /// Returns an error that names what cannot be understood.
+    /// Returns the reason if a line or a nested type cannot be understood, or if a message contains itself.
     pub fn parse(name: &str, text: &str, dialect: Dialect) -> Result<Self, String> {
         let mut texts = HashMap::new();
-        let mut own = String::new();
+        let mut main = String::new();
         let mut current: Option<String> = None;
         for line in text.lines() {
             if line.starts_with("====") {
@@ -167,50 +170,52 @@ impl Definition {
                 continue;
             }
             let text = match &current {
-                None => &mut own,
+                None => &mut main,
                 Some(name) => texts.entry(name.clone()).or_default(),
             };
             text.push_str(line);
             text.push('\n');
         }
         let name = short(name);
-        texts.entry(name.clone()).or_insert(own);
+        texts.entry(name.clone()).or_insert(main);
         Parser::parse(&name, &|name| texts.get(name).cloned(), dialect)
     }
 
-    /// Makes the definition of a ROS 2 message. `look_up` returns the text for a type `package/Type`, for this message
-    /// and those nested in it.
+    /// Creates the layout of a ROS 2 message. `look_up` returns the definition's text for a type `package/Type`, for
+    /// this message and for those nested in it.
     ///
     /// # Errors
-    /// Returns an error that names what cannot be understood.
+    /// Returns the reason if a line or a nested type cannot be understood, or if a message contains itself.
     pub fn of_ros2(name: &str, look_up: &LookUp) -> Result<Self, String> {
         Parser::parse(&short(name), look_up, Dialect::Ros2)
     }
 
-    /// Makes the definition of a message from those in a PX4 log.
+    /// Creates the layout of a message in a PX4 log. `texts` has the definitions in the log by name, with a line for
+    /// each field.
     ///
     /// # Errors
-    /// Returns an error that names what cannot be understood.
+    /// Returns the reason if a line or a nested type cannot be understood, or if a message contains itself.
     pub fn of_px4(name: &str, texts: &HashMap<String, String>) -> Result<Self, String> {
         Parser::parse(name, &|name| texts.get(name).cloned(), Dialect::Px4)
     }
 
-    /// Makes a message of these fields, none of which is a nested message.
+    /// Creates the layout of a message with these fields, which must not contain nested messages.
     pub(crate) fn of_fields(fields: Vec<Field>) -> Self {
         Self { structs: vec![Struct { fields }] }
     }
 
-    /// Returns the path to the time at which PX4 logged a message.
+    /// Returns the path to PX4's field `timestamp`, the time at which a message was logged, in µs; `None` if there is
+    /// no such field.
     pub fn time(&self) -> Option<Path> {
         let is_time = |field: &Field| {
             let is_one = (field.kind, field.shape) == (Kind::Hidden(Number::U64), Shape::One);
             field.name == TIME && is_one
         };
-        let place = self.root().fields.iter().position(is_time)?;
-        Some(Path(vec![Step::Field(place)]))
+        let index = self.root().fields.iter().position(is_time)?;
+        Some(Path(vec![Step::Field(index)]))
     }
 
-    /// Returns the number of bytes of padding at the end of a PX4 message.
+    /// Returns the number of padding bytes at the end of a PX4 message, which loggers usually leave out.
     pub fn padding(&self) -> usize {
         let fields = self.root().fields.iter().rev();
         let padding = fields.take_while(|field| field.name.starts_with(PADDING));
@@ -222,20 +227,20 @@ impl Definition {
         padding.map(size).sum()
     }
 
-    /// Returns the layout of the message itself.
+    /// Returns the layout of the message itself, without those of nested messages.
     pub fn root(&self) -> &Struct {
         self.structs.first().unwrap_or(const { &Struct { fields: Vec::new() } })
     }
 
-    /// Returns the layout of a nested message, by the index in [`Kind::Nested`].
-    pub fn nested(&self, place: usize) -> &Struct {
-        self.structs.get(place).unwrap_or(const { &Struct { fields: Vec::new() } })
+    /// Returns the layout of a nested message; `index` is the one in [`Kind::Nested`].
+    pub fn nested(&self, index: usize) -> &Struct {
+        self.structs.get(index).unwrap_or(const { &Struct { fields: Vec::new() } })
     }
 
-    /// Returns the path to a number, such as `angular_velocity.x` or `ranges[5]`.
+    /// Returns the path to a number, selected by a name such as `angular_velocity.x` or `ranges[5]`.
     ///
     /// # Errors
-    /// Returns the reason if the name does not identify a number.
+    /// Returns the reason if the name does not select a number.
     pub fn number(&self, asked: &str) -> Result<Path, NoNumber> {
         match self.find(asked)? {
             (path, Kind::Number(_)) => Ok(path),
@@ -245,15 +250,17 @@ impl Definition {
         }
     }
 
-    /// Returns the path to a text.
+    /// Returns the path to a text, selected by a name such as `header.frame_id`; `None` if the name does not select a
+    /// text.
     pub fn text(&self, asked: &str) -> Option<Path> {
         self.find(asked).ok().filter(|(_, kind)| *kind == Kind::Text).map(|(path, _)| path)
     }
 
-    /// Returns the paths to a time, such as `header.stamp`.
+    /// Returns the paths to a time stamp, selected by a name such as `header.stamp`; `None` if the name does not select
+    /// one.
     pub fn stamp(&self, asked: &str) -> Option<Stamp> {
-        let Ok((path, Kind::Nested(place))) = self.find(asked) else { return None };
-        let [seconds, nanoseconds] = &self.nested(place).fields[..] else { return None };
+        let Ok((path, Kind::Nested(index))) = self.find(asked) else { return None };
+        let [seconds, nanoseconds] = &self.nested(index).fields[..] else { return None };
         let is_stamp = matches!(
             (seconds.name.as_str(), nanoseconds.name.as_str()),
             ("secs", "nsecs") | ("sec", "nanosec")
@@ -271,10 +278,10 @@ impl Definition {
                 Some((name, item)) => (name, Some(item.parse().map_err(|_| NoNumber::Missing)?)),
                 None => (part, None),
             };
-            let place = within.fields.iter().position(|field| field.name == name);
-            let place = place.ok_or(NoNumber::Missing)?;
-            let field = &within.fields[place];
-            path.0.push(Step::Field(place));
+            let index = within.fields.iter().position(|field| field.name == name);
+            let index = index.ok_or(NoNumber::Missing)?;
+            let field = &within.fields[index];
+            path.0.push(Step::Field(index));
             match (field.shape, item) {
                 (Shape::One, None) => {}
                 (Shape::Fixed(count), Some(item)) if item < count => path.0.push(Step::Item(item)),
@@ -286,14 +293,15 @@ impl Definition {
             }
             match (field.kind, parts.peek()) {
                 (kind, None) => return Ok((path, kind)),
-                (Kind::Nested(place), Some(_)) => within = self.nested(place),
+                (Kind::Nested(index), Some(_)) => within = self.nested(index),
                 (_, Some(_)) => return Err(NoNumber::Missing),
             }
         }
         Err(NoNumber::Missing)
     }
 
-    /// Returns the names of all numbers and of all texts. An array is `name[0..9]`, or `name[]` if its length varies.
+    /// Returns the names of all numbers, and the names of all texts. The name of an array is `name[0..9]` if it has 9
+    /// items, or `name[]` if its number of items varies.
     pub fn names(&self) -> (Vec<String>, Vec<String>) {
         let (mut numbers, mut texts) = (Vec::new(), Vec::new());
         self.add_names(self.root(), "", &mut numbers, &mut texts);
@@ -318,55 +326,55 @@ impl Definition {
                 Kind::Hidden(_) => {}
                 Kind::Text | Kind::WideText => texts.push(name),
                 Kind::Character => texts.push(format!("{prefix}{}", field.name)),
-                Kind::Nested(place) => {
-                    self.add_names(self.nested(place), &format!("{name}."), numbers, texts);
+                Kind::Nested(index) => {
+                    self.add_names(self.nested(index), &format!("{name}."), numbers, texts);
                 }
             }
         }
     }
 }
 
-/// Shortens `package/msg/Type` to `package/Type`.
+/// Shortens the name of a type from `package/msg/Type` to `package/Type`.
 pub(crate) fn short(name: &str) -> String {
     name.replacen("/msg/", "/", 1)
 }
 
-/// Returns the definition of a message by its name, if it is known.
+/// Function that returns the text of a message type's definition, or `None` if the type is unknown.
 type LookUp<'a> = dyn Fn(&str) -> Option<String> + 'a;
 
 struct Parser<'a> {
     look_up: &'a LookUp<'a>,
     dialect: Dialect,
     structs: Vec<Struct>,
-    places: HashMap<String, usize>,
+    indices: HashMap<String, usize>,
 }
 
 impl<'a> Parser<'a> {
     fn parse(name: &str, look_up: &'a LookUp<'a>, dialect: Dialect) -> Result<Definition, String> {
-        let mut parser = Self { look_up, dialect, structs: Vec::new(), places: HashMap::new() };
+        let mut parser = Self { look_up, dialect, structs: Vec::new(), indices: HashMap::new() };
         parser.add(name, 0)?;
         Ok(Definition { structs: parser.structs })
     }
 
-    /// Returns the index of a message; parses its definition the first time.
+    /// Returns the index in `structs` of a message's layout; parses the definition the first time.
     fn add(&mut self, name: &str, depth: usize) -> Result<usize, String> {
         if depth > DEEPEST {
             return Err(format!("{name} is nested too deeply, perhaps within itself"));
         }
-        if let Some(&place) = self.places.get(name) {
-            // A message that is not complete yet is within itself.
-            return if place == usize::MAX {
+        if let Some(&index) = self.indices.get(name) {
+            // A message whose definition is being parsed contains itself.
+            return if index == usize::MAX {
                 Err(format!("{name} holds itself"))
             } else {
-                Ok(place)
+                Ok(index)
             };
         }
         let text = (self.look_up)(name)
             .or_else(|| built_in(name, self.dialect).map(str::to_owned))
             .or_else(|| known(name).filter(|_| self.dialect == Dialect::Ros2))
             .ok_or_else(|| format!("there is no definition of {name}"))?;
-        self.places.insert(name.to_owned(), usize::MAX);
-        let place = self.structs.len();
+        self.indices.insert(name.to_owned(), usize::MAX);
+        let index = self.structs.len();
         self.structs.push(Struct::default());
         let mut fields = Vec::new();
         for line in text.lines() {
@@ -374,9 +382,9 @@ impl<'a> Parser<'a> {
                 fields.push(self.field(name, kind, name_of_field, depth)?);
             }
         }
-        self.structs[place].fields = fields;
-        self.places.insert(name.to_owned(), place);
-        Ok(place)
+        self.structs[index].fields = fields;
+        self.indices.insert(name.to_owned(), index);
+        Ok(index)
     }
 
     fn field(&mut self, of: &str, kind: &str, name: &str, depth: usize) -> Result<Field, String> {
@@ -438,18 +446,18 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// Returns type and name in a line that declares a field; `None` for a constant or a comment.
+/// Returns type and name of the field that a line declares; `None` for a constant or a comment.
 pub(crate) fn declared(line: &str) -> Option<(&str, &str)> {
     let line = line.split('#').next().unwrap_or(line).trim();
     let (kind, rest) = line.split_once(char::is_whitespace)?;
     let rest = rest.trim_start();
-    // A default value may follow the name, after a blank; a constant's after a `=`.
+    // A blank and a default value may follow a field's name; `=` and a value follow a constant's.
     let name = rest.split(|c: char| c.is_whitespace() || c == '=').next()?;
     let behind = rest.get(name.len()..)?.trim_start();
     (!name.is_empty() && !behind.starts_with('=')).then_some((kind, name))
 }
 
-/// Returns the definition of a type that every ROS has, and that logs leave out.
+/// Returns the definition of a type that is part of ROS itself, and that logs therefore leave out.
 fn built_in(name: &str, dialect: Dialect) -> Option<&'static str> {
     Some(match (name, dialect) {
         ("time", Dialect::Ros1) => "uint32 secs\nuint32 nsecs",
@@ -566,14 +574,14 @@ uint8 MOST = 5
 
     #[test]
     fn what_is_no_definition_is_said() {
-        for (text, said) in [
+        for (text, words) in [
             ("Endless again", "t/Endless holds itself"),
             ("other/Unknown a", "there is no definition of other/Unknown"),
             ("float32[x] a", "`float32[x] a` is not understood"),
             ("fl\u{f6}at a", "is not understood"),
         ] {
-            let told = Definition::parse("t/Endless", text, Dialect::Ros1).unwrap_err();
-            assert!(told.contains(said), "{told}");
+            let error = Definition::parse("t/Endless", text, Dialect::Ros1).unwrap_err();
+            assert!(error.contains(words), "{error}");
         }
     }
 }

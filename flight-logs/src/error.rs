@@ -1,25 +1,25 @@
-//! Errors as values, on which a program can act.
+//! Errors as values that a program can match. A front end adds its own advice to their text.
 
 use crate::wire;
 use std::path::Path;
 use std::{error, fmt, io};
 
-/// The result of reading a log.
+/// Result of reading a log.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// The error of a log that cannot be read, or is damaged.
+/// Error of a log that is damaged or cannot be read.
 ///
-/// Its text names the file and, if possible, the byte. It gives no advice; [`ErrorKind::rest`] says whether
+/// Its text names the file and, if possible, the byte. It gives no advice; [`ErrorKind::rest`] tells whether
 /// [`Damage::Skip`](crate::Damage::Skip) would read more.
 #[derive(Debug)]
 pub struct Error {
-    /// Path of the file, as it was given.
+    /// Path of the file, as the caller gave it.
     pub file: String,
-    /// The reason, with its details.
+    /// Reason, with its details.
     pub kind: ErrorKind,
 }
 
-/// The reason that a log cannot be read.
+/// Reason that a log cannot be read.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -33,66 +33,66 @@ pub enum ErrorKind {
     ShortHead(io::Error),
     /// The file is empty.
     Empty,
-    /// The file is not a log, although its name or its first bytes suggest one. The text says what is missing.
+    /// The file is not a log, although its name or its first bytes suggest one. The text tells what is missing.
     NotALog(String),
-    /// A part of the log cannot be read.
+    /// A record or a message cannot be read.
     Fault {
         /// Offset of the fault in the file, in bytes.
         at: u64,
         /// Description of the fault.
         what: String,
-        /// The part of the log that can still be read.
+        /// Part of the log that can still be read.
         rest: Rest,
     },
-    /// A range of bytes makes no sense.
+    /// A range of bytes of a PX4 log forms no messages.
     Damaged {
         /// Offset of the first damaged byte.
         at: u64,
         /// Length of the file, in bytes.
         length: u64,
-        /// Offset of the next message.
+        /// Offset of the first message after the damage.
         next: u64,
     },
-    /// The file ends within a message.
+    /// A PX4 log ends within a message.
     Cut {
-        /// Offset of that message's first byte.
+        /// Offset of the message's first byte.
         at: u64,
         /// Length of the file, in bytes.
         length: u64,
     },
-    /// A message does not contain what was asked for.
+    /// A message does not contain the value that the caller selected.
     Message {
         /// Offset of the message, in bytes.
         at: u64,
         /// Topic of the message.
         topic: String,
-        /// The reason.
+        /// Reason that the value is not in the message.
         fault: MessageFault,
     },
-    /// No message has been read yet.
+    /// A value was requested before the first message was read, or after the last.
     NoMessage,
 }
 
-/// The part of a damaged log that can still be read.
+/// Part of a damaged log that can still be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
-    /// The messages before the damage and after it.
+    /// The messages before the damage, and the messages after it.
     Behind,
-    /// The messages before the damage, and those from this byte on.
+    /// The messages before the damage, and the messages from this byte on.
     From(u64),
     /// Only the messages before the damage.
     Before,
 }
 
-/// The reason that a message does not contain what was asked for.
+/// Reason that a message does not contain the selected value.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MessageFault {
-    /// The message's definition cannot be understood. The text says why.
+    /// The message's definition cannot be understood. The text tells why.
     Undefined(String),
     /// The message has no number of this name.
     NoNumber(String),
-    /// The message's bytes do not fit its definition.
+    /// The message's bytes do not match its definition.
     Bytes(wire::Fault),
 }
 
@@ -111,8 +111,8 @@ impl Error {
 }
 
 impl ErrorKind {
-    /// Returns which part of a damaged log [`Damage::Skip`](crate::Damage::Skip) would still read; `None` if it would
-    /// not help.
+    /// Returns the part of the log that [`Damage::Skip`](crate::Damage::Skip) would still read; `None` if it would not
+    /// help.
     pub fn rest(&self) -> Option<Rest> {
         match *self {
             Self::Fault { rest, .. } => Some(rest),

@@ -1,16 +1,18 @@
-//! Collects the faults of a log, and notes on them.
+//! Counts the damage and other faults in a log, or returns them as errors.
 
 use crate::{Damage, Error, ErrorKind, Rest, Result};
 use std::fmt::Display;
 
-/// The faults of a log. Damage is returned as an error, or counted and noted, as [`Damage`] says.
+/// Faults found in a log so far. Depending on [`Damage`], damage is returned as an error, or counted and described in
+/// notes.
 #[derive(Debug)]
 pub struct Faults {
     file: String,
     damage: Damage,
     skipped: u64,
-    /// Number of messages that are longer than their definition; `first_long` is the offset of the first.
+    /// Number of messages that are longer than their definition.
     long: u64,
+    /// Offset in the file of the first message that is longer than its definition.
     first_long: u64,
     notes: Vec<String>,
 }
@@ -31,13 +33,12 @@ impl Faults {
         &self.file
     }
 
-    /// Returns how damage is treated.
+    /// Returns whether damage is refused or skipped.
     pub(crate) fn damage(&self) -> Damage {
         self.damage
     }
 
-    /// # Errors
-    /// Returns an error if damage is refused.
+    /// Returns the fault as an error if damage is refused, and does nothing otherwise.
     fn refuse(&self, at: u64, what: &impl Display, rest: Rest) -> Result<()> {
         match self.damage {
             Damage::Skip => Ok(()),
@@ -48,7 +49,8 @@ impl Faults {
         }
     }
 
-    /// Counts a fault at a byte after which the log can be read on.
+    /// Counts damage after which reading continues. `at` is its offset in the file, in bytes; `what` describes it. Only
+    /// the first is described in the notes.
     ///
     /// # Errors
     /// Returns an error if damage is refused.
@@ -66,7 +68,7 @@ impl Faults {
         }
     }
 
-    /// Notes a fault at a byte after which nothing can be read.
+    /// Notes damage after which nothing can be read. `at` is its offset in the file, in bytes; `what` describes it.
     ///
     /// # Errors
     /// Returns an error if damage is refused.
@@ -76,7 +78,7 @@ impl Faults {
         Ok(())
     }
 
-    /// Counts a message that is longer than its definition.
+    /// Counts a message that is longer than its definition; `at` is its offset in the file, in bytes.
     pub fn long(&mut self, at: u64) {
         if self.long == 0 {
             self.first_long = at;
@@ -84,12 +86,13 @@ impl Faults {
         self.long += 1;
     }
 
-    /// Adds a note.
+    /// Adds a note about the log that is not about damage.
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
     }
 
-    /// Returns the notes on the log, a sentence each.
+    /// Returns notes on the log, one sentence each: what its reader noticed, the first damage, and the number of
+    /// damaged places and of messages that are too long.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = self.notes.clone();
         if self.skipped > 1 {

@@ -1,12 +1,12 @@
-//! Definitions of common ROS 2 messages: `SQLite` bags written before ROS 2 Iron contain none.
+//! Definitions of common ROS 2 messages, for `SQLite` bags recorded before ROS 2 Iron, which contain no definitions.
 
 use super::definition::short;
 
-/// Returns the definition of a message type.
+/// Returns the definition of a common ROS 2 message type, such as `sensor_msgs/msg/Imu`; `None` for other types.
 pub(crate) fn known(name: &str) -> Option<String> {
     let name = short(name);
-    let (package, own) = name.split_once('/')?;
-    if let Some(of) = own.strip_suffix("Stamped").filter(|_| package == "geometry_msgs") {
+    let (package, message) = name.split_once('/')?;
+    if let Some(of) = message.strip_suffix("Stamped").filter(|_| package == "geometry_msgs") {
         let field = match of {
             "Vector3" => "vector",
             "PoseWithCovariance" => "pose",

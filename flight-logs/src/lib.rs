@@ -1,12 +1,12 @@
-//! Flight logs, message by message: PX4's `ULog`, `ArduPilot`'s `DataFlash`, `MAVLink` telemetry, bags of ROS 1 and ROS 2, MCAP
-//! files, Betaflight's blackbox.
+//! Reads flight logs message by message: PX4's `ULog`, `ArduPilot`'s `DataFlash`, `MAVLink` telemetry, bags of ROS 1 and
+//! ROS 2, MCAP files, and Betaflight's blackbox.
 //!
-//! All formats are read in the same way. [`Kind::of`] recognises a log by its first bytes, [`Reading`] returns its messages
-//! in the order of the file, and reads the numbers of a message by the names of their fields. Memory use does not grow with
-//! the length of the log, except for `ULog`, which is read as a whole. Logs compressed by gzip, Zstandard,
+//! All formats are read in the same way. [`Kind::of`] recognises a log by its first bytes. [`Reading`] returns its
+//! messages in the order of the file, and reads the numbers of a message by the names of their fields. Memory use does
+//! not grow with the length of the log, except for `ULog`, which is read as a whole. Logs compressed by gzip, Zstandard,
 //! bzip2 or xz are decompressed while they are read.
 //!
-//! **Damage.** An [`Error`] names the byte at which a log is damaged. With [`Damage::Skip`] reading continues after the
+//! **Damage.** An [`Error`] names the byte at which a log is damaged. With [`Damage::Skip`], reading continues after the
 //! damage, and [`Reading::notes`] lists what was left out. No log makes a reader panic; the tests read a thousand damaged
 //! logs of each kind.
 //!
@@ -25,11 +25,11 @@
 //! # Ok::<(), flight_logs::Error>(())
 //! ```
 //!
-//! The readers are not taken from other crates, because they must name the byte of a fault and be able to continue after
-//! it. As of November 2026, `mcap` 0.26 accepts a damaged chunk silently, or stops at it if checksums are turned on;
-//! `blackbox-log` 0.4.3 refuses a log whose header names a firmware that it does not know; `ardupilot-binlog` 0.2 passes
-//! over damage silently, and stops after 256 damaged places; `SQLite` itself needs a C compiler. `yule_log` 0.4 serves the
-//! tests of this repository as an independent reader of `ULog`.
+//! The readers are not taken from other crates, because they must name the byte of a fault and be able to continue
+//! after the fault. As of November 2026, `mcap` 0.26 accepts a damaged chunk silently, or stops at it if checksums are
+//! turned on; `blackbox-log` 0.4.3 refuses a log whose header names a firmware that it does not know;
+//! `ardupilot-binlog` 0.2 passes over damage silently, and stops after 256 damaged places; `SQLite` itself needs a C
+//! compiler. `yule_log` 0.4 serves the tests of this repository as an independent reader of `ULog`.
 
 mod bag;
 mod blackbox;
@@ -71,46 +71,46 @@ use std::path::Path;
 /// Time and position of a message in a log.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// Index of its topic in [`Log::topics`].
+    /// Index of the message's topic in [`Log::topics`].
     pub topic: usize,
-    /// Time at which it was recorded, in ns.
+    /// Time at which the message was recorded, in ns.
     pub time: i64,
-    /// Offset of the message, or of its chunk, in the file, in bytes.
+    /// Offset in the file of the message, or of the chunk that contains it, in bytes.
     pub at: u64,
-    /// Its number on its topic, if the log counts messages.
+    /// Sequence number of the message on its topic, if the log has one.
     pub sequence: Option<u32>,
 }
 
 /// A log that is read from start to end.
 pub trait Log {
-    /// Goes to the next message.
+    /// Reads the next message; returns `None` at the end of the log.
     ///
     /// # Errors
-    /// Returns an error if the log is damaged and [`Damage::Refuse`] was asked for.
+    /// Returns an error if the log cannot be read, or if it is damaged and was opened with [`Damage::Refuse`].
     fn next(&mut self) -> Result<Option<Entry>>;
 
     /// Returns the topics found so far; [`Entry::topic`] is an index into them.
     fn topics(&self) -> &[Topic];
 
-    /// Returns the bytes of the last message.
+    /// Returns the bytes of the message that [`next`](Self::next) read last.
     fn message(&self) -> &[u8];
 
-    /// Returns the faults found so far, for adding to them and for reports; they are complete at the end of the log.
+    /// Returns the faults found so far, to be reported or added to. They are complete at the end of the log.
     fn faults(&mut self) -> &mut Faults;
 }
 
-/// How damage is treated.
+/// Reaction to damage in a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Damage {
-    /// Damage is an error. Bad frames within a blackbox log are none, as its recorder drops some even in a good flight;
-    /// they are noted.
+    /// Return an error at the first damage. Bad frames in a blackbox log are noted instead, because its recorder drops
+    /// some even in a good flight.
     #[default]
     Refuse,
-    /// Damaged parts are left out, counted and noted.
+    /// Leave out the damaged parts, count them, and describe them in the notes.
     Skip,
 }
 
-/// The kinds of logs.
+/// Format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A ROS 1 bag.
@@ -134,11 +134,11 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Recognises the kind of a log by its first bytes, compressed or not; `None` if the file is not a log.
+    /// Recognises the format of a log by its first bytes, compressed or not; returns `None` if the file is not a log.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be opened or read, or if it should be a log by its name and is not: a
-    /// directory without `metadata.yaml`, or a file `.ulg` with other first bytes.
+    /// Returns an error if the file cannot be opened or read, or if its name promises a log that it is not: a directory
+    /// without `metadata.yaml`, or a file `.ulg` with other first bytes.
     pub fn of(path: &Path) -> Result<Option<Self>> {
         if path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
             return Ok(Some(Self::Directory));
@@ -150,17 +150,17 @@ impl Kind {
                 Err(Error::not_a_log(path.display().to_string(), NO_BAG))
             };
         }
-        // What can be read only once is no log.
+        // Anything that can be read only once, such as a pipe, is not a log.
         if !files::is_file(path) {
             bytes::open(path)?;
             return Ok(None);
         }
         let mut start = Vec::new();
         let read = Bytes::open(path)?.take(dataflash::LOOKED_AT, &mut start);
-        let is_named = path.extension().is_some_and(|own| own == "ulg");
+        let is_named = path.extension().is_some_and(|extension| extension == "ulg");
         match (read, of_start(&start)) {
             (Err(error), _) if is_named => Err(Error::of(path, ErrorKind::Unpack(error))),
-            // What cannot be unpacked is no log.
+            // A file that cannot be decompressed is not a log.
             (Err(_), _) => Ok(None),
             (Ok(_), None) if is_named && start.is_empty() => Err(Error::of(path, ErrorKind::Empty)),
             (Ok(_), None) if is_named => {
@@ -176,7 +176,7 @@ impl Kind {
         of_start(start)
     }
 
-    /// Returns the topic to read if the user names none.
+    /// Returns the name of the topic that most users want, if the format has one.
     pub fn usual_topic(self) -> Option<&'static str> {
         match self {
             Self::Blackbox => Some(blackbox::MAIN),
@@ -192,10 +192,10 @@ impl Kind {
     }
 }
 
-/// Error text for a directory that is not a log.
+/// Error text for a directory that is not a ROS 2 bag.
 const NO_BAG: &str = "a directory, and no bag of ROS 2, which has a file metadata.yaml";
 
-/// Recognises the kind of a log by its first bytes.
+/// Recognises the format of a log by its first bytes, decompressed; returns `None` if they are of another kind of file.
 fn of_start(start: &[u8]) -> Option<Kind> {
     let kinds = [
         (bag::START, Kind::Bag),
@@ -204,7 +204,7 @@ fn of_start(start: &[u8]) -> Option<Kind> {
         (blackbox::START, Kind::Blackbox),
         (ulog::START, Kind::Ulog),
     ];
-    let kind = kinds.into_iter().find(|(own, _)| start.starts_with(own)).map(|(_, kind)| kind);
+    let kind = kinds.into_iter().find(|(first, _)| start.starts_with(first)).map(|(_, kind)| kind);
     let looked_into = || {
         let is_begun = |window: &[u8]| window == dataflash::START;
         if start.windows(dataflash::START.len()).any(is_begun) {
@@ -218,12 +218,12 @@ fn of_start(start: &[u8]) -> Option<Kind> {
     kind.or_else(looked_into)
 }
 
-/// Compiles the code of the README as doctests.
+/// Compiles the examples in the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;
 
-/// Opens a log.
+/// Opens a log of a known format; [`Kind::of`] recognises the format.
 ///
 /// # Errors
 /// Returns an error if the log cannot be opened, or if its start is damaged.

@@ -1,4 +1,4 @@
-//! Makes logs of every kind byte by byte, for tests.
+//! Generates small logs of ROS, MCAP and Betaflight byte by byte, for tests.
 #![allow(dead_code, unreachable_pub)]
 
 mod ardupilot;
@@ -6,7 +6,8 @@ mod ardupilot;
 pub use ardupilot::*;
 use std::io::Write;
 
-/// The kind of a log to make. It has one topic `/imu`, with a counted header, an array and a text.
+/// Format of a generated ROS log. The log has one topic, `/imu`, whose messages have a header, a number `rate`, an
+/// array `few` and a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Bag,
@@ -16,7 +17,7 @@ pub enum Kind {
 
 pub const KINDS: [Kind; 3] = [Kind::Bag, Kind::Mcap, Kind::Db3];
 
-/// The kinds whose messages lie in chunks.
+/// The formats whose messages lie in chunks.
 pub const CHUNKED: [Kind; 2] = [Kind::Bag, Kind::Mcap];
 
 const ROS1: &str = "Header header\nfloat64 rate\nfloat32[] few\n\
@@ -25,7 +26,7 @@ const ROS2: &str = "std_msgs/Header header\nfloat64 rate\nfloat32[] few\n\
     ====\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n\
     ====\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 
-/// Returns sample number `sample` of the wave; samples are 5 ms apart.
+/// Returns `rate` in message number `sample`: a sine wave of amplitude 1. Messages are 5 ms apart.
 pub fn wave(sample: u32) -> f64 {
     (f64::from(sample) * 0.1).sin()
 }
@@ -53,8 +54,8 @@ impl Kind {
         }
     }
 
-    /// Returns a message. Its own time stamp is a second before the time of recording. The array has one item in odd
-    /// messages, and none in even ones.
+    /// Returns the bytes of message number `sample`. Its time stamp is one second before the time of recording. The
+    /// array has one item in odd messages, and none in even ones.
     pub fn message(self, sample: u32) -> Vec<u8> {
         let stamp = seconds(time(sample) - 1_000_000_000).concat();
         let few: Vec<u8> = (0..sample % 2).flat_map(|_| (sample as f32).to_le_bytes()).collect();
@@ -62,14 +63,14 @@ impl Kind {
         let rate = wave(sample).to_le_bytes();
         match self {
             Self::Bag => [&sample.to_le_bytes()[..], &stamp, &long(b"body"), &rate, &few].concat(),
-            // The text ends with a zero; the number of eight bytes is aligned to eight.
+            // A text ends with NUL, and the number of eight bytes is aligned to eight.
             Self::Mcap | Self::Db3 => {
                 [&[0, 1, 0, 0][..], &stamp, &long(b"body\0"), &[0; 7], &rate, &few].concat()
             }
         }
     }
 
-    /// Returns a log of these samples in one chunk.
+    /// Returns a log of the messages with these numbers, in one uncompressed chunk.
     pub fn of(self, samples: impl Iterator<Item = u32>) -> Vec<u8> {
         let records: Vec<u8> = samples.flat_map(|sample| self.record(sample)).collect();
         [self.start(), self.chunk("none", &records), self.end()].concat()
@@ -122,7 +123,7 @@ impl Kind {
         }
     }
 
-    /// Returns a chunk, compressed as `how` says.
+    /// Returns a chunk record with this content, compressed by the method `how`.
     pub fn chunk(self, how: &str, content: &[u8]) -> Vec<u8> {
         let packed = match how {
             "bz2" => {
@@ -170,7 +171,8 @@ impl Kind {
         }
     }
 
-    /// Returns a log of 100 messages in chunks of ten.
+    /// Returns a log of 100 messages, in chunks of ten compressed by the method `how`. A database is compressed as a
+    /// whole.
     pub fn log(self, how: &str) -> Vec<u8> {
         if self == Self::Db3 {
             let bag = database(&(0..100).map(|sample| self.record(sample)).collect::<Vec<_>>());
@@ -191,7 +193,7 @@ impl Kind {
         log
     }
 
-    /// Returns the compressions that logs of this kind may have.
+    /// Returns the compression methods for logs of this format.
     pub fn packings(self) -> &'static [&'static str] {
         match self {
             Self::Bag => &["none", "bz2", "lz4"],
@@ -214,10 +216,10 @@ pub fn entry(kind: u8, content: &[u8]) -> Vec<u8> {
     [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat()
 }
 
-/// Size of a database's page, in bytes.
+/// Size of the pages of a generated database, in bytes.
 pub const PAGE: usize = 1024;
 
-/// A value of a row.
+/// Value in a row of a database.
 pub enum Cell<'a> {
     Null,
     Whole(u64),
@@ -257,7 +259,8 @@ pub fn row(cells: &[Cell<'_>]) -> Vec<u8> {
     [varint(kinds.len() as u64 + 1), kinds, content].concat()
 }
 
-/// Returns a page of cells; on the first page `head` precedes them.
+/// Returns a database page of kind `kind`, with these cells. `right` is the rightmost child of an inner page; `head` is
+/// the file's header on the first page, and empty on others.
 pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     let mut page = head.to_vec();
     page.extend([kind, 0, 0]);
@@ -277,7 +280,8 @@ pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the cell of a row, and the pages with what is too long for it; `next` is the number of the first of these.
+/// Encodes a row as a cell. Returns the cell, and the overflow pages with the part of the row that does not fit; `next`
+/// is the number of the first of these.
 pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
     let head = [varint(row.len() as u64), varint(number)].concat();
     let (most, least) = (PAGE - 35, (PAGE - 12) * 32 / 255 - 23);
@@ -288,8 +292,8 @@ pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
     let (here, rest) = row.split_at(if here <= most { here } else { least });
     let parts: Vec<&[u8]> = rest.chunks(PAGE - 4).collect();
     let count = parts.len() as u32;
-    let pages = (1..).zip(parts).map(|(place, part)| {
-        let following = if place == count { 0 } else { next + place };
+    let pages = (1..).zip(parts).map(|(index, part)| {
+        let following = if index == count { 0 } else { next + index };
         let mut page = [&following.to_be_bytes()[..], part].concat();
         page.resize(PAGE, 0);
         page
@@ -297,8 +301,8 @@ pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
     ([head, here.to_vec(), next.to_be_bytes().to_vec()].concat(), pages.collect())
 }
 
-/// Returns a ROS 2 bag with a topic `/imu`. Its tables are leaf pages, except that of the messages, which has an inner
-/// page.
+/// Returns a ROS 2 bag in `SQLite` with one topic, `/imu`. Each table is one leaf page, except the table of messages,
+/// which has an inner page.
 pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
     let sql = |name: &str, columns: &str, root: u64| {
         let statement = format!("CREATE TABLE {name}({columns})");
@@ -337,11 +341,11 @@ pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
     ];
     pages.extend(further);
     let mut leaves = Vec::new();
-    for (place, rows) in messages.chunks(10).enumerate() {
+    for (index, rows) in messages.chunks(10).enumerate() {
         let cells: Vec<Vec<u8>> =
-            (place as u64 * 10 + 1..).zip(rows).map(|(id, row)| cell(id, row, 0).0).collect();
+            (index as u64 * 10 + 1..).zip(rows).map(|(id, row)| cell(id, row, 0).0).collect();
         pages.push(page(13, &cells, 0, &[]));
-        leaves.push((pages.len() as u32, place as u64 * 10 + 10));
+        leaves.push((pages.len() as u32, index as u64 * 10 + 10));
     }
     let (right, _) = leaves.pop().unwrap();
     let cells: Vec<Vec<u8>> = leaves
@@ -352,7 +356,7 @@ pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
     pages.concat()
 }
 
-/// Returns the angular rate at a sample of a blackbox log.
+/// Returns the angular rate in frame number `sample` of the generated blackbox log.
 pub fn gyro(sample: u32) -> i64 {
     (wave(sample) * 1000.0).round() as i64
 }
@@ -372,21 +376,21 @@ fn signed(number: i64) -> Vec<u8> {
     packed(((number << 1) ^ (number >> 31)) as u32)
 }
 
-/// Returns a frame of a blackbox log: every 32nd one is a full frame, the others hold differences.
+/// Returns frame number `sample` of a blackbox log: every 32nd is a full frame, and the others hold differences.
 pub fn frame(sample: u32) -> Vec<u8> {
     let time = 1000 + sample * 250;
     if sample.is_multiple_of(32) {
         return [b"I".to_vec(), packed(sample), packed(time), signed(gyro(sample)), signed(0)]
             .concat();
     }
-    // Twice the time before less the one before that, which is the same in the first frame.
+    // The time is predicted from the last two frames, which are the same after a full frame.
     let step = if sample % 32 == 1 { 250 } else { 0 };
     let change = (gyro(sample) - gyro(sample - 1)) as i16;
     let [low, high] = change.to_le_bytes();
     [b"P".to_vec(), signed(step), vec![0b1100_0001, low, high, 0, 0]].concat()
 }
 
-/// Returns a blackbox log of 200 frames.
+/// Returns a blackbox log with 200 frames.
 pub fn blackbox() -> Vec<u8> {
     let mut log = b"H Product:Blackbox flight data recorder by Nicholas Sherlock
 H Data version:2

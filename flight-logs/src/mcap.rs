@@ -1,4 +1,5 @@
-//! Reads MCAP files: records with a kind and a length; messages lie in chunks, which may be compressed, or alone.
+//! Reads MCAP files: a sequence of records, each with a kind and a length. Messages are records, or lie in chunk
+//! records, which may be compressed.
 //!
 //! The index is not used, so files that were never closed can be read too.
 
@@ -13,12 +14,12 @@ use crate::zstd::ZSTD;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The first bytes of a file of any version.
+/// First bytes of an MCAP file, whatever its version.
 pub(crate) const START: &[u8] = b"\x89MCAP";
-/// First bytes of a file of the version that can be read.
+/// First bytes of an MCAP file of version 0, the only one supported.
 const VERSION: &[u8] = b"\x89MCAP0\r\n";
 
-/// Kinds of records.
+/// Kinds of records: the opcodes.
 mod op {
     pub(crate) const HEADER: u8 = 1;
     pub(crate) const FOOTER: u8 = 2;
@@ -29,16 +30,16 @@ mod op {
     pub(crate) const DATA_END: u8 = 15;
 }
 
-/// Maximum size of a message in bytes. Recorders of ROS 2 may compress messages one by one; a larger one is not
-/// decompressed.
+/// Maximum size of a message that ROS 2 compressed on its own, in bytes after decompression. Beyond it the message is
+/// cut.
 pub(crate) const LARGEST_MESSAGE: u64 = 1 << 30;
 
-/// A file that is being read.
+/// Reader of an MCAP file, from start to end.
 pub(crate) struct Mcap {
     walk: Walk,
-    /// The schemas by number, each with its name, encoding and text.
+    /// Name, encoding and text of each schema, by the schema's number.
     schemas: HashMap<u16, (String, String, String)>,
-    /// Index of each channel's topic.
+    /// Index in `walk.topics` of the topic of each channel, by the channel's number.
     channels: HashMap<u16, usize>,
     data: Vec<u8>,
 }
@@ -74,14 +75,15 @@ impl Mcap {
         self.walk.chunk.begin(at, (chunk, fault), self.walk.is_over, &mut self.walk.faults)
     }
 
-    /// Returns the entry of a message, and the length of its content; `None` if its channel is unknown.
+    /// Parses a message record. Returns its entry, and the length of the message at the end of the record; `None` if
+    /// the record is too short or its channel is unknown.
     fn entry(&self, mut record: &[u8], at: u64) -> Option<(Entry, usize)> {
         let channel = u16_from(&mut record)?;
         let sequence = u32_from(&mut record)?;
         let (time, _published) = (u64_from(&mut record)?, u64_from(&mut record)?);
         let topic = *self.channels.get(&channel)?;
         let time = i64::try_from(time).unwrap_or(i64::MAX);
-        // Recorders that do not count leave 0.
+        // Recorders that do not number messages write 0.
         let sequence = Some(sequence).filter(|sequence| *sequence > 0);
         Some((Entry { topic, time, at, sequence }, record.len()))
     }
@@ -90,7 +92,7 @@ impl Mcap {
         self.walk.faults.skip(at, "a message without a channel that is known").map(|()| None)
     }
 
-    /// Reads a schema or a channel; ignores other records.
+    /// Stores the schema or the channel that a record defines. Records of other kinds are ignored.
     fn define(&mut self, kind: u8, mut data: &[u8], at: u64) -> Result<()> {
         let left = &mut data;
         let is_good = match kind {
@@ -105,8 +107,8 @@ impl Mcap {
                 let (name, encoding) = (text(left)?, text(left)?);
                 if !self.channels.contains_key(&id) {
                     let topic = self.topic(name, schema, &encoding);
-                    let place = topic.place_in(&mut self.walk.topics);
-                    self.channels.insert(id, place);
+                    let index = topic.index_in(&mut self.walk.topics);
+                    self.channels.insert(id, index);
                 }
                 Some(())
             })(),
@@ -136,7 +138,7 @@ impl Mcap {
 }
 
 impl Chunked for Mcap {
-    /// Kind and offset of a record; its content is in `data`.
+    /// Kind of the record, and its offset in the file. Its content is in `data`.
     type Record = (u8, u64);
 
     fn walk(&self) -> &Walk {
@@ -204,7 +206,7 @@ impl Chunked for Mcap {
         };
         self.walk.faults.end(at, what)?;
         self.walk.is_over = true;
-        // Of a chunk, what is there may hold messages.
+        // An incomplete chunk may still hold whole messages.
         Ok(kind.filter(|kind| *kind == op::CHUNK && length.is_some()).map(|kind| (kind, at)))
     }
 
@@ -236,8 +238,8 @@ impl Chunked for Mcap {
     }
 }
 
-/// Stores a message's content, decompressed if it starts with the bytes of Zstandard. No message of ROS 2 starts with
-/// these.
+/// Stores a message's content in `message`, decompressed if it starts as Zstandard does. No uncompressed message of ROS
+/// 2 starts like this.
 fn take_content(content: &[u8], message: &mut Vec<u8>) {
     if content.starts_with(&ZSTD) {
         *message = unpack("zstd", content, LARGEST_MESSAGE).0;
@@ -246,7 +248,7 @@ fn take_content(content: &[u8], message: &mut Vec<u8>) {
     }
 }
 
-/// Takes a text, after its length, from the front.
+/// Removes a text from the front of `left`: its length in four bytes, then as many bytes.
 fn text(left: &mut &[u8]) -> Option<String> {
     let length = u32_from(left)?;
     Some(String::from_utf8_lossy(take(left, length.into())?).into_owned())

@@ -1,11 +1,11 @@
-//! Reads a thousand damaged logs of each kind. They may be refused, but none may panic.
+//! Reads a thousand damaged logs of each format. Reading them may fail, but must not panic.
 
 use super::made::{KINDS, Kind, blackbox, dataflash, dataflash_text, tlog};
 use super::{Damage, Kind as LogKind, Reading, Result};
 use std::fs;
 use std::path::Path;
 
-/// A random generator with a fixed seed.
+/// Linear congruential generator of random numbers, with the current state.
 struct Random(u32);
 
 impl Random {
@@ -14,9 +14,9 @@ impl Random {
         (self.0 >> 8) as usize % end
     }
 
-    /// Damages a log: changes, removes or sets some bytes, or truncates it.
+    /// Damages a log one to five times, at random: changes or removes bytes, or truncates the log.
     fn damage(&mut self, log: &mut Vec<u8>) {
-        /// Approximate number of bytes before the first message.
+        /// Approximate number of bytes before the first message, where damage is placed more often.
         const HEAD: usize = 700;
         for _ in 0..=self.below(4) {
             let within = if self.below(2) == 0 { log.len().min(HEAD) } else { log.len() };
@@ -32,7 +32,7 @@ impl Random {
     }
 }
 
-/// Reads a log to its end, with damage refused.
+/// Reads a log to its end; returns an error at the first damage.
 fn read_through(path: &Path, kind: LogKind) -> Result<()> {
     let mut log = Reading::open(path, kind, Damage::Refuse)?;
     while log.advance()? {}
@@ -43,9 +43,9 @@ fn read_through(path: &Path, kind: LogKind) -> Result<()> {
 fn a_thousand_damaged_logs_of_each_kind_panic_nowhere() {
     let directory = tempfile::tempdir().unwrap();
     let mut random = Random(1);
-    let own = |made: Kind| made.packings().iter().map(|how| made.log(how)).collect();
+    let packed = |made: Kind| made.packings().iter().map(|how| made.log(how)).collect();
     let mut all: Vec<(&str, Vec<Vec<u8>>)> =
-        KINDS.into_iter().map(|made| (made.name(), own(made))).collect();
+        KINDS.into_iter().map(|made| (made.name(), packed(made))).collect();
     all.push(("log.bbl", vec![blackbox()]));
     all.push(("log.bin", vec![dataflash()]));
     all.push(("log.log", vec![dataflash_text().into_bytes()]));
@@ -58,7 +58,7 @@ fn a_thousand_damaged_logs_of_each_kind_panic_nowhere() {
             let path = directory.path().join(name);
             fs::write(&path, &log).unwrap();
             let Some(kind) = LogKind::of(&path).unwrap() else { continue };
-            // Both as it is, and with what is whole of it.
+            // Each log is read with damage refused, and with damage skipped.
             refused += u32::from(read_through(&path, kind).is_err());
             let Ok(mut log) = Reading::open(&path, kind, Damage::Skip) else { continue };
             while let Ok(true) = log.advance() {

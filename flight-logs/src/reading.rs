@@ -1,9 +1,9 @@
-//! Reads a log message by message, and its fields by name.
+//! Reads a log message by message, and numbers in a message by the names of their fields.
 
 use super::{Damage, Entry, Error, ErrorKind, Kind, Log, MessageFault, Result, Topic, open};
 use std::path::Path;
 
-/// A log that is being read, and its current message.
+/// A log that is being read, with its current message.
 pub struct Reading {
     log: Box<dyn Log>,
     file: String,
@@ -11,46 +11,47 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Opens a log.
+    /// Opens a log of a known format; [`Kind::of`] recognises the format.
     ///
     /// # Errors
-    /// Returns an error if the log cannot be opened.
+    /// Returns an error if the log cannot be opened, or if its start is damaged.
     pub fn open(path: &Path, kind: Kind, damage: Damage) -> Result<Self> {
         let file = path.display().to_string();
         Ok(Self { log: open(path, kind, damage)?, file, entry: None })
     }
 
-    /// Goes to the next message; returns whether there is one.
+    /// Reads the next message; returns false at the end of the log.
     ///
     /// # Errors
-    /// Returns an error if the log is damaged and [`Damage::Refuse`] was asked for.
+    /// Returns an error if the log cannot be read, or if it is damaged and was opened with [`Damage::Refuse`].
     pub fn advance(&mut self) -> Result<bool> {
         self.entry = self.log.next()?;
         Ok(self.entry.is_some())
     }
 
-    /// Returns the path of the file that is read.
+    /// Returns the path of the log.
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Returns the topic of the current message, without a leading slash.
+    /// Returns the topic of the current message, without a leading slash; an empty text if there is no message.
     pub fn topic(&self) -> &str {
-        self.own().map_or("", |topic| topic.name.trim_start_matches('/'))
+        self.current_topic().map_or("", |topic| topic.name.trim_start_matches('/'))
     }
 
-    /// Returns the type of the current message.
+    /// Returns the type of the current message, such as `sensor_msgs/msg/Imu`; an empty text if the log has no types.
     pub fn kind(&self) -> &str {
-        self.own().map_or("", |topic| topic.kind.as_str())
+        self.current_topic().map_or("", |topic| topic.kind.as_str())
     }
 
-    /// Reads a number of the current message, such as `angular_velocity.x` or `gyro_rad[0]`; `None` if it lies beyond
-    /// the end of an array.
+    /// Returns a number in the current message, selected by a name such as `angular_velocity.x` or `gyro_rad[0]`.
+    /// Returns `None` if an index is beyond the end of its array.
     ///
     /// # Errors
     /// Returns an error if there is no such field, or if the message does not match its definition.
     pub fn number(&self, field: &str) -> Result<Option<f64>> {
-        let topic = self.own().ok_or_else(|| Error::new(&self.file, ErrorKind::NoMessage))?;
+        let topic =
+            self.current_topic().ok_or_else(|| Error::new(&self.file, ErrorKind::NoMessage))?;
         let definition = topic
             .definition
             .as_ref()
@@ -62,45 +63,47 @@ impl Reading {
         number.map_err(|fault| self.fault(MessageFault::Bytes(fault)))
     }
 
-    /// Reads a text of the current message; `None` if there is none of this name.
+    /// Returns a text in the current message, selected by the name of its field; `None` if there is no such text.
     pub fn text(&self, field: &str) -> Option<String> {
-        self.own()?.text(field, self.log.message())
+        self.current_topic()?.text(field, self.log.message())
     }
 
-    /// Returns the time of the current message in µs: the one that it contains, or else that at which it was recorded.
+    /// Returns the time of the current message in µs: the time in its field `timestamp` if it has one, otherwise the
+    /// time at which it was recorded.
     ///
     /// # Errors
-    /// Returns an error if the message ends before its time.
+    /// Returns an error if there is no message, or if the message ends before its time.
     pub fn time(&self) -> Result<i64> {
         let (topic, entry) = self
-            .own()
+            .current_topic()
             .zip(self.entry)
             .ok_or_else(|| Error::new(&self.file, ErrorKind::NoMessage))?;
-        let stamp = topic.definition.as_ref().ok().and_then(|own| own.stamp("timestamp"));
-        let told = match stamp {
+        let stamp =
+            topic.definition.as_ref().ok().and_then(|definition| definition.stamp("timestamp"));
+        let stamped = match stamp {
             Some(stamp) => topic
                 .stamp(&stamp, self.log.message())
                 .map_err(|fault| self.fault(MessageFault::Bytes(fault)))?,
             None => None,
         };
-        Ok(microseconds(told.unwrap_or(entry.time)))
+        Ok(microseconds(stamped.unwrap_or(entry.time)))
     }
 
-    /// Describes the place of the current message for an error: file, byte, topic.
+    /// Returns file, byte and topic of the current message as a text, to begin an error message.
     pub fn place(&self) -> String {
         let at = self.entry.map_or(0, |entry| entry.at);
         format!("{}: byte {at}, a message of topic {}", self.file, self.topic())
     }
 
-    /// Returns notes on the log; they are complete at its end.
+    /// Returns notes on the faults found in the log so far, one sentence each. They are complete at the end of the log.
     pub fn notes(&mut self) -> Vec<String> {
         self.log.faults().notes()
     }
 
-    /// Returns whether the current message has a number of this name.
+    /// Returns whether the current message has a number of this name, which [`number`](Self::number) accepts.
     pub fn has_number(&self, field: &str) -> bool {
-        let definition = self.own().and_then(|topic| topic.definition.as_ref().ok());
-        definition.is_some_and(|own| own.number(field).is_ok())
+        let definition = self.current_topic().and_then(|topic| topic.definition.as_ref().ok());
+        definition.is_some_and(|definition| definition.number(field).is_ok())
     }
 
     fn fault(&self, fault: MessageFault) -> Error {
@@ -109,12 +112,12 @@ impl Reading {
         Error::new(&self.file, ErrorKind::Message { at, topic, fault })
     }
 
-    fn own(&self) -> Option<&Topic> {
+    fn current_topic(&self) -> Option<&Topic> {
         self.log.topics().get(self.entry?.topic)
     }
 }
 
-/// Rounds a time in ns to whole µs.
+/// Converts a time from ns to µs, rounded to the nearest.
 pub fn microseconds(nanoseconds: i64) -> i64 {
     nanoseconds.saturating_add(500).div_euclid(1000)
 }

@@ -1,4 +1,4 @@
-//! Reads ROS 2 bags: `SQLite` databases, and directories of these or of MCAP files.
+//! Reads ROS 2 bags: `SQLite` databases, and directories of databases or of MCAP files.
 
 use super::bytes::unpack;
 use super::definition::Dialect;
@@ -12,22 +12,22 @@ use super::{Entry, Error, ErrorKind, Kind, Log, Result, files, open};
 use std::collections::{HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 
-/// Name of the file that a bag's directory contains.
+/// Name of the file that every bag directory contains.
 pub(crate) const METADATA: &str = "metadata.yaml";
 
-/// Reason that messages without a known definition cannot be read.
+/// Text for a topic whose messages cannot be read because their definition is unknown.
 const UNDEFINED: &str = "the bag has no definition of its messages, as those written before ROS 2 Iron; \
     `ros2 bag convert` to MCAP adds it";
 
-/// A database of messages.
+/// Reader of a ROS 2 bag in a `SQLite` database.
 pub(crate) struct Sqlite {
     database: Database,
     faults: Faults,
     topics: Vec<Topic>,
-    /// Index of each topic, by its number in the database.
-    places: HashMap<i64, usize>,
+    /// Index in `topics` of each topic, by its number in the database.
+    topic_indices: HashMap<i64, usize>,
     rows: Rows,
-    /// Columns of the topic, the time and the message.
+    /// Indices of the columns with topic, time and content of a message.
     columns: [usize; 3],
     message: Vec<u8>,
 }
@@ -50,7 +50,7 @@ impl Sqlite {
             let columns: Option<Vec<usize>> = names.iter().map(|name| table.column(name)).collect();
             let mut rows = table.rows();
             while let Some(row) = rows.next(&mut database, &mut faults)? {
-                let text = |place: usize| row.text(*columns.as_ref()?.get(place)?);
+                let text = |column: usize| row.text(*columns.as_ref()?.get(column)?);
                 if let (Some(kind), Some(encoding), Some(text)) = (text(0), text(1), text(2)) {
                     definitions.insert(kind, (encoding, text));
                 }
@@ -61,7 +61,7 @@ impl Sqlite {
         let column = |name: &str| table.column(name).ok_or_else(|| missing(name));
         let [id, name, kind, format] =
             [column("id")?, column("name")?, column("type")?, column("serialization_format")?];
-        let (mut topics, mut places) = (Vec::new(), HashMap::new());
+        let (mut topics, mut topic_indices) = (Vec::new(), HashMap::new());
         let mut rows = table.rows();
         while let Some(row) = rows.next(&mut database, &mut faults)? {
             let (Some(id), Some(name), Some(kind)) =
@@ -87,14 +87,14 @@ impl Sqlite {
                     None => Topic::unread(name, kind, UNDEFINED.to_owned()),
                 },
             };
-            places.insert(id, topic.place_in(&mut topics));
+            topic_indices.insert(id, topic.index_in(&mut topics));
         }
         let table = database.table("messages", &mut faults)?;
         let table = table.ok_or_else(|| missing("a table `messages`"))?;
         let column = |name: &str| table.column(name).ok_or_else(|| missing(name));
         let columns = [column("topic_id")?, column("timestamp")?, column("data")?];
         let rows = table.rows();
-        Ok(Self { database, faults, topics, places, rows, columns, message: Vec::new() })
+        Ok(Self { database, faults, topics, topic_indices, rows, columns, message: Vec::new() })
     }
 }
 
@@ -102,7 +102,7 @@ impl Log for Sqlite {
     fn next(&mut self) -> Result<Option<Entry>> {
         while let Some(mut row) = self.rows.next(&mut self.database, &mut self.faults)? {
             let [topic, time, data] = self.columns;
-            let topic = row.integer(topic).and_then(|id| self.places.get(&id));
+            let topic = row.integer(topic).and_then(|id| self.topic_indices.get(&id));
             let (Some(&topic), Some(time), Some(data)) =
                 (topic, row.integer(time), row.take_bytes(data))
             else {
@@ -110,7 +110,7 @@ impl Log for Sqlite {
                 continue;
             };
             self.message = data;
-            // Packed one by one, where the recorder was told so; no message starts like this.
+            // A recorder may compress each message. No uncompressed message starts like this.
             if self.message.starts_with(&ZSTD) {
                 self.message = unpack("zstd", &self.message, LARGEST_MESSAGE).0;
             }
@@ -132,18 +132,18 @@ impl Log for Sqlite {
     }
 }
 
-/// A directory whose files are read one after the other.
+/// Reader of a ROS 2 bag in a directory: its files are read one after the other.
 pub(crate) struct Directory {
     files: VecDeque<PathBuf>,
     current: Option<Box<dyn Log>>,
-    /// For each topic of the current file, its index among the topics of all files.
-    places: Vec<usize>,
+    /// Index in `topics` of each topic of the current file, by its index in that file.
+    topic_indices: Vec<usize>,
     topics: Vec<Topic>,
     faults: Faults,
 }
 
 impl Directory {
-    /// Opens a directory, given by its path or by that of its `metadata.yaml`.
+    /// Opens a bag, given by the path of its directory or of the file `metadata.yaml` in it.
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
         let metadata = if files::is_dir(path) { path.join(METADATA) } else { path.to_owned() };
         let text = files::read_to_string(&metadata)
@@ -153,11 +153,11 @@ impl Directory {
         if files.is_empty() {
             return Err(Error::not_a_log(metadata.display().to_string(), "it lists no files"));
         }
-        Ok(Self { files, current: None, places: Vec::new(), topics: Vec::new(), faults })
+        Ok(Self { files, current: None, topic_indices: Vec::new(), topics: Vec::new(), faults })
     }
 }
 
-/// Returns the file names under `relative_file_paths:`.
+/// Returns the names of the bag's files, which `metadata.yaml` lists under `relative_file_paths:`.
 fn files(text: &str) -> impl Iterator<Item = &str> {
     let mut lines = text.lines().map(str::trim);
     lines.by_ref().find(|line| *line == "relative_file_paths:");
@@ -170,10 +170,10 @@ impl Log for Directory {
         loop {
             if let Some(log) = &mut self.current {
                 if let Some(entry) = log.next()? {
-                    for topic in log.topics().iter().skip(self.places.len()) {
-                        self.places.push(topic.clone().place_in(&mut self.topics));
+                    for topic in log.topics().iter().skip(self.topic_indices.len()) {
+                        self.topic_indices.push(topic.clone().index_in(&mut self.topics));
                     }
-                    return Ok(Some(Entry { topic: self.places[entry.topic], ..entry }));
+                    return Ok(Some(Entry { topic: self.topic_indices[entry.topic], ..entry }));
                 }
                 for note in log.faults().notes() {
                     self.faults.note(note);
@@ -184,7 +184,7 @@ impl Log for Directory {
             let kind = Kind::of(&file)?.filter(|kind| *kind != Kind::Directory);
             let kind = kind
                 .ok_or_else(|| Error::not_a_log(file.display().to_string(), "no bag of ROS 2"))?;
-            self.places.clear();
+            self.topic_indices.clear();
             self.current = Some(open(&file, kind, self.faults.damage())?);
         }
     }

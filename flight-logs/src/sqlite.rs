@@ -1,4 +1,4 @@
-//! Reads tables of an `SQLite` file row by row. See <https://www.sqlite.org/fileformat.html>.
+//! Reads the tables of an `SQLite` database row by row. See <https://www.sqlite.org/fileformat.html>.
 
 use super::bytes::{self, Bytes, is_packed};
 use super::faults::Faults;
@@ -7,32 +7,34 @@ use crate::{Error, ErrorKind, Result};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// The first bytes of a database.
+/// First bytes of an `SQLite` database.
 pub(crate) const START: &[u8] = b"SQLite format 3\0";
 
-/// An open database file.
+/// An open database file, decompressed.
 pub(crate) struct Database {
     file: File,
-    /// Size of a page in bytes; `used` is the size without the reserved bytes at its end.
+    /// Size of a page in bytes.
     page: u64,
+    /// Size of a page without the reserved bytes at its end.
     used: u64,
-    /// Number of pages in the file.
+    /// Number of pages in the file. The last one may be incomplete.
     pages: u64,
 }
 
-/// A table: its columns, and its root page.
+/// A table: the names of its columns, and the number of its root page.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     pub columns: Vec<String>,
     root: u64,
 }
 
-/// The rows of a table, read in order.
+/// The rows of a table, read one by one in the order of their numbers.
 #[derive(Debug)]
 pub(crate) struct Rows {
-    /// The pages from the root down to a leaf, each with the index of its next cell.
+    /// Pages from the root down to the current leaf, each with the index of its next cell.
     stack: Vec<(Page, usize)>,
-    /// Number of pages visited. If there are more than the file has, they form a circle.
+    /// Number of pages visited so far. If it exceeds the number of pages in the file, pages refer to each other in a
+    /// circle.
     visited: u64,
     root: Option<u64>,
 }
@@ -43,10 +45,10 @@ struct Page {
     bytes: Vec<u8>,
 }
 
-/// A row, with the values of its columns.
+/// A row of a table: the values of its columns.
 #[derive(Debug)]
 pub(crate) struct Row {
-    /// Offset of its page in the file.
+    /// Offset in the file of the page that holds the row.
     pub at: u64,
     values: Vec<Value>,
 }
@@ -56,18 +58,20 @@ pub(crate) enum Value {
     Null,
     Integer(i64),
     Real(f64),
-    /// Bytes; also the bytes of a text.
+    /// Bytes of a blob, or of a text.
     Blob(Vec<u8>),
 }
 
 impl Database {
+    /// Opens a database. A compressed file is first decompressed to a temporary file.
+    ///
     /// # Errors
-    /// Returns an error if the file is no database.
+    /// Returns an error if the file cannot be read, or is not a database.
     pub(crate) fn open(path: &Path) -> Result<Self> {
         let failed = |kind: fn(io::Error) -> ErrorKind| move |error| Error::of(path, kind(error));
         let mut file = bytes::open(path)?;
         if is_packed(path)? {
-            // Pages are read in any order, so from a file that is not packed.
+            // Pages are read in any order, which a compressed file does not allow.
             let mut unpacked = files::scratch().map_err(failed(ErrorKind::Unpack))?;
             Bytes::open(path)?.copy(&mut unpacked).map_err(failed(ErrorKind::Unpack))?;
             file = unpacked;
@@ -88,7 +92,10 @@ impl Database {
         Ok(Self { file, page, used, pages: length.div_ceil(page) })
     }
 
-    /// Finds a table by its name.
+    /// Finds a table by its name; returns `None` if there is no such table.
+    ///
+    /// # Errors
+    /// Returns an error if the database is damaged and damage is refused.
     pub(crate) fn table(&mut self, name: &str, faults: &mut Faults) -> Result<Option<Table>> {
         let mut rows = Rows::of(1);
         while let Some(row) = rows.next(self, faults)? {
@@ -118,7 +125,7 @@ impl Database {
         Ok(Page { number, bytes })
     }
 
-    /// Returns the content of a cell, including the part on overflow pages.
+    /// Returns the content of a row, `length` bytes long. It starts in `cell`, and may continue on overflow pages.
     fn payload(&mut self, cell: &[u8], length: u64) -> Result<Vec<u8>, String> {
         if length > self.pages * self.page {
             return Err(format!("a row of {length} bytes is larger than the file"));
@@ -153,9 +160,9 @@ impl Table {
         Rows::of(self.root)
     }
 
-    /// Returns the index of a column.
+    /// Returns the index of the column `name`.
     pub(crate) fn column(&self, name: &str) -> Option<usize> {
-        self.columns.iter().position(|own| own == name)
+        self.columns.iter().position(|column| column == name)
     }
 }
 
@@ -164,7 +171,10 @@ impl Rows {
         Self { stack: Vec::new(), visited: 0, root: Some(root) }
     }
 
-    /// Reads the next row; skips damaged pages if damage is accepted.
+    /// Reads the next row; returns `None` after the last. Damaged pages are skipped if damage is accepted.
+    ///
+    /// # Errors
+    /// Returns an error if a page is damaged and damage is refused.
     pub(crate) fn next(
         &mut self,
         database: &mut Database,
@@ -189,7 +199,7 @@ impl Rows {
         let Some((page, cell)) = self.stack.last_mut() else { return Ok(Step::End) };
         let (number, at) = (page.number, *cell);
         *cell += 1;
-        let told = |what: &str| (number, format!("page {number}: {what}"));
+        let fault = |what: &str| (number, format!("page {number}: {what}"));
         match page.cell(at) {
             Ok(Cell::Row { start }) => {
                 let row = (|| {
@@ -197,9 +207,9 @@ impl Rows {
                     let (length, id) = (varint(&mut left)?, varint(&mut left)?);
                     Some((left.to_vec(), length, id as i64))
                 })();
-                let (cell, length, id) = row.ok_or_else(|| told("a row has no length"))?;
-                let content = database.payload(&cell, length).map_err(|what| told(&what))?;
-                let values = values(&content, id).ok_or_else(|| told("a row ends too early"))?;
+                let (cell, length, id) = row.ok_or_else(|| fault("a row has no length"))?;
+                let content = database.payload(&cell, length).map_err(|what| fault(&what))?;
+                let values = values(&content, id).ok_or_else(|| fault("a row ends too early"))?;
                 Ok(Step::Row(Row { at: (number - 1) * database.page, values }))
             }
             Ok(Cell::Child(child)) => self.go(database, child.into()).map(|()| Step::Other),
@@ -209,7 +219,7 @@ impl Rows {
             }
             Err(what) => {
                 self.stack.pop();
-                Err(told(what))
+                Err(fault(what))
             }
         }
     }
@@ -240,10 +250,11 @@ enum Cell {
 }
 
 impl Page {
-    /// Reads a cell of a page: a row or, on an inner page, the number of another page.
-    fn cell(&self, place: usize) -> Result<Cell, &'static str> {
+    /// Returns the cell at index `index` of the page: a row on a leaf page, the number of a child page on an inner
+    /// page. After the last cell, returns [`Cell::End`].
+    fn cell(&self, index: usize) -> Result<Cell, &'static str> {
         const SHORT: &str = "a cell is outside of it";
-        // The first page has the head of the file before it.
+        // The first page begins with the file's header.
         let start = if self.number == 1 { 100 } else { 0 };
         let u16_at = |at: usize| {
             let bytes = self.bytes.get(at..)?.first_chunk()?;
@@ -257,16 +268,16 @@ impl Page {
             _ => return Err("it is no page of a table"),
         };
         let cells = start + if is_leaf { 8 } else { 12 };
-        match place {
-            _ if place < count => {
-                let cell = u16_at(cells + 2 * place).ok_or(SHORT)?;
+        match index {
+            _ if index < count => {
+                let cell = u16_at(cells + 2 * index).ok_or(SHORT)?;
                 if is_leaf {
                     Ok(Cell::Row { start: cell })
                 } else {
                     u32_at(cell).map(Cell::Child).ok_or(SHORT)
                 }
             }
-            _ if place == count && !is_leaf => u32_at(start + 8).map(Cell::Child).ok_or(SHORT),
+            _ if index == count && !is_leaf => u32_at(start + 8).map(Cell::Child).ok_or(SHORT),
             _ => Ok(Cell::End),
         }
     }
@@ -288,7 +299,7 @@ impl Row {
         }
     }
 
-    /// Takes the bytes of a column out of the row.
+    /// Takes the bytes out of a column; returns `None` if the column holds a number or NULL.
     pub(crate) fn take_bytes(&mut self, column: usize) -> Option<Vec<u8>> {
         match self.values.get_mut(column)? {
             Value::Blob(bytes) => Some(std::mem::take(bytes)),
@@ -297,7 +308,8 @@ impl Row {
     }
 }
 
-/// Parses the values of a row. A column that is an alias of the row's number is not stored, and gets `id`.
+/// Parses the values in a row's content. The first column is NULL if it is an alias of the row's number, and becomes
+/// `id`.
 fn values(content: &[u8], id: i64) -> Option<Vec<Value>> {
     let mut head = content;
     let length = usize::try_from(varint(&mut head)?).ok()?;
@@ -327,19 +339,19 @@ fn values(content: &[u8], id: i64) -> Option<Vec<Value>> {
     Some(values)
 }
 
-/// Parses a signed number, high byte first.
+/// Parses a two's complement integer, big-endian.
 fn integer(bytes: &[u8]) -> i64 {
     let start = if bytes.first().is_some_and(|first| first & 0x80 != 0) { -1 } else { 0 };
     bytes.iter().fold(start, |number, byte| (number << 8) | i64::from(*byte))
 }
 
-/// Takes a variable-length number from the front: seven bits in each byte, high bits first, nine bytes at most.
+/// Removes an `SQLite` varint from the front of `bytes`: seven bits in each byte, high bits first, at most nine bytes.
 fn varint(bytes: &mut &[u8]) -> Option<u64> {
     let mut number = 0_u64;
-    for place in 0..9 {
+    for index in 0..9 {
         let (&byte, rest) = bytes.split_first()?;
         *bytes = rest;
-        if place == 8 {
+        if index == 8 {
             return Some((number << 8) | u64::from(byte));
         }
         number = (number << 7) | u64::from(byte & 0x7f);
@@ -350,7 +362,7 @@ fn varint(bytes: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// Parses the names of columns in `CREATE TABLE name(column type, column type)`.
+/// Returns the names of the columns in a statement `CREATE TABLE name(column type, column type)`.
 fn columns(statement: &str) -> Vec<String> {
     let inside = statement.split_once('(').map_or("", |(_, inside)| inside);
     let names = inside.split(',').filter_map(|column| column.split_whitespace().next());

@@ -1,23 +1,23 @@
-//! Topics of a log, and access to numbers and texts in their messages.
+//! Topics of a log, with the definition of their messages.
 
 use super::definition::{Definition, Dialect, Path, Stamp};
 use super::wire::{self, Fault, Wire};
 
-/// A topic: its name, and the definition of its messages.
+/// A topic: its name, and the type and definition of its messages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topic {
-    /// Name, as in the log.
+    /// Name, as it is written in the log.
     pub name: String,
-    /// Type of its messages.
+    /// Name of the messages' type; empty if the log has no types.
     pub kind: String,
-    /// Encoding of its messages.
+    /// Encoding of the messages' bytes.
     pub wire: Wire,
-    /// Definition of its messages, or the reason that they cannot be read.
+    /// Definition of the messages, or the reason that they cannot be read.
     pub definition: Result<Definition, String>,
 }
 
 impl Topic {
-    /// Makes a topic from the text of a definition.
+    /// Creates a topic of messages of type `kind`; `text` is the definition of their type.
     pub(crate) fn new(name: String, kind: String, dialect: Dialect, text: &str) -> Self {
         let wire = match dialect {
             Dialect::Ros1 | Dialect::Px4 => Wire::Ros1,
@@ -27,21 +27,21 @@ impl Topic {
         Self { name, kind, wire, definition }
     }
 
-    /// Makes a topic whose messages cannot be read; `why` is the reason.
+    /// Creates a topic whose messages cannot be read for the reason `why`.
     pub(crate) fn unread(name: String, kind: String, why: String) -> Self {
         Self { name, kind, wire: Wire::Ros1, definition: Err(why) }
     }
 
-    /// Returns the index of the topic in `topics`; adds it if it is new.
-    pub(crate) fn place_in(self, topics: &mut Vec<Self>) -> usize {
-        let known = topics.iter().position(|own| *own == self);
+    /// Returns the topic's index in `topics`. If an equal topic is not in the list yet, this one is appended.
+    pub(crate) fn index_in(self, topics: &mut Vec<Self>) -> usize {
+        let known = topics.iter().position(|topic| *topic == self);
         known.unwrap_or_else(|| {
             topics.push(self);
             topics.len() - 1
         })
     }
 
-    /// Reads a number of a message; `None` if it lies beyond the end of an array.
+    /// Returns the number at a path in a message, or `None` if the path leads beyond the end of an array.
     ///
     /// # Errors
     /// Returns an error if the message does not match its definition.
@@ -52,18 +52,20 @@ impl Topic {
         }
     }
 
-    /// Returns whether a message is longer than its definition.
+    /// Returns whether a message has bytes after the fields of its definition.
     pub fn is_longer(&self, message: &[u8]) -> bool {
-        self.definition.as_ref().is_ok_and(|own| wire::is_longer(self.wire, own, message))
+        self.definition
+            .as_ref()
+            .is_ok_and(|definition| wire::is_longer(self.wire, definition, message))
     }
 
-    /// Reads a text of a message.
+    /// Returns the text in the field `field` of a message; `None` if there is no such text.
     pub fn text(&self, field: &str, message: &[u8]) -> Option<String> {
         let definition = self.definition.as_ref().ok()?;
         wire::text(self.wire, definition, &definition.text(field)?, message)
     }
 
-    /// Reads a time in a message, in ns; `None` if it lies beyond the end of an array.
+    /// Returns a time in a message, in ns, or `None` if its path leads beyond the end of an array.
     ///
     /// # Errors
     /// Returns an error if the message does not match its definition.

@@ -1,19 +1,20 @@
-//! A window of a few bytes that moves through a log.
+//! A window of the next bytes of a log, for formats whose messages are short.
 
 use crate::Result;
 use crate::bytes::Bytes;
 use crate::faults::Faults;
 
-/// Number of bytes in the window, unless the file ends. No message of a format that is read through a window is longer.
+/// Number of bytes in the window, except near the end of the file. No message of the formats that use a window is
+/// longer.
 pub(crate) const AHEAD: usize = 4096;
 
-/// Bytes read from a file that are not decoded yet.
+/// The next bytes of a file, read but not yet decoded.
 pub(crate) struct Window {
     bytes: Bytes,
     held: Vec<u8>,
-    /// Index in `held` of the first byte that is not decoded; the offset in the file of the first byte of `held`
-    /// follows.
+    /// Index in `held` of the first byte that is not decoded.
     at: usize,
+    /// Offset in the file of the first byte of `held`.
     start: u64,
     is_read: bool,
 }
@@ -23,7 +24,7 @@ impl Window {
         Self { bytes, held: Vec::new(), at: 0, start: 0, is_read: false }
     }
 
-    /// Reads until the window holds [`AHEAD`] bytes, or the file ends.
+    /// Reads bytes until the window holds [`AHEAD`] of them, or the file ends.
     ///
     /// # Errors
     /// Returns an error if the file cannot be read or decompressed, and damage is refused.
@@ -48,22 +49,22 @@ impl Window {
         Ok(())
     }
 
-    /// Returns the bytes in the window.
+    /// Returns the bytes in the window, at least [`AHEAD`] of them except near the end of the file.
     pub(crate) fn left(&self) -> &[u8] {
         &self.held[self.at..]
     }
 
-    /// Returns the offset in the file of the first byte in the window.
-    pub(crate) fn place(&self) -> u64 {
+    /// Returns the offset in the file of the window's first byte.
+    pub(crate) fn offset(&self) -> u64 {
         self.start + self.at as u64
     }
 
-    /// Skips this many bytes, or all in the window if there are fewer.
+    /// Removes `count` bytes from the front of the window, or all if there are fewer.
     pub(crate) fn pass(&mut self, count: usize) {
         self.at = self.held.len().min(self.at.saturating_add(count));
     }
 
-    /// Returns whether the bytes in the window are the last of the file.
+    /// Returns whether the window holds the last bytes of the file, and fewer than [`AHEAD`].
     pub(crate) fn is_at_end(&self) -> bool {
         self.is_read && self.left().len() < AHEAD
     }

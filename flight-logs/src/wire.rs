@@ -1,25 +1,26 @@
-//! Decodes messages: the serialization of ROS 1, and CDR as used by ROS 2.
+//! Decodes the fields of messages in ROS 1's serialization, and in CDR, the serialization of ROS 2.
 
 use super::definition::{Definition, Kind, Number, Path, Shape, Step, Struct};
 use std::fmt;
 
-/// The encoding of messages.
+/// Encoding of a message's bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
-    /// ROS 1: the fields one after the other, without gaps.
+    /// ROS 1's serialization: the fields one after the other, little-endian, without gaps. The readers of other formats
+    /// convert to it.
     Ros1,
-    /// CDR of ROS 2: a prefix of four bytes that gives the byte order, then aligned fields.
+    /// CDR of ROS 2: four bytes that give the byte order, then the fields, each aligned to its size.
     Cdr,
 }
 
-/// The reason that a message cannot be decoded.
+/// Reason that a field of a message cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The message ends within its fields.
+    /// The message ends before the field, or within it.
     Short,
-    /// The message is not plain CDR.
+    /// The first two bytes of a CDR message, given here, stand for an encoding other than plain CDR.
     Encapsulation(u16),
-    /// A wide text precedes the field; its length depends on the writer.
+    /// A field before this one is a wide text, whose length depends on the writer.
     WideText,
 }
 
@@ -33,7 +34,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Reads the number at a path; `None` if it lies beyond the end of an array.
+/// Returns the number at a path in a message; `None` if the path leads beyond the end of an array.
 pub(crate) fn number(
     wire: Wire,
     definition: &Definition,
@@ -47,20 +48,21 @@ pub(crate) fn number(
     }
 }
 
-/// Returns whether a message is longer than its definition. CDR may pad it by up to three bytes.
+/// Returns whether a message has bytes after the fields of its definition, apart from up to three bytes of padding in
+/// CDR.
 pub(crate) fn is_longer(wire: Wire, definition: &Definition, message: &[u8]) -> bool {
     let filling = if wire == Wire::Cdr { 3 } else { 0 };
     length(wire, definition, message).is_ok_and(|length| length + filling < message.len())
 }
 
-/// Returns the length that a message should have by its definition.
+/// Returns the length of a message's fields by its definition, in bytes.
 pub(crate) fn length(wire: Wire, definition: &Definition, message: &[u8]) -> Result<usize, Fault> {
     let mut input = Input::new(wire, message)?;
     input.skip_struct(definition, definition.root())?;
     Ok(message.len() - input.bytes.len() + input.at)
 }
 
-/// Reads the text at a path.
+/// Returns the text at a path in a message; `None` if the path does not lead to a text, or the message is too short.
 pub(crate) fn text(
     wire: Wire,
     definition: &Definition,
@@ -75,11 +77,11 @@ pub(crate) fn text(
     let start = input.at;
     input.skip(length).ok()?;
     let text = String::from_utf8_lossy(&input.bytes[start..input.at]);
-    // In CDR its end is in it.
+    // In CDR, the length of a text includes its NUL.
     Some(text.trim_end_matches('\0').to_owned())
 }
 
-/// The bytes of a message, and the index of the next one to read.
+/// The bytes of a message, and the position of the next byte to decode.
 struct Input<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -99,16 +101,16 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Moves to the field at a path, and returns its type; `None` if it lies beyond the end of an array.
+    /// Moves to the field at a path; returns its type, or `None` if the path leads beyond the end of an array.
     fn go(&mut self, definition: &Definition, path: &Path) -> Result<Option<Kind>, Fault> {
         let mut within = definition.root();
         let mut steps = path.0.iter().peekable();
         let mut found = None;
-        while let Some(Step::Field(place)) = steps.next() {
-            for before in within.fields.iter().take(*place) {
+        while let Some(Step::Field(index)) = steps.next() {
+            for before in within.fields.iter().take(*index) {
                 self.skip_field(definition, before.kind, before.shape)?;
             }
-            let Some(field) = within.fields.get(*place) else { return Ok(None) };
+            let Some(field) = within.fields.get(*index) else { return Ok(None) };
             if let Some(Step::Item(item)) = steps.next_if(|step| matches!(step, Step::Item(_))) {
                 let count = match field.shape {
                     Shape::Counted => self.count()?,
@@ -120,8 +122,8 @@ impl<'a> Input<'a> {
                 }
                 self.skip_many(definition, field.kind, *item)?;
             }
-            if let Kind::Nested(place) = field.kind {
-                within = definition.nested(place);
+            if let Kind::Nested(index) = field.kind {
+                within = definition.nested(index);
             }
             found = Some(field.kind);
         }
@@ -205,12 +207,12 @@ impl<'a> Input<'a> {
                 self.skip(length)
             }),
             Kind::WideText => Err(Fault::WideText),
-            Kind::Nested(place) => {
-                let nested = definition.nested(place);
+            Kind::Nested(index) => {
+                let nested = definition.nested(index);
                 for _ in 0..count {
                     let before = self.at;
                     self.skip_struct(definition, nested)?;
-                    // Others will take no bytes either, however many they are said to be.
+                    // If one item takes no bytes, none does: skipping them one by one could take for ever.
                     if self.at == before {
                         break;
                     }
@@ -221,7 +223,7 @@ impl<'a> Input<'a> {
     }
 
     fn skip_struct(&mut self, definition: &Definition, within: &Struct) -> Result<(), Fault> {
-        // In CDR a message without fields has a byte.
+        // In CDR, a message without fields takes one byte.
         if within.fields.is_empty() && self.is_aligned {
             return self.skip(1);
         }
@@ -240,7 +242,7 @@ mod tests {
     const TEXT: &str = "uint8 a\nfloat64 b\nstring word\nint16[] list\nInner[2] two\n\
         ====\nMSG: t/Inner\nint8 small\nint32 large\n";
 
-    /// The same message in both encodings: 7, 1.5, "ab", [1, -2], (3, 4), (5, 6).
+    /// One message in both encodings gives the same numbers: 7, 1.5, "ab", [1, -2], (3, 4), (5, 6).
     #[test]
     fn both_ways_give_the_same_numbers() {
         let one = Definition::parse("t/T", TEXT, Dialect::Ros1).unwrap();

@@ -1,4 +1,4 @@
-//! Reads files compressed by Zstandard, which may have several frames.
+//! Decompresses Zstandard files, which may consist of several frames.
 
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use std::io::{self, Cursor, ErrorKind, Read};
@@ -6,7 +6,8 @@ use std::io::{self, Cursor, ErrorKind, Read};
 /// First bytes of a file compressed by Zstandard.
 pub(crate) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// The content of all frames of a file: packers that run on several cores write one frame for each piece.
+/// Decompresses all frames of a Zstandard file, one after the other. Packers that run on several cores write several
+/// frames.
 pub(crate) struct Frames<R> {
     input: R,
     decoder: FrameDecoder,
@@ -14,12 +15,12 @@ pub(crate) struct Frames<R> {
 }
 
 impl<R: Read> Frames<R> {
-    /// Decompresses an input.
+    /// Creates a reader of the decompressed content of `input`.
     pub(crate) fn new(input: R) -> Self {
         Self { input, decoder: FrameDecoder::new(), is_within: false }
     }
 
-    /// Begins the next frame that has content; returns false at the end.
+    /// Starts decompressing the next frame that has content; returns false at the end of the file.
     fn begin(&mut self) -> io::Result<bool> {
         let mut start = Vec::new();
         while self.input.by_ref().take(4).read_to_end(&mut start)? > 0 {
@@ -40,11 +41,11 @@ impl<R: Read> Frames<R> {
         Ok(false)
     }
 
-    /// Compares the frame's checksum, if it has one, with its content.
+    /// Checks the content of the frame against its checksum, if it has one.
     fn check(&self) -> io::Result<()> {
-        let own = self.decoder.get_calculated_checksum();
+        let calculated = self.decoder.get_calculated_checksum();
         match self.decoder.get_checksum_from_data() {
-            Some(checksum) if own.is_some_and(|own| own != checksum) => {
+            Some(checksum) if calculated.is_some_and(|calculated| calculated != checksum) => {
                 Err(io::Error::other("zstd's checksum is another: the file is damaged"))
             }
             _ => Ok(()),

@@ -1,9 +1,9 @@
-//! Compares the model of `ReckOn` with the chip's register-transfer code, clock by clock: `reckon_rtl SIMULATION
-//! [CLOCKS [SEED]]`.
+//! Compares the model of `ReckOn` with the chip's register-transfer code, clock cycle by clock cycle. Usage:
+//! `reckon_rtl SIMULATION [CLOCKS [SEED]]`.
 //!
-//! SIMULATION is the program that Verilator makes of that code, driven by `rtl/reckon.cpp`. Both get the same random
-//! programs, networks, samples and faults. The pins and all registers must be equal after each clock and each edge of a
-//! pin, and the memories after each session.
+//! SIMULATION is the program that Verilator makes of the register-transfer code, driven by `rtl/reckon.cpp`. Model and
+//! simulation get the same random programs, networks, samples and faults. Their pins and registers must be equal after
+//! each clock cycle and each edge of a pin, and their memories after each session.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
@@ -15,7 +15,7 @@ use silicon::reckon::{Inputs, State};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
-/// Code of the record that asks for the memories.
+/// Code of the record that asks the simulation for a digest of its memories.
 const MEMORIES: u8 = 255;
 
 struct Both {
@@ -26,7 +26,7 @@ struct Both {
     expected: Vec<[u64; 2]>,
     random: Pcg32,
     clocks: u64,
-    /// How often each kind of fault was tried.
+    /// Number of times that each kind of fault was tried.
     faults: [(&'static str, u64); 10],
     states: [u64; 8],
 }
@@ -138,7 +138,7 @@ impl Both {
         self.spi(register, &[value], 1, false);
     }
 
-    /// Writes registers: some with values that networks use, some with values that no network should have.
+    /// Writes registers, some with values that networks use, some with values that no network should have.
     fn configure(&mut self) {
         let inputs = [1, 7, 15, 23, 40][self.below(5) as usize] + self.below(2);
         let neurons = [1, 3, 15, 17, 31][self.below(5) as usize] + u32::from(self.one_in(4));
@@ -209,7 +209,7 @@ impl Both {
             if self.one_in(3) {
                 let words = [0, 1, 2, 3].map(|at| {
                     let word = self.random.next_u32();
-                    // Thresholds from 0 to 255, mostly.
+                    // In seven of eight words, limits the threshold to 255, so that neurons fire.
                     if at == 3 && !self.one_in(8) { word & 0xFFF0_0FFF } else { word }
                 });
                 self.spi(1 << 28 | pair << 2, &words, half, false);
@@ -296,7 +296,7 @@ impl Both {
         }
     }
 
-    /// Serves the chip's requests until its step is done.
+    /// Drives the chip's handshakes until its step is done.
     fn step(&mut self) {
         self.tick();
         let mut configured = 0;

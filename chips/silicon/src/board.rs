@@ -1,8 +1,8 @@
-//! A board with a chip: the SPI device and the port of a driver, which share the chip, and the port of tinyODIN and
-//! ODIN.
+//! The simulated board: a chip's model, and the SPI device and the port through which a driver accesses it. Contains
+//! the port for tinyODIN and ODIN.
 //!
-//! The chip's time advances with the driver's calls: by `ratio` clocks for each SPI clock, and by `call_clocks` for
-//! each call of the port.
+//! The chip's time advances with the driver's calls: by `ratio` clock cycles for each SPI clock cycle, and by
+//! `call_clocks` for each call of the port.
 
 use alloc::collections::VecDeque;
 use alloc::rc::Rc;
@@ -14,31 +14,31 @@ use spikewire_chips::AerPort;
 
 use super::chip::{Chip, Kind};
 
-/// A chip's model: its clock, and the pins of its SPI.
+/// The model of a chip that a board can carry: its clock, and the pins of its SPI.
 pub trait Model: Default {
-    /// Runs the chip for this many clocks.
+    /// Runs the chip for `clocks` clock cycles.
     fn run(&mut self, clocks: u32);
 
-    /// Returns the level of MISO.
+    /// Returns the level of MISO, the chip's SPI output.
     fn miso(&self) -> bool;
 
-    /// Raises SCK, with MOSI at `bit`.
+    /// Raises SCK, the SPI clock, with the chip's SPI input MOSI at `bit`.
     fn rise(&mut self, bit: bool);
 
-    /// Lowers SCK.
+    /// Lowers SCK, the SPI clock.
     fn fall(&mut self);
 }
 
-/// A fault of an SPI clock.
+/// A fault of one SPI clock pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClockFault {
-    /// The chip does not see the clock.
+    /// The chip does not see the clock pulse.
     Lost,
-    /// The chip sees two clocks.
+    /// The chip sees two clock pulses instead of one.
     Doubled,
 }
 
-/// A fault of a call of the port.
+/// A fault of one call of the port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CallFault {
     /// The call fails before it has any effect.
@@ -47,30 +47,31 @@ pub enum CallFault {
     After,
 }
 
-/// The chip, the wires and their faults.
+/// The chip, the state of its wires, and the faults that are planned.
 #[derive(Debug)]
 pub struct Pins<C> {
-    /// The chip.
+    /// The model of the chip.
     pub chip: C,
-    /// Number of the chip's clocks for one SPI clock: 1 or more; 2 or more for `ReckOn`.
+    /// Number of the chip's clock cycles in one SPI clock cycle: at least 1, for `ReckOn` at least 2.
     pub ratio: u32,
-    /// Number of the chip's clocks for one call of the port.
+    /// Number of the chip's clock cycles that one call of the port takes.
     pub call_clocks: u32,
-    /// Extra clocks of the chip between the read of an output and its ACK, one entry for each output in turn.
+    /// Extra clock cycles of the chip between the read of an output and its ACK; each output takes the next entry, or 0
+    /// at the end.
     pub output_delays: VecDeque<u32>,
-    /// Number of SPI clocks so far.
+    /// Number of SPI clock cycles so far.
     pub spi_clocks: u64,
-    /// Faults of SPI clocks, each with the clock's number, in order.
+    /// Planned faults of SPI clock pulses, each with the number of its pulse, in ascending order.
     pub clock_faults: VecDeque<(u64, ClockFault)>,
     /// Number of calls of the port so far.
     pub calls: u64,
-    /// Faults of calls of the port, each with the call's number, in order.
+    /// Planned faults of calls of the port, each with the number of its call, in ascending order.
     pub call_faults: VecDeque<(u64, CallFault)>,
-    /// Whether `SCHED_FULL` is wired to the microcontroller.
+    /// Whether the chip's pin `SCHED_FULL` is wired to the microcontroller.
     pub has_full_pin: bool,
 }
 
-/// A board, shared between a driver and a test.
+/// A simulated board, which a driver and a test share.
 #[derive(Debug)]
 pub struct Board<C>(Rc<RefCell<Pins<C>>>);
 
@@ -81,8 +82,7 @@ impl<C> Clone for Board<C> {
 }
 
 impl<C: Model> Board<C> {
-    /// Makes a board with a chip just powered up, `ratio` of its clocks for one SPI clock and `call_clocks` for a call
-    /// of the port.
+    /// Makes a board with a chip that has just been powered up. `ratio` and `call_clocks` are the fields of [`Pins`].
     pub fn new(ratio: u32, call_clocks: u32) -> Self {
         Self(Rc::new(RefCell::new(Pins {
             chip: C::default(),
@@ -97,7 +97,7 @@ impl<C: Model> Board<C> {
         })))
     }
 
-    /// Borrows the chip and the wires.
+    /// Borrows the chip and its wires.
     ///
     /// # Panics
     /// Panics if they are borrowed already.
@@ -105,23 +105,23 @@ impl<C: Model> Board<C> {
         self.0.borrow_mut()
     }
 
-    /// Returns the SPI device.
+    /// Returns an SPI device that accesses the chip.
     pub fn spi(&self) -> Spi<C> {
         Spi(self.clone())
     }
 
-    /// Returns the port.
+    /// Returns a port that drives the chip's other pins.
     pub fn port(&self) -> Port<C> {
         Port(self.clone())
     }
 
-    /// Lets the chip run for this many clocks.
+    /// Runs the chip for `clocks` clock cycles.
     pub fn run(&self, clocks: u32) {
         self.pins().chip.run(clocks);
     }
 }
 
-/// The chip's SPI pins.
+/// The chip's SPI pins, as an SPI device.
 #[derive(Debug)]
 pub struct Spi<C>(Board<C>);
 
@@ -159,7 +159,7 @@ impl<C: Model> SpiDevice for Spi<C> {
     }
 }
 
-/// Transfers bytes, the highest bit first.
+/// Transfers bytes bit by bit, the highest bit of a byte first.
 fn transact(
     operations: &mut [Operation<'_, u8>],
     mut exchange: impl FnMut(bool) -> bool,
@@ -183,7 +183,7 @@ fn transact(
     Ok(())
 }
 
-/// Takes the fault that is due now, if there is one.
+/// Removes and returns the first fault if it is planned for `now`.
 fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
     let &(at, fault) = faults.front()?;
     (at == now).then(|| {
@@ -192,12 +192,13 @@ fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
     })
 }
 
-/// The chip's parallel pins.
+/// The chip's pins other than SPI, as a port.
 #[derive(Debug)]
 pub struct Port<C>(Board<C>);
 
 impl<C: Model> Port<C> {
-    /// Advances the chip's time, then acts. The error is the number of the call.
+    /// Runs the chip for the clock cycles of a call, then acts on the pins. If the call has a fault, returns the number
+    /// of the call as the error.
     pub(crate) fn call<T>(&mut self, act: impl FnOnce(&mut Pins<C>) -> T) -> Result<T, u64> {
         let mut pins = self.0.pins();
         let call = pins.calls;
@@ -249,14 +250,14 @@ impl<K: Kind> AerPort for Port<Chip<K>> {
         self.call(|pins| pins.chip.set_reset(is_high))
     }
 
-    /// Reads the pin together with the others, which takes no extra time.
+    /// Reads `SCHED_FULL`. Unlike the other calls it takes no time, because a driver reads all pins at once.
     fn queue_full(&mut self) -> Result<Option<bool>, u64> {
         let pins = self.0.pins();
         Ok(pins.has_full_pin.then(|| pins.chip.is_full()))
     }
 }
 
-/// Delays run the chip's clock, which is taken to be 10 MHz.
+/// Runs the chip for the time of a delay, at a clock frequency of 10 MHz.
 impl<C: Model> DelayNs for Board<C> {
     fn delay_ns(&mut self, ns: u32) {
         self.run(ns.div_ceil(100));

@@ -1,4 +1,4 @@
-//! The controller of tinyODIN and ODIN, its queue and its memories.
+//! The model of tinyODIN and ODIN: their controller, queue and memories.
 
 use alloc::collections::VecDeque;
 use alloc::vec;
@@ -12,66 +12,67 @@ use super::spi::SpiSlave;
 
 /// The properties in which tinyODIN and ODIN differ.
 pub trait Kind: Clone + Copy + Debug + Default + 'static {
-    /// Number of bytes in a neuron.
+    /// Number of bytes that a neuron takes in memory.
     const NEURON_BYTES: u16;
-    /// Number of spikes and virtual events that fit the queue.
+    /// Number of spikes and virtual events that the queue holds.
     const QUEUE: usize;
-    /// Whether a spike stays in the queue, after its sweep, until the output bus is free.
+    /// Whether a spike stays in the queue after it was applied to all neurons, until the output bus is free.
     const POPS_AFTER_OUTPUT: bool;
-    /// Whether the gate waits for the controller.
+    /// Whether the gate shuts only when the controller is idle.
     const GATE_WAITS: bool;
 
     /// Decodes a word on the input bus.
     fn decode(word: u32) -> Input;
-    /// Returns the last neuron of a sweep.
+    /// Returns the highest neuron to which a spike is applied.
     fn last_neuron(registers: &Registers) -> u8;
-    /// Returns whether the output bus carries the spikes of the queue, rather than those of neurons.
+    /// Returns whether the output bus carries the spikes that leave the queue, rather than those of neurons that fire.
     fn outputs_are_popped(registers: &Registers) -> bool;
-    /// Returns a neuron's next state, and whether it fires. Ignores that it may be disabled.
+    /// Returns the bits of a neuron after an event, and whether the neuron fires. Ignores the bit that disables the
+    /// neuron.
     fn update(neuron: u128, drive: Drive, registers: &Registers) -> (u128, bool);
-    /// Returns whether a neuron never fires.
+    /// Returns whether the neuron's disabling bit is set, so that it never fires.
     fn is_disabled(neuron: u128) -> bool;
-    /// Returns whether a bistability event moves a synapse.
+    /// Returns whether a bistability event may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Returns whether a queued spike goes to the output bus when its sweep writes this neuron; only for spikes of the
-    /// queue.
+    /// Returns whether a spike from the queue goes to the output bus at the moment when it is applied to `neuron`.
+    /// Applies only if the output bus carries spikes of the queue.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 
-/// The meaning of a word on the input bus.
+/// A word on the input bus, decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// A time step of one neuron, or of all if `None`.
+    /// A time step of the given neuron, or of all neurons if `None`.
     Leak(Option<u8>),
-    /// A bistability event for the synapses from one neuron, or from all if `None`.
+    /// A bistability event for the synapses from the given neuron, or from all neurons if `None`.
     Bistability(Option<u8>),
-    /// A spike on one synapse: presynaptic and postsynaptic neuron.
+    /// A spike on one synapse: the presynaptic and the postsynaptic neuron.
     Synapse(u8, u8),
-    /// An event for the queue: the bits of a virtual event, or 0 for a spike; and the neuron.
+    /// An event that goes to the queue: the bits of a virtual event, or 0 for a spike; then the neuron.
     Queued(u8, u8),
 }
 
-/// The event that acts on a neuron.
+/// The event that acts on a neuron, as the signals that the controller gives to the neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Drive {
-    /// Whether there is an event; false for a write over SPI.
+    /// Whether an event acts on the neuron. False if the neuron is accessed over SPI.
     pub is_event: bool,
     /// Whether the event is a time step of the controller.
     pub is_leak: bool,
-    /// The bits of a virtual event.
+    /// The bits of a virtual event; 0 for other events.
     pub virtual_bits: u8,
-    /// The 4 bits of the synapse.
+    /// The 4 bits of the synapse through which the event acts.
     pub synapse: u8,
     /// The presynaptic neuron.
     pub pre: u8,
 }
 
-/// The configuration registers. They have no reset value.
+/// The configuration registers, by number. A reset does not change them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Registers(pub [u32; 26]);
 
 impl Registers {
-    /// Returns the value of a one-bit register.
+    /// Returns bit 0 of a register, for registers of one bit.
     pub const fn bit(&self, register: usize) -> bool {
         self.0[register] & 1 == 1
     }
@@ -96,7 +97,7 @@ enum State {
     WaitRequest,
 }
 
-/// The registers that are reset by, and change with, the chip's clock.
+/// The state that changes with the chip's clock and that reset clears.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Clocked {
     request: [bool; 2],
@@ -110,7 +111,7 @@ struct Clocked {
     output: Output,
 }
 
-/// What the controller requests of the memories in this clock.
+/// The accesses to memories and queue that the controller requests in a clock cycle.
 #[derive(Clone, Copy, Debug, Default)]
 struct Control {
     neuron: Option<(u8, bool)>,
@@ -124,10 +125,10 @@ struct Control {
     is_bistability: bool,
 }
 
-/// tinyODIN or ODIN.
+/// A tinyODIN or an ODIN, by its [`Kind`].
 #[derive(Clone, Debug)]
 pub struct Chip<K> {
-    /// Level of the pin RST.
+    /// Level of the reset pin RST.
     pub reset: bool,
     /// Word on the input bus.
     pub word: u32,
@@ -148,19 +149,20 @@ pub struct Chip<K> {
     /// The memory of synapses, eight in each word.
     pub synapses: Vec<u32>,
     is_still: bool,
-    /// Number of clocks so far.
+    /// Number of clock cycles so far.
     pub clocks: u64,
-    /// Words that the chip has acknowledged.
+    /// Words that the chip has acknowledged, in order.
     pub taken: Vec<u32>,
-    /// Neurons whose spikes went to the output bus.
+    /// Neurons whose spikes went to the output bus, in order.
     pub fired: Vec<u8>,
-    /// Number of spikes for which the queue had no room.
+    /// Number of spikes that were lost because the queue was full.
     pub overflows: u32,
     kind: PhantomData<K>,
 }
 
 impl<K: Kind> Default for Chip<K> {
-    /// The worst state after power-up: the chip runs, in closed loop, and all memories are 0.
+    /// Makes a chip in the state after power-up that is hardest for a driver: not gated, in closed loop, with memories
+    /// that are all 0.
     fn default() -> Self {
         Self {
             reset: false,
@@ -186,16 +188,16 @@ impl<K: Kind> Default for Chip<K> {
     }
 }
 
-/// The chip, the wires and their faults.
+/// The pins of tinyODIN or ODIN, and their faults.
 pub type Pins<K> = board::Pins<Chip<K>>;
 
-/// A board, shared between a driver and a test.
+/// A simulated board with tinyODIN or ODIN.
 pub type Board<K> = board::Board<Chip<K>>;
 
-/// The chip's SPI pins.
+/// The SPI device of tinyODIN or ODIN.
 pub type Spi<K> = board::Spi<Chip<K>>;
 
-/// The chip's parallel pins.
+/// The port of tinyODIN or ODIN.
 pub type Port<K> = board::Port<Chip<K>>;
 
 impl<K: Kind> Model for Chip<K> {
@@ -235,7 +237,7 @@ impl<K: Kind> Chip<K> {
         self.clocked.output
     }
 
-    /// Returns the level of the pin `SCHED_FULL`.
+    /// Returns the level of the pin `SCHED_FULL`, which is high while the queue is full.
     pub fn is_full(&self) -> bool {
         self.queue.len() == K::QUEUE
     }
@@ -245,23 +247,23 @@ impl<K: Kind> Chip<K> {
         self.queue.len()
     }
 
-    /// Returns whether the controller sees the gate shut.
+    /// Returns whether the gate is shut as the controller sees it, after synchronisation.
     pub fn is_gated(&self) -> bool {
         self.clocked.gate[1]
     }
 
-    /// Returns whether the chip has nothing to do.
+    /// Returns whether controller, queue and output bus are idle.
     pub fn is_idle(&self) -> bool {
         self.queue.is_empty() && self.clocked.state == State::Wait && !self.clocked.output.is_busy
     }
 
-    /// Returns the 4 bits of a synapse.
+    /// Returns the 4 bits of the synapse from `pre` to `post`.
     pub fn synapse(&self, pre: u8, post: u8) -> u8 {
         let word = self.synapses[usize::from(pre) << 5 | usize::from(post) >> 3];
         (word >> (4 * (post & 7)) & 0xF) as u8
     }
 
-    /// Drives RST.
+    /// Drives the reset pin RST.
     pub fn set_reset(&mut self, is_high: bool) {
         self.is_still &= self.reset == is_high;
         self.reset = is_high;
@@ -270,13 +272,13 @@ impl<K: Kind> Chip<K> {
         }
     }
 
-    /// Drives REQ.
+    /// Drives the input bus's REQ.
     pub fn set_request(&mut self, is_high: bool) {
         self.is_still &= self.request == is_high;
         self.request = is_high;
     }
 
-    /// Drives the output's ACK.
+    /// Drives the output bus's ACK.
     pub fn set_output_acknowledge(&mut self, is_high: bool) {
         self.is_still &= self.output_acknowledge == is_high;
         self.output_acknowledge = is_high;
@@ -288,7 +290,8 @@ impl<K: Kind> Chip<K> {
         self.word = word;
     }
 
-    /// Runs the chip for this many clocks; stops early, without counting them, once nothing can change any more.
+    /// Runs the chip for `clocks` clock cycles. Stops early if no further clock cycle can change anything; the skipped
+    /// cycles are not counted.
     pub fn run(&mut self, clocks: u32) {
         self.clocks += u64::from(clocks);
         for _ in 0..clocks {
@@ -357,7 +360,7 @@ impl<K: Kind> Chip<K> {
         if c.state == State::Wait {
             (c.count, c.neuron_count) = (0, 0);
         } else if !is_busy {
-            // Where it only waits, nobody looks at the count.
+            // In states that only wait, the value of the counter does not matter.
             let counts = !matches!(c.state, State::WaitSpi | State::WaitRequest | State::Pop);
             c.count = c.count.wrapping_add(u32::from(counts));
             c.neuron_count = c.neuron_count.wrapping_add(u8::from(control.next_neuron));
@@ -391,7 +394,7 @@ impl<K: Kind> Chip<K> {
             State::Leak => {
                 let one = match K::decode(self.word) {
                     Input::Leak(neuron) => neuron,
-                    // The word changed under way: the chip reads its bits all the same.
+                    // The word changed during its handshake; the chip decodes the new bits.
                     _ => None,
                 };
                 Control {
@@ -497,7 +500,7 @@ impl<K: Kind> Chip<K> {
         }
     }
 
-    /// Returns the next state of an idle controller.
+    /// Returns the state that an idle controller enters next.
     fn choose(&self, head: Option<(u8, u8)>, is_full: bool) -> State {
         let Clocked { request, gate, reading, writing, output, .. } = self.clocked;
         let pop = |(bits, _)| if bits == 0 { State::Spike } else { State::Virtual };
@@ -528,7 +531,7 @@ impl<K: Kind> Chip<K> {
         }
     }
 
-    /// Reads or writes the memory of neurons; returns the neuron that fires.
+    /// Reads or writes the memory of neurons; returns the number of the neuron that fires, if it fires.
     fn neuron_memory(
         &mut self,
         control: &Control,
@@ -590,7 +593,8 @@ impl<K: Kind> Chip<K> {
         };
     }
 
-    /// Returns a synapse after a bistability event: it moves by one, down to 0 from 3 or less, up to 7 from 4 or more.
+    /// Returns the synapse after a bistability event: weights of 4 or more rise by one, up to 7; weights of 3 or less
+    /// fall by one, down to 0.
     fn settle(&self, synapse: u8) -> u8 {
         match synapse & 7 {
             _ if !K::is_plastic(synapse, &self.registers) => synapse,

@@ -1,13 +1,12 @@
-//! Models of tinyODIN, ODIN and [`ReckOn`], clock by clock. They were written from the chips' public register-transfer
-//! code, of which nothing is copied.
+//! Models of the chips tinyODIN, ODIN and [`ReckOn`], exact to the clock cycle. They were written from the chips'
+//! public register-transfer code; nothing is copied from it.
 //!
-//! `ReckOn` has a module of its own, [`reckon`]. The models of the other two share one file each for the [SPI
-//! slave](spi), the [output bus](output), the [pins](board) that a driver holds, and the [controller](chip). They
-//! differ in a [`Kind`]: [`TinyOdin`], [`Odin`].
+//! `ReckOn` has a module of its own, [`reckon`]. The models of tinyODIN and ODIN share their [SPI slave](spi), [output
+//! bus](output), [pins](board) and [controller](chip), and differ in their [`Kind`]: [`TinyOdin`] or [`Odin`].
 //!
-//! Exact to the clock are the synchronisers, the controller, the scheduler's queue, the order of a sweep, the neurons,
-//! the gate and the write-back over SPI. Not modelled are ODIN's learning (`ca_en` is taken as 0), its Izhikevich
-//! neurons, its bursts, and the monitoring on the output bus.
+//! Exact to the clock cycle are the synchronisers, the controller, the scheduler's queue, the order of a sweep, the
+//! neurons, the gate and the write-back over SPI. Not modelled are ODIN's learning (`ca_en` is taken as 0), its
+//! Izhikevich neurons, its bursts, and the monitoring on the output bus.
 
 #![no_std]
 #![allow(

@@ -1,9 +1,10 @@
-//! ODIN: 256 neurons of 8 bits, and weights of 3 bits whose sign is that of the presynaptic neuron.
+//! The properties of ODIN: 256 neurons whose potentials have 8 bits, and weights of 3 bits whose sign is that of the
+//! presynaptic neuron.
 
 use super::chip::{Drive, Input, Kind, Registers};
 
-/// The properties of ODIN. Registers: 0 gate, 1 open loop, 2-17 signs, 19 source of outputs, 21 monitored neuron, 23
-/// updates of unmapped synapses, 24 propagation by unmapped synapses.
+/// The properties of ODIN. Its registers are: 0 gate, 1 open loop, 2 to 17 signs of neurons, 19 source of outputs, 21
+/// monitored neuron, 23 whether unmapped synapses learn, 24 whether unmapped synapses act.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Odin;
 

@@ -1,5 +1,5 @@
-//! The output bus: the chip raises REQ, the receiver raises ACK, REQ falls, ACK falls. The chip does nothing else
-//! meanwhile.
+//! The output bus of tinyODIN and ODIN, with its 4-phase handshake: the chip raises REQ, the receiver raises ACK, REQ
+//! falls, ACK falls. The chip does nothing else meanwhile.
 
 /// The state of the output bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -9,12 +9,13 @@ pub struct Output {
     pub address: u8,
     /// Level of REQ.
     pub request: bool,
-    /// Whether the controller must wait.
+    /// Whether the controller must wait because a handshake is under way.
     pub is_busy: bool,
 }
 
 impl Output {
-    /// Advances by a clock, with the level of ACK and a new spike, if there is one.
+    /// Advances by one clock cycle. `acknowledge` is the level of ACK; `spike` is the neuron of a new spike, if there
+    /// is one.
     pub fn clock(&mut self, acknowledge: bool, spike: Option<u8>) {
         let [first, now, before] = self.acknowledge;
         match spike {

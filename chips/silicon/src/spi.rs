@@ -1,30 +1,30 @@
-//! The SPI slave of tinyODIN and ODIN: frames of 40 clocks, counted from reset, without a chip select.
+//! The SPI slave of tinyODIN and ODIN: frames of 40 clock pulses, counted from reset, without a chip select.
 
-/// The state of the slave, which only SCK advances.
+/// The state of the slave, which changes with SCK only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SpiSlave {
     count: u8,
     address: u32,
     shift_in: u32,
     shift_out: u32,
-    /// Whether the controller is asked to read a memory.
+    /// Whether the controller is to read a memory.
     pub is_reading: bool,
-    /// Whether the controller is asked to write a memory.
+    /// Whether the controller is to write a memory.
     pub is_writing: bool,
     /// Address of the last access to a memory.
     pub memory_address: u16,
     /// Number of the memory: 1 neurons, 2 synapses.
     pub memory: u8,
-    /// The byte to write in the low half, and the mask of the bits to keep in the high half.
+    /// For a write: the byte in bits 0 to 7, and in bits 8 to 15 the mask of the bits that keep their value.
     pub data: u16,
 }
 
-/// A write to a configuration register.
+/// A complete write to a configuration register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
     /// Number of the register.
     pub register: u16,
-    /// Value: the last 20 bits of the frame.
+    /// Value to write: the last 20 bits of the frame.
     pub value: u32,
 }
 
@@ -39,7 +39,7 @@ impl SpiSlave {
         self.shift_out >> 19 & 1 == 1
     }
 
-    /// Raises SCK, with MOSI at `bit`; returns a write to a register if it is complete.
+    /// Raises SCK, with MOSI at `bit`. Returns the write to a configuration register if it is now complete.
     pub fn rise(&mut self, bit: bool) -> Option<Written> {
         let before = self.shift_in;
         self.shift_in = (before << 1 | u32::from(bit)) & 0xF_FFFF;
@@ -94,8 +94,7 @@ impl SpiSlave {
         self.count = if self.count == 39 { 0 } else { (self.count + 1) & 63 };
     }
 
-    /// Returns the byte to write back to memory: the bits of `old` where the mask is 1, and those of the data
-    /// elsewhere.
+    /// Returns the byte to write back to memory: the bits of `old` where the mask is 1, the bits of the data elsewhere.
     pub const fn merge(&self, old: u8) -> u8 {
         let (keep, byte) = ((self.data >> 8) as u8, self.data as u8);
         byte & !keep | old & keep

@@ -1,8 +1,8 @@
-//! tinyODIN: 256 neurons of 12 bits, and signed weights of 4 bits.
+//! The properties of tinyODIN: 256 neurons whose potentials have 12 bits, and signed weights of 4 bits.
 
 use super::chip::{Drive, Input, Kind, Registers};
 
-/// The properties of tinyODIN. Registers: 0 gate, 1 open loop, 2 source of outputs, 3 last neuron.
+/// The properties of tinyODIN. Its registers are: 0 gate, 1 open loop, 2 source of outputs, 3 highest neuron in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TinyOdin;
 

@@ -10,16 +10,16 @@ use spikewire::Event;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
-    /// ACK is still high, or the previous word is not finished. This word was not sent.
+    /// ACK is still high from the previous word, or that word's handshake has not ended. The new word was not sent.
     Idle,
-    /// ACK did not rise after REQ. The word is pending: it stays on the bus, with REQ high, until the chip takes it or
-    /// is reset.
+    /// ACK did not rise after REQ rose. The word is pending: it stays on the bus, with REQ high, until the chip takes
+    /// it or is reset.
     Acknowledge,
     /// ACK did not fall after REQ fell. The chip has taken the word.
     Release,
 }
 
-/// The reason that a handshake did not end.
+/// The reason that a handshake failed.
 #[derive(Debug)]
 pub(crate) enum AerError<E> {
     Port(E),
@@ -32,53 +32,53 @@ impl<E> From<E> for AerError<E> {
     }
 }
 
-/// The kind of the pending word.
+/// The kind of the word whose handshake has not ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Carries {
     /// A word from [`Running::send`](super::Running::send).
     Word,
-    /// A probe, which a chip answers only if it runs.
+    /// A probe: a word that the chip acknowledges only if it runs.
     Probe,
-    /// A time step.
+    /// A leak event, which is a time step.
     Step,
     /// An event from [`Running::feed`](super::Running::feed).
     Event(Event),
 }
 
-/// The state of our ACK on the output bus. It is uncertain after a call on the port that failed, which may have changed
-/// the pin.
+/// State of the ACK that the driver raises on the output bus. After a port call that failed, the level of the pin is
+/// unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
-    /// Low; the next REQ is a new output.
+    /// ACK is low; the next REQ announces a new output.
     Idle,
-    /// Being raised: the output was passed to the caller, and ACK may be high or low.
+    /// ACK is being raised. The output was passed to the caller; ACK may be high or low.
     Raising,
-    /// High.
+    /// ACK is high.
     High,
-    /// Being lowered: REQ has fallen, and ACK may be high or low.
+    /// ACK is being lowered. REQ has fallen; ACK may be high or low.
     Lowering,
 }
 
 /// The microcontroller's side of the input bus and the output bus.
 ///
-/// The chip reads the word for as long as it works on it, and then acknowledges any REQ that it finds. Therefore a word
-/// stays on the bus until it is acknowledged, over as many calls as that takes.
+/// The chip reads the word on its input bus for as long as it works on it, and then acknowledges whichever REQ it
+/// finds. Therefore a word stays on the bus until it is acknowledged, even if that takes several calls.
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// Number of reads of the pins in a wait, if one read takes at least a clock of the chip.
+    /// Number of pin reads before a wait times out, if each read takes at least one clock cycle of the chip.
     polls: u32,
-    /// Number of reads of the pins that fit into one clock of the chip.
-    looks_a_clock: NonZeroU32,
-    /// Number of reads of the pins in a wait: the saturated product of `polls` and `looks_a_clock`, stored because a
-    /// Cortex-M0 is slow to compute it.
+    /// Number of pin reads that fit into one clock cycle of the chip.
+    reads_per_clock: NonZeroU32,
+    /// Number of pin reads before a wait times out: the product of `polls` and `reads_per_clock`, saturated. Stored
+    /// because a Cortex-M0 is slow to compute it.
     patience: u32,
-    /// Phase of the last word.
+    /// Phase that the handshake of the last word has reached.
     phase: Phase,
     carries: Carries,
     answer: Answer,
     is_full: bool,
-    /// How often the queue was seen to become full.
+    /// Number of times that the chip's queue was seen to become full.
     pub(super) overflows: u32,
 }
 
@@ -87,7 +87,7 @@ impl<P: AerPort> Aer<P> {
         Self {
             port,
             polls,
-            looks_a_clock: NonZeroU32::MIN,
+            reads_per_clock: NonZeroU32::MIN,
             patience: polls,
             phase: Phase::Idle,
             carries: Carries::Word,
@@ -97,18 +97,19 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    pub(super) fn set_looks_a_clock(&mut self, looks: NonZeroU32) {
-        self.looks_a_clock = looks;
-        self.patience = self.looks(self.polls);
+    pub(super) fn set_reads_per_clock(&mut self, reads: NonZeroU32) {
+        self.reads_per_clock = reads;
+        self.patience = self.reads(self.polls);
     }
 
-    /// Returns the number of reads of the pins that take at least this many clocks of the chip.
-    pub(super) fn looks(&self, clocks: u32) -> u32 {
-        clocks.saturating_mul(self.looks_a_clock.get())
+    /// Returns the number of pin reads that take at least `clocks` clock cycles of the chip.
+    pub(super) fn reads(&self, clocks: u32) -> u32 {
+        clocks.saturating_mul(self.reads_per_clock.get())
     }
 
-    /// Raises reset while REQ stays as it is, then lowers both of our wires. If the chip takes the pending word
-    /// meanwhile, it waits for REQ to fall, and the reset drops the word before it acts.
+    /// Raises the chip's reset without changing REQ, then lowers the input bus's REQ and the output bus's ACK. If the
+    /// chip takes the pending word after the reset has risen, it waits for REQ to fall, and the reset drops the word
+    /// before it has an effect.
     ///
     /// Returns the pending word if no ACK was seen for it, and whether an output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
@@ -125,9 +126,9 @@ impl<P: AerPort> Aer<P> {
         Ok((is_under_way.then_some(self.carries), is_output_lost))
     }
 
-    /// Advances the handshakes of both buses as far as a few reads of the pins allow.
+    /// Advances the handshakes of both buses as far as a few pin reads allow.
     pub(super) fn poll(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
-        // ACK up, and down again.
+        // The first call raises ACK, the second lowers it.
         for _ in 0..2 {
             self.serve(on_output)?;
         }
@@ -137,7 +138,8 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    /// Puts a word on the bus, after the one before it has ended. On an error the word is not pending.
+    /// Ends the handshake of the previous word, then puts `word` on the input bus. If this fails, `word` is not
+    /// pending.
     pub(super) fn begin(
         &mut self,
         word: u32,
@@ -154,7 +156,7 @@ impl<P: AerPort> Aer<P> {
         Ok(())
     }
 
-    /// Ends the handshake of the pending word, if there is one.
+    /// Ends the handshake of the pending word, if a word is pending.
     pub(super) fn finish(
         &mut self,
         on_output: &mut impl FnMut(u8),
@@ -180,17 +182,17 @@ impl<P: AerPort> Aer<P> {
         Ok(())
     }
 
-    /// Waits until the output bus was idle for `looks` reads of the pins in a row; returns false if that does not
-    /// happen within `limit` reads.
+    /// Waits until the output bus was idle for `reads` pin reads in a row. Returns false if that does not happen within
+    /// `limit` reads.
     pub(super) fn rest(
         &mut self,
-        looks: u32,
+        reads: u32,
         limit: u32,
         on_output: &mut impl FnMut(u8),
     ) -> Result<bool, P::Error> {
         let mut still = 0;
         for _ in 0..limit {
-            if still >= looks {
+            if still >= reads {
                 return Ok(true);
             }
             let was_idle = self.answer == Answer::Idle;
@@ -201,8 +203,8 @@ impl<P: AerPort> Aer<P> {
         Ok(false)
     }
 
-    /// Waits for ACK to reach a level. The chip acknowledges no input while an output waits, so this also serves the
-    /// output bus.
+    /// Waits until the input bus's ACK has the level `is_high`. Serves the output bus meanwhile, because the chip
+    /// acknowledges no input while one of its outputs waits.
     fn wait_for(
         &mut self,
         is_high: bool,
@@ -218,7 +220,7 @@ impl<P: AerPort> Aer<P> {
         Err(AerError::Timeout(self.phase))
     }
 
-    /// Advances the output bus's handshake by one step, if the chip waits for it.
+    /// Advances the output bus's handshake by one edge of ACK, if REQ asks for it.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());

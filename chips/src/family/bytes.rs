@@ -1,4 +1,4 @@
-//! Networks as bytes, from a file or received by radio, which are known only at run time.
+//! Networks as bytes, from a file or received by radio, for programs that know the network only at run time.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -17,16 +17,16 @@ const VIRTUAL: u8 = 2;
 pub enum FormatError {
     /// The bytes do not begin with `SWN1`.
     Magic,
-    /// The bytes are for another chip.
+    /// The bytes contain a network for a different chip than the driver's.
     Chip,
-    /// There are no neurons; or more than 256 neurons, inputs or rows of synapses; or, for `ReckOn`, more than 16
+    /// The network has no neurons; or more than 256 neurons, inputs or rows of synapses; or, for `ReckOn`, more than 16
     /// outputs.
     Size,
     /// The bytes or the buffer have the wrong length.
     Length {
-        /// The length that the network needs.
+        /// Length that the network needs, in bytes.
         needed: usize,
-        /// The length given.
+        /// Length of the bytes or the buffer given.
         given: usize,
     },
     /// A neuron or a weight is out of its range; or an output is not a neuron of the network, or occurs twice.
@@ -49,9 +49,10 @@ impl fmt::Display for FormatError {
 
 impl core::error::Error for FormatError {}
 
-/// A network as bytes, for networks known only at run time. About half the size of a [`Network`](super::Network).
+/// A network as bytes, for programs that know the network only at run time. It takes about half the memory of a
+/// [`Network`](super::Network).
 ///
-/// | bytes | what |
+/// | bytes | content |
 /// |---|---|
 /// | 4 | `SWN1` |
 /// | 1 | the chip: 1 tinyODIN, 2 ODIN; 3 is [`ReckOnBytes`](crate::ReckOnBytes) |
@@ -59,11 +60,11 @@ impl core::error::Error for FormatError {}
 /// | 2, 2, 2 | neurons, inputs, outputs |
 /// | 4 or 16 a neuron | the neuron as in the chip's memory |
 /// | a row for each input | signed weights of 4 bits, two a byte, the first in the low half; for a virtual event instead 2 bytes, neuron and weight |
-/// | a row for each neuron | weights as those of an input; only if the network is recurrent |
+/// | a row for each neuron | the weights to all neurons, packed like those of an input; only if the network is recurrent |
 /// | 1 an output | the neuron |
 ///
-/// Numbers of two bytes are little-endian. There is no checksum; [`Gated::load`](super::Gated::load) compares the chip's
-/// memory with these bytes.
+/// Numbers of two bytes are little-endian. There is no checksum; [`Gated::load`](super::Gated::load) compares the
+/// chip's memory with these bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkBytes<'a, I> {
     shape: Shape,
@@ -108,10 +109,10 @@ impl Shape {
 }
 
 impl<'a, I: Input> NetworkBytes<'a, I> {
-    /// Reads the header, and checks the length.
+    /// Borrows a network from bytes, after checking their header and length.
     ///
     /// # Errors
-    /// Returns an error if the bytes are not a network for this chip.
+    /// Returns an error if the bytes do not contain a network for this chip.
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let (header, rest) = bytes.split_at_checked(HEADER).ok_or(FormatError::Magic)?;
         let &[a, b, c, d, kind, flags, n0, n1, i0, i1, o0, o1] = header else {
@@ -157,13 +158,14 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
             is_virtual: network.virtual_input(0).is_some(),
         };
         shape.check()?;
-        // The bytes name a neuron for each output: none of them may be without one.
-        let is_told = |neuron| network.output(neuron).is_none_or(|output| output < shape.outputs);
-        if !(0..shape.neurons).all(|neuron| is_told(neuron as u8)) {
+        // The format lists one neuron for each output, so every output number that a neuron has must be one of the
+        // listed.
+        let is_listed = |neuron| network.output(neuron).is_none_or(|output| output < shape.outputs);
+        if !(0..shape.neurons).all(|neuron| is_listed(neuron as u8)) {
             return Err(FormatError::Value);
         }
         let lengths = shape.lengths::<I>();
-        // Not `sum`, which panics where overflow is checked.
+        // Not `sum`, which can panic in builds that check for overflow.
         let needed = lengths.iter().fold(HEADER, |sum, length| sum.saturating_add(*length));
         let given = buffer.len();
         let target = buffer.get_mut(..needed).ok_or(FormatError::Length { needed, given })?;
@@ -216,7 +218,7 @@ impl<'a, I: Input> NetworkBytes<'a, I> {
     }
 }
 
-/// Returns the neurons that are outputs, in the order of the outputs.
+/// Returns the neuron of each output, in the order of the outputs.
 fn outputs_of<I: Input>(network: &impl Describe<I>) -> impl Iterator<Item = u8> {
     let neuron_of = move |output| {
         (0..network.neurons()).map(|n| n as u8).find(|&n| network.output(n) == Some(output))

@@ -1,27 +1,29 @@
 //! The counters of a chip's driver.
 
-/// Counts of resets, and of time steps, events and words that were lost or late. All of them saturate.
+/// Counts of resets, and of time steps, events and words that were lost or late. Each count saturates at its largest
+/// value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
     /// Number of resets, including the first one.
     pub resets: u32,
-    /// Number of time steps that were not sent to the chip: those beyond 255 at a time, and those pending at a reset.
+    /// Number of time steps that were not sent to the chip: those in excess of 255 in one call, and those pending at a
+    /// reset.
     pub skipped_steps: u32,
     /// Number of events that were fed after their time step was over.
     pub late_events: u32,
-    /// Number of events that were left out because the network has no input for them.
+    /// Number of events that were dropped because the network has no input for them.
     pub unmapped_events: u32,
     /// Number of events that were sent again after a reset, because no ACK had been seen for them. The chip may have
-    /// taken such an event just before the reset; an event in its queue had no effect.
+    /// taken such an event just before the reset; if the event was still in the chip's queue, it had no effect.
     pub repeated_events: u32,
-    /// Number of words of [`send`](super::Running::send) that were lost at a reset, because no ACK had been seen for
-    /// them.
+    /// Number of words passed to [`send`](super::Running::send) that were lost at a reset, because no ACK had been seen
+    /// for them.
     pub dropped_words: u32,
-    /// Number of outputs that waited at a reset and were lost.
+    /// Number of outputs that the chip offered when it was reset, and that were lost.
     pub lost_outputs: u32,
-    /// How often the queue was seen to become full; any number of spikes between neurons may be lost each time. Always
-    /// 0 without the [pin](super::AerPort::queue_full).
+    /// Number of times that the chip's queue was seen to become full; each time, any number of spikes between neurons
+    /// may be lost. Always 0 without the [pin](super::AerPort::queue_full).
     pub overflows: u32,
 }

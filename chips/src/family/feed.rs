@@ -7,19 +7,19 @@ use super::{AerPort, Input, Outcome, Running};
 use spikewire::{Event, Source};
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Sends the events of a source, each as the input that `to_input` returns for it, and the time steps between them.
-    /// Returns the number of events sent. If `to_input` returns `None` the event is left out and
-    /// [counted](super::Counters::unmapped_events). [`Describe::input_for`](super::Describe::input_for) returns the input of a
-    /// network for an event. Keyframes and breaks are skipped. From the consumer of a queue pass `events.waiting()`, which
-    /// ends even if events arrive faster than the chip takes them.
+    /// Sends all events of `events` to the chip, each as the input that `to_input` returns for it, and the time steps
+    /// that pass between them. Returns the number of events sent. If `to_input` returns `None`, the event is dropped
+    /// and [counted](super::Counters::unmapped_events). [`Describe::input_for`](super::Describe::input_for) returns the
+    /// input of a network for an event. Keyframes and breaks are skipped. To feed from a queue, pass its consumer's
+    /// `waiting()`, which ends even if events arrive faster than the chip takes them.
     ///
-    /// Events must be in the order of time. An event whose time step is over is sent in the present one, and counted as
-    /// [late](super::Counters::late_events).
+    /// The events' ticks must not decrease. An event whose time step is over is sent in the current time step, and
+    /// counted as [late](super::Counters::late_events).
     ///
     /// # Errors
-    /// Returns the errors of [`send`](Self::send). After an error call it again with the remaining events. No event is
-    /// lost or sent twice, except those that a reset [counts](super::Counters::repeated_events), and those whose input is
-    /// invalid, which are dropped.
+    /// Returns the errors of [`send`](Self::send). After an error, call `feed` again with the remaining events. No
+    /// event is lost or sent twice, except those that a reset [counts](super::Counters::repeated_events), and those
+    /// whose input is invalid, which are dropped.
     pub fn feed<A: Into<Option<I>>>(
         &mut self,
         mut events: impl Source,
@@ -41,7 +41,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         Ok(sent)
     }
 
-    /// Sends an event as this word; holds the event until the word is on the bus.
+    /// Sends the time steps up to `event`, then `word`, which stands for it. Keeps `event` for the next call until the
+    /// word is on the bus.
     fn feed_word(
         &mut self,
         word: u32,

@@ -1,75 +1,77 @@
-//! The trait in which the ODIN family's chips differ: input words, memories and registers.
+//! The trait that covers the differences between tinyODIN and ODIN: input words, memories and registers.
 
 use core::fmt::Debug;
 
 use super::super::ChipError;
 
-/// The input words of a chip of the family, and the layout of its memories.
+/// The input words of a chip of the ODIN family, and the layout of the chip's memories.
 pub trait Input: Copy {
-    /// The input that is a time step for all neurons. The driver sends it; the chip has no clock of its own.
+    /// The input that is a time step for all neurons. The chip has no timer of its own, so the driver sends this input.
     const LEAK_ALL: Self;
-    /// Highest neuron that [`probe`](Self::probe) accepts. A reset disables this neuron if it was never written.
+    /// Highest neuron that [`probe`](Self::probe) accepts. [`reset`](super::OdinChip::reset) disables this neuron if it
+    /// was never written.
     const PROBED: u8;
     /// Number of bytes in a neuron, 16 at most.
     const NEURON_BYTES: u8;
-    /// Mask of the bits in a neuron's bytes that do not change while the chip runs.
+    /// Mask of the bits in a neuron's bytes that hold parameters, which do not change while the chip runs.
     const PARAMETERS: [u8; 16];
-    /// Maximum number of the chip's clocks from a word's REQ to its ACK, for any word and a full queue. Waiting outputs
-    /// and spikes between neurons add to it.
+    /// Maximum number of clock cycles of the chip from a word's REQ to its ACK, for any word, with a full queue.
+    /// Outputs that wait for their ACK, and spikes between neurons, add to it.
     const MAX_CLOCKS: u32;
-    /// Number of spikes and virtual events that fit the chip's queue.
+    /// Number of spikes and virtual events that the chip's queue holds.
     const QUEUE: u32;
-    /// Number of the register that opens the loop: at 1, neurons' spikes go to the output bus only. It is 1 while the
-    /// chip is programmed.
+    /// Number of the register that opens the loop: while it is 1, the spikes of neurons go to the output bus and not to
+    /// other neurons. The driver keeps it at 1 while the chip is gated.
     const OPEN_LOOP: u16;
-    /// Number of the chip in [`NetworkBytes`](super::NetworkBytes).
+    /// Code of the chip in [`NetworkBytes`](super::NetworkBytes).
     const KIND: u8;
 
-    /// A neuron's parameters and state.
+    /// The parameters and the state of a neuron.
     type Neuron: Copy + Debug + PartialEq;
-    /// All configuration registers except the gate.
+    /// All configuration registers, except for the one that gates the chip.
     type Registers: Copy + Debug + PartialEq;
-    /// A synapse.
+    /// A synapse from one neuron or input to one neuron.
     type Synapse: Copy + Debug + PartialEq;
 
     /// A neuron that never fires.
     const DISABLED: Self::Neuron;
 
-    /// Returns the word of the input.
+    /// Returns the word that stands for this input on the bus.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range, or if a virtual event has weight 0.
     fn word<B, P>(self) -> Result<u32, ChipError<B, P>>;
 
-    /// Returns the input that is a spike from outside.
+    /// Returns the input that is a spike on row `pre` of the synapses.
     fn spike(pre: u8) -> Self;
 
-    /// Returns the input that is a time step for one neuron, up to [`PROBED`](Self::PROBED). A running chip must
-    /// acknowledge it.
+    /// Returns the input that is a time step for one neuron, up to [`PROBED`](Self::PROBED). A running chip
+    /// acknowledges this input, and a gated chip does not.
     fn probe(neuron: u8) -> Self;
 
-    /// Returns the input that is a virtual event, which acts on one neuron without a synapse.
+    /// Returns the input that adds `weight` to the potential of one neuron directly, without a synapse.
     fn virtual_event(neuron: u8, weight: i8) -> Self;
 
-    /// Returns a neuron's bytes.
+    /// Encodes a neuron as the bytes of the chip's memory.
     ///
     /// # Errors
-    /// Returns an error if a value is out of its range.
+    /// Returns an error if a field is out of its range.
     fn neuron_bytes<B, P>(neuron: &Self::Neuron) -> Result<[u8; 16], ChipError<B, P>>;
 
-    /// Decodes a neuron from its bytes.
+    /// Decodes a neuron from the bytes of the chip's memory.
     fn neuron(bytes: [u8; 16]) -> Self::Neuron;
 
-    /// Returns the neuron that a time step turns into this one without a spike; `None` if there is none.
+    /// Returns the state that a neuron must have before a time step to be in this state after it, without firing.
+    /// Returns `None` if no such state exists.
     fn before_step(neuron: &Self::Neuron) -> Option<Self::Neuron>;
 
-    /// Returns the 4 bits of a signed weight.
+    /// Encodes a signed weight as the 4 bits of a synapse.
     ///
     /// # Errors
     /// Returns an error if the weight is out of its range.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>>;
 
-    /// Returns the 4 bits of a synapse.
+    /// Encodes a synapse as its 4 bits.
     ///
     /// # Errors
     /// Returns an error if the weight is out of its range.
@@ -78,31 +80,32 @@ pub trait Input: Copy {
     /// Decodes a synapse from its 4 bits.
     fn synapse(bits: u8) -> Self::Synapse;
 
-    /// Whether a synapse's sign is that of the presynaptic neuron.
+    /// Whether all synapses of a presynaptic neuron have the same sign, which a register stores.
     const SIGNS_BY_ROW: bool;
 
-    /// Returns the registers of a network whose neurons go up to `last_neuron`. Bit `n % 16` of `inhibitory[n / 16]` is
-    /// 1 if neuron `n` inhibits.
+    /// Returns the registers for a network that uses the neurons from 0 to `last_neuron`. Bit `n % 16` of `inhibitory[n
+    /// / 16]` is 1 if neuron `n` inhibits.
     fn registers(last_neuron: u8, is_open_loop: bool, inhibitory: [u16; 16]) -> Self::Registers;
 
-    /// Calls `write` with the number and value of each register except the gate.
+    /// Calls `write` with the number and the value of each register, except for the one that gates the chip.
     ///
     /// # Errors
-    /// Returns the error of `write`.
+    /// Returns the first error of `write`.
     fn each_register<E>(
         registers: &Self::Registers,
         write: impl FnMut(u16, u32) -> Result<(), E>,
     ) -> Result<(), E>;
 
-    /// Checks the values of the registers.
+    /// Checks that all values of the registers are in range.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range.
     fn check_registers<B, P>(registers: &Self::Registers) -> Result<(), ChipError<B, P>>;
 
-    /// Returns whether the loop is open, that is, whether neurons' spikes do not reach other neurons.
+    /// Returns whether these registers open the loop, so that the spikes of neurons do not reach other neurons.
     fn is_open_loop(registers: &Self::Registers) -> bool;
 
-    /// Returns the maximum number of clocks that the chip takes for a spike, without outputs.
+    /// Returns the maximum number of clock cycles that the chip takes to apply one spike to all neurons, without
+    /// waiting for outputs.
     fn sweep_clocks(registers: &Self::Registers) -> u32;
 }

@@ -1,13 +1,13 @@
-//! Loads a network into the chip, and compares it with the chip's memory.
+//! Loads a network into the chip, and compares the chip's memory with a network.
 
 use embedded_hal::spi::SpiDevice;
 
 use super::network::check;
-use super::step::DISABLE;
+use super::sync::DISABLE;
 use super::wire::Address;
 use super::{AerPort, ChipError, Describe, Gated, Input, Outcome};
 
-/// The progress of loading or comparing.
+/// How far loading or comparing a network has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Progress {
@@ -17,19 +17,19 @@ pub struct Progress {
     pub total: u32,
 }
 
-/// Number of neurons in a chip.
+/// Number of neurons that a chip of the family has.
 const NEURONS: u16 = 256;
 
 impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
-    /// Writes a network, disables all other neurons, and then reads all of it back. Synapses onto the other neurons
-    /// stay as they are. Calls `progress` after each neuron and each row.
+    /// Writes a network to the chip, disables all neurons that it does not use, and then reads everything back. Leaves
+    /// synapses onto the disabled neurons as they are. Calls `progress` after each neuron and each row.
     ///
     /// **Time:** two frames of 5 bytes for each byte of a neuron, and for each two synapses of a row. 256 neurons of
     /// tinyODIN with 256 rows take 67 584 frames, 4.1 s at 656 kHz.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit: then nothing was written. Also returns an error if the bus failed,
-    /// or if the chip reads back something else: then reset it.
+    /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
+    /// or if the chip reads back a wrong value; then reset the chip.
     pub fn load(
         &mut self,
         network: &impl Describe<I>,
@@ -44,20 +44,21 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
             |address, keep, value| chip.put_byte(address, keep, value),
             |done| progress(Progress { done, total }),
         )?;
-        chip.check_step()?;
+        chip.check_sync()?;
         each_byte(
             network,
             |address, keep, value| chip.expect_byte(address, keep, value),
             |done| progress(Progress { done: half.wrapping_add(done), total }),
         )?;
-        chip.check_step()
+        chip.check_sync()
     }
 
-    /// Compares the chip's memories with a network, including potentials, which change when the network runs.
+    /// Compares the chip's memories with a network. This includes the neurons' potentials, which change when the
+    /// network runs.
     ///
     /// # Errors
     /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
-    /// first difference: then reset the chip.
+    /// first difference; then reset the chip.
     pub fn verify(
         &mut self,
         network: &impl Describe<I>,
@@ -71,7 +72,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
             |address, keep, value| chip.expect_byte(address, keep, value),
             |done| progress(Progress { done, total }),
         )?;
-        chip.check_step()
+        chip.check_sync()
     }
 }
 
@@ -84,8 +85,8 @@ fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
-/// Visits every byte of the chip's memories that belongs to the network: passes its address, a mask of the bits that do
-/// not belong to the network, and the value of the others.
+/// Calls `visit` for every byte of the chip's memories that the network uses, with the byte's address, a mask of the
+/// bits that the network does not use, and the value of all other bits.
 fn each_byte<I: Input, B, P>(
     network: &impl Describe<I>,
     mut visit: impl FnMut(Address, u8, u8) -> Result<(), ChipError<B, P>>,

@@ -1,4 +1,4 @@
-//! The driver that tinyODIN and ODIN share: SPI without chip select, reset, gate, and event buses.
+//! The driver for the ODIN family (tinyODIN and ODIN): SPI without chip select, reset, gate, and event buses.
 
 mod aer;
 mod bytes;
@@ -11,8 +11,8 @@ mod network;
 mod outputs;
 mod port;
 mod running;
-mod step;
 mod steps;
+mod sync;
 mod time;
 mod wire;
 
@@ -24,7 +24,7 @@ use embedded_hal::spi::{ErrorType, SpiDevice};
 use super::ChipError;
 use aer::{Aer, Carries};
 use spikewire::Event;
-use step::Beacon;
+use sync::Beacon;
 use time::Time;
 use wire::Wire;
 
@@ -43,25 +43,25 @@ pub use steps::{Steps, StepsLayer, StepsState};
 
 /// A chip of the ODIN family, on an SPI device and a port.
 ///
-/// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select: it needs
-///   a bus of its own and a device whose chip select is not wired.
-/// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed;
-///   [`Gated::run`] gives a [`Running`] one, which takes events; [`Running::gate`] gives a gated one again. Each has
-///   only the calls that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) return the chip
-///   in its present state later.
-/// - **Resynchronisation:** a lost or doubled clock puts chip and bus out of step. Calls on a gated chip detect this; if it
-///   happens in the last frame of a call, the next call detects it. They also detect a lost and a doubled clock within one
-///   access to memory. (Such a pair within a register's frame and its check goes unseen, as registers cannot be read back.)
-///   After an error of the bus, or a byte that reads back differently, all calls are refused until the next reset, and all
-///   memory is in doubt: load it again.
-/// - **Waits** read the pins a given number of times, then return an error.
-/// - **Words** that the chip has not acknowledged by then stay pending. Every call that sends finishes them first,
-///   [`Running::poll`] continues with them, and a reset drops them.
+/// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select. Therefore no other device
+///   may share its SPI bus, and the chip-select pin of the SPI device stays unconnected.
+/// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed; [`Gated::run`] gives a
+///   [`Running`] one, which takes events; [`Running::gate`] gives a gated one again. Each type has only the calls that
+///   are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give access to a chip that was left
+///   in that state.
+/// - **Synchronisation:** a lost or doubled clock pulse puts chip and bus out of sync. Calls on a gated chip detect
+///   this; if it happens in the last frame of a call, the next call detects it. They also detect a lost and a doubled
+///   pulse within one access to memory. (Such a pair within the frame of a register and its check goes unnoticed,
+///   because registers cannot be read back.) After an error of the bus, or a byte that reads back differently, the
+///   driver refuses all calls until the next reset, and all memory is in doubt: load it again.
+/// - **Waits:** the driver reads the pins a given number of times, then returns an error.
+/// - **Words** that the chip has not acknowledged when a wait ends stay pending. Every call that sends a word finishes
+///   the pending one first; [`Running::poll`] continues with it; a reset drops it.
 /// - **Events** that could not be sent are kept, and sent first at the next call, even after a reset.
-/// - **Losses** are all counted; see [`counters`](Self::counters).
+/// - **Losses** are counted; see [`counters`](Self::counters).
 ///
 /// # What to know about the chips
-/// - In closed loop a leak overtakes the spikes that wait in the chip's queue; in open loop never.
+/// - In closed loop a leak overtakes the spikes that wait in the chip's queue; in open loop it does not.
 /// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the outputs are the inputs, not the neurons
 ///   that fire.
 /// - A neuron in use with threshold 0, as in memory that was never written, fires at every event and every leak.
@@ -71,9 +71,9 @@ pub struct OdinChip<I: Input, D, P> {
     wire: Wire<D>,
     aer: Aer<P>,
     state: State,
-    /// Registers with which the chip runs.
+    /// Registers that the chip was started with; `None` while the chip is gated.
     registers: Option<I::Registers>,
-    /// Byte that the step check writes to, once it is known.
+    /// Value of the byte that the sync check writes to; `None` until the driver has read it.
     anchor: Option<u8>,
     beacon: Option<Beacon>,
     held: Option<Event>,
@@ -83,7 +83,7 @@ pub struct OdinChip<I: Input, D, P> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Out of step with the bus, or not reset yet.
+    /// Chip and bus are out of sync, or the chip was not reset yet.
     NotReset,
     Gated,
     Running,
@@ -92,16 +92,16 @@ enum State {
 /// The result of a call on a chip.
 type Outcome<T, D, P> = Result<T, ChipError<<D as ErrorType>::Error, <P as AerPort>::Error>>;
 
-/// Duration of the reset pulse, and of the pause after it, in µs.
+/// Duration of the reset pulse, and of the pause after the pulse, in µs.
 const RESET_US: u32 = 10;
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
     /// times.
     ///
-    /// [`Input::MAX_CLOCKS`] polls suffice if each takes at least a clock of the chip. If they are faster,
-    /// [`with_looks_a_clock`](Self::with_looks_a_clock) multiplies their number. With fewer polls long words time out,
-    /// and must be finished later.
+    /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If polls are
+    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies their number. With fewer polls, words that
+    /// take long time out, and a later call must finish them.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -125,33 +125,34 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Sets the length of a time step in µs: while the ticks of fed events pass, a leak event is sent every `step` µs.
-    /// By default none is sent.
+    /// Sets the length of a time step in µs: [`Running::feed`] and [`Running::advance`] then send a leak event for
+    /// every `step` µs that pass. By default they send none.
     ///
-    /// Call [`Running::advance`] at least every 35 minutes. A tick 2³¹ µs ahead counts as past, and no leak is sent
-    /// until time has caught up.
+    /// Call [`Running::advance`] at least every 70 minutes. A tick more than 70 minutes after the previous one counts
+    /// as a late one, for which no leak is sent.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
     }
 
-    /// Sets how many reads of the pins fit into one clock of the chip; 1 by default, more if the microcontroller is
-    /// much faster. Every wait reads the pins this many times as often. If the number is too low, words time out, and
-    /// [`Running::gate`] may gate a chip that is still working, which loses its potentials.
+    /// Sets how many pin reads fit into one clock cycle of the chip; 1 by default, more if the microcontroller is much
+    /// faster than the chip. Every wait reads the pins this many times as often. If the number is too low, words time
+    /// out, and [`Running::gate`] may gate a chip that is still working, whose potentials are then wrong.
     #[must_use]
-    pub fn with_looks_a_clock(mut self, looks: NonZeroU32) -> Self {
-        self.aer.set_looks_a_clock(looks);
+    pub fn with_reads_per_clock(mut self, reads: NonZeroU32) -> Self {
+        self.aer.set_reads_per_clock(reads);
         self
     }
 
-    /// Pulses reset, which brings chip and bus into step; then gates the chip, opens its loop, and checks that it
-    /// answers. For this check neuron [`Input::PROBED`] is disabled if it was never written.
+    /// Pulses reset, which brings chip and bus into sync; then gates the chip, opens its loop, and checks that it
+    /// answers. The check needs a byte that is not 0: it disables neuron [`Input::PROBED`] if that neuron was never
+    /// written.
     ///
     /// Spikes in the chip's queue are lost, and the pending word is dropped. If that word was an event of
     /// [`Running::feed`] that the chip has not acknowledged, it is kept and sent again.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or if the chip reads back something else than was written.
+    /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Gated<'_, I, D, P>, D, P> {
         self.state = State::NotReset;
         let (under_way, is_output_lost) = self.aer.reset().map_err(ChipError::Port)?;
@@ -166,10 +167,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(Gated::new(self))
     }
 
-    /// Returns the chip, if it is gated.
+    /// Returns a chip that an earlier call left gated.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
+    /// Returns [`NotReset`](ChipError::NotReset), or [`NotGated`](ChipError::NotGated) if the chip runs.
     pub fn gated(&mut self) -> Outcome<Gated<'_, I, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -178,10 +179,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Returns the chip, if it runs.
+    /// Returns a chip that an earlier call left running.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset) or [`Gated`](ChipError::Gated).
+    /// Returns [`NotReset`](ChipError::NotReset), or [`Gated`](ChipError::Gated) if the chip is gated.
     pub fn running(&mut self) -> Outcome<Running<'_, I, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -195,7 +196,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Counters { overflows: self.aer.overflows, ..self.counters }
     }
 
-    /// Returns the SPI device and the port.
+    /// Consumes the driver and returns its SPI device and port.
     pub fn release(self) -> (D, P) {
         (self.wire.device, self.aer.port)
     }
@@ -214,7 +215,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         if let Some(count) = count {
             *count = count.saturating_add(1);
         }
-        // Before its first reset the pins of a chip are undefined.
+        // Before the first reset the chip's pins are undefined, so an output seen there is none.
         let is_output_lost = is_output_lost && counters.resets > 0;
         counters.lost_outputs = counters.lost_outputs.saturating_add(is_output_lost.into());
     }

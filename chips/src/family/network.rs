@@ -1,4 +1,4 @@
-//! Networks for a chip: their trait, and networks as constant data.
+//! Networks for chips of the ODIN family: their trait, and networks as constant data.
 
 use super::{AerPort, Input};
 use crate::ChipError;
@@ -14,31 +14,34 @@ pub trait Describe<I: Input> {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
 
-    /// Returns a neuron's parameters; those of a [disabled](Input::DISABLED) one if the network has no such neuron.
+    /// Returns the parameters of a neuron; those of a [disabled](Input::DISABLED) neuron if the network has no neuron
+    /// of this number.
     fn neuron(&self, neuron: u8) -> I::Neuron;
 
     /// Returns the number of inputs.
     fn inputs(&self) -> u16;
 
-    /// Returns the neuron on which an input acts without a synapse, and its weight; `None` if the input has a row.
+    /// Returns the neuron and the weight of an input that is a virtual event; `None` if the input has a row of
+    /// synapses.
     fn virtual_input(&self, input: u16) -> Option<(u8, i8)>;
 
-    /// Returns the weight from an input with a row to a neuron.
+    /// Returns the weight from an input that has a row of synapses to neuron `post`.
     fn input_weight(&self, input: u16, post: u8) -> i8;
 
-    /// Returns whether neurons send spikes to neurons.
+    /// Returns whether the spikes of neurons reach other neurons.
     fn is_recurrent(&self) -> bool;
 
-    /// Returns the weight from a neuron to a neuron.
+    /// Returns the weight from neuron `pre` to neuron `post`.
     fn weight(&self, pre: u8, post: u8) -> i8;
 
-    /// Returns the output that a neuron is, by number; `None` if it is not an output.
+    /// Returns the number of the output that a neuron is; `None` if the neuron is not an output.
     fn output(&self, neuron: u8) -> Option<u16>;
 
-    /// Returns the chip's input for an event of a bank with this scheme, or `None` if the network has no such input.
+    /// Returns the chip's input for an event that a bank of encoders of this scheme sends, or `None` if the network has
+    /// no such input.
     ///
-    /// A neuron of a bank is an input of the network, in order. A [signed](Code::IS_SIGNED) code, such as that of
-    /// step-forward, takes two inputs for each neuron: the even one for [`Polarity::Up`], the odd one after it for
+    /// Neuron `n` of the bank is input `n` of the network. A [signed](Code::IS_SIGNED) code, such as that of
+    /// step-forward, takes two inputs for each neuron: input `2 n` for [`Polarity::Up`], input `2 n + 1` for
     /// [`Polarity::Down`]. Rate codes have the same type of spikes and never go down: their odd inputs stay silent.
     ///
     /// ```
@@ -68,8 +71,8 @@ pub trait Describe<I: Input> {
         self.input(event.address.checked_mul(2)?.checked_add(falls)?)
     }
 
-    /// Returns the chip's input for an input of the network, or `None` if the network has no such input. The number of an
-    /// input is not the address of an event: see [`input_for`](Self::input_for).
+    /// Returns what to send to the chip for input `input` of the network, or `None` if the network has no such input.
+    /// The number of an input is not the address of an event: see [`input_for`](Self::input_for).
     fn input(&self, input: u16) -> Option<I> {
         if input >= self.inputs() {
             return None;
@@ -80,8 +83,9 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// Returns a callback for neurons that fire. It passes outputs to `sink`, as events with the number of the output
-    /// as address, and ignores other neurons.
+    /// Returns a callback that takes the neurons that fire, for [`Running::poll`](super::Running::poll) and the other
+    /// calls. It passes the neurons that are outputs to `sink`, as events at `tick` whose address is the number of the
+    /// output, and ignores all other neurons.
     fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
         move |neuron| {
             if let Some(address) = self.output(neuron) {
@@ -90,8 +94,8 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// Returns the registers to [run](super::Gated::run) the network with: closed loop if it is recurrent, its neurons
-    /// as outputs, and no other neurons in use.
+    /// Returns the registers to [run](super::Gated::run) the network with: closed loop if it is recurrent; the output
+    /// bus carries the spikes of neurons; neurons beyond the network are not used.
     fn registers(&self) -> I::Registers {
         let mut inhibitory = [0; 16];
         for row in 0..self.rows() {
@@ -103,18 +107,18 @@ pub trait Describe<I: Input> {
         I::registers(self.neurons().saturating_sub(1) as u8, !self.is_recurrent(), inhibitory)
     }
 
-    /// Returns the row of the first input.
+    /// Returns the number of the first row of synapses that belongs to an input.
     fn first_input_row(&self) -> u16 {
         if self.is_recurrent() { self.neurons() } else { 0 }
     }
 
-    /// Returns the number of rows of synapses, starting at row 0.
+    /// Returns the number of rows of synapses that the network uses, from row 0 on.
     fn rows(&self) -> u16 {
         let is_virtual = self.virtual_input(0).is_some();
         self.first_input_row().saturating_add(if is_virtual { 0 } else { self.inputs() })
     }
 
-    /// Returns the weight from a row to a neuron.
+    /// Returns the weight that row `row` of the synapses has onto neuron `post`.
     fn row_weight(&self, row: u16, post: u8) -> i8 {
         match row.checked_sub(self.first_input_row()) {
             Some(input) => self.input_weight(input, post),
@@ -123,12 +127,13 @@ pub trait Describe<I: Input> {
     }
 }
 
-/// The inputs of a network.
+/// How the inputs of a network reach its neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs<const IN: usize, const N: usize> {
-    /// Each input's weights to all neurons.
+    /// Each input has a row of synapses: these are its weights to all neurons.
     Rows([[i8; N]; IN]),
-    /// The neuron on which each input acts, and its weight. tinyODIN has virtual events only for its first 16 neurons.
+    /// Each input acts on one neuron without a synapse: that neuron, and the weight. tinyODIN has such virtual events
+    /// only for its first 16 neurons.
     Virtual([(u8, i8); IN]),
 }
 
@@ -149,7 +154,7 @@ impl<const IN: usize, const N: usize> Inputs<IN, N> {
     }
 }
 
-/// Lists `OUT` neurons, starting at `FIRST`, for [`Network::outputs`].
+/// Returns the neurons `FIRST`, `FIRST + 1` and so on, `OUT` in all, for [`Network::outputs`].
 #[must_use]
 pub const fn neurons_from<const FIRST: u8, const OUT: usize>() -> [u8; OUT] {
     const { assert!(FIRST as usize + OUT <= 256, "a chip has 256 neurons") };
@@ -167,9 +172,9 @@ pub const fn neurons_from<const FIRST: u8, const OUT: usize>() -> [u8; OUT] {
 
 /// A network of `N` neurons, with `IN` inputs and `OUT` outputs, as constant data.
 ///
-/// Weights are -7 to 7, for tinyODIN also -8. In ODIN all weights from an input or a neuron have one sign.
+/// Weights are -7 to 7, for tinyODIN also -8. In ODIN all weights from one input or neuron must have the same sign.
 ///
-/// **Memory:** a byte a weight. [`NetworkBytes`](super::NetworkBytes) take half of that.
+/// **Memory:** one byte for each weight; [`NetworkBytes`](super::NetworkBytes) take half of that.
 ///
 /// ```
 /// use spikewire_chips::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
@@ -185,14 +190,14 @@ pub const fn neurons_from<const FIRST: u8, const OUT: usize>() -> [u8; OUT] {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> {
-    /// The neurons.
+    /// The neurons, in the order of the chip's neurons.
     pub neurons: [I::Neuron; N],
-    /// The inputs.
+    /// The inputs, and their weights.
     pub inputs: Inputs<IN, N>,
-    /// The weights from neurons to all neurons: row 0 belongs to neuron 0, and so on. Neurons without a row have no
-    /// effect on others; without any row the loop is open.
+    /// The weights from neurons to all neurons: row `n` belongs to neuron `n`. Neurons without a row have no effect on
+    /// other neurons; if there are no rows, the loop is open.
     pub recurrent: &'static [[i8; N]],
-    /// The neurons that are outputs, in the order of the outputs.
+    /// The neuron of each output, in the order of the outputs.
     pub outputs: [u8; OUT],
 }
 
@@ -245,7 +250,7 @@ fn at<const N: usize>(rows: &[[i8; N]], row: usize, post: u8) -> i8 {
     rows.get(row).and_then(|row| row.get(usize::from(post))).copied().unwrap_or(0)
 }
 
-/// Returns an error unless a network fits the chip, and its values are in range.
+/// Returns an error unless the network fits the chip and all of its values are in range.
 pub(super) fn check<I: Input, B, P: AerPort>(
     network: &impl Describe<I>,
 ) -> Result<(), ChipError<B, P::Error>> {

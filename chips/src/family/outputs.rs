@@ -1,9 +1,10 @@
-//! A list for the outputs of one time step, as events.
+//! A list that collects a chip's outputs in one time step, as events.
 
 use spikewire::Polarity;
 use spikewire::{Event, Tick};
 
-/// A list of up to `N` events of one time step, to collect the outputs of a chip for a [`Readout`](spikewire::Readout).
+/// A list of up to `N` events of one time step. It collects the outputs of a chip for a
+/// [`Readout`](spikewire::Readout).
 ///
 /// **Memory:** `8 N + 8` bytes on a 32-bit part.
 ///
@@ -48,7 +49,7 @@ impl<const N: usize> Spikes<N> {
         Self { events: [NONE; N], len: 0, lost: 0 }
     }
 
-    /// Appends an event; if the list is full, the event is lost and counted.
+    /// Appends an event. If the list is full, the event is lost and counted.
     pub fn push(&mut self, event: Event) {
         if let Some(slot) = self.events.get_mut(self.len) {
             *slot = event;
@@ -58,7 +59,7 @@ impl<const N: usize> Spikes<N> {
         }
     }
 
-    /// Returns the events, in the order in which they came.
+    /// Returns the events, in the order in which they were appended.
     pub fn as_slice(&self) -> &[Event] {
         self.events.get(..self.len).unwrap_or_default()
     }

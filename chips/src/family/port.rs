@@ -2,8 +2,8 @@
 
 /// The wires of a chip's two address-event buses and its reset, all active high.
 ///
-/// Write the data with one store to the port instead of single pins, so that no half-written word is seen: on an STM32
-/// a store to BSRR.
+/// Write all data pins with one store (on an STM32, to BSRR) instead of pin by pin, so that the chip never sees a
+/// half-written word.
 ///
 /// | line | direction | |
 /// |---|---|---|
@@ -11,14 +11,15 @@
 /// | `AERIN_REQ`, `AERIN_ACK` | to the chip, from it | the handshake of a word |
 /// | `AEROUT_ADDR` | from the chip | the neuron that fires, eight lines |
 /// | `AEROUT_REQ`, `AEROUT_ACK` | from the chip, to it | the handshake of a neuron |
-/// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of step |
+/// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of sync |
 ///
-/// A call that fails may have changed the pins or not: the driver repeats it before it goes on.
+/// If a call fails, the driver assumes that the pins may or may not have changed, and repeats the call before it goes
+/// on.
 pub trait AerPort {
     /// Error type of the port; `Infallible` for the microcontroller's own pins.
     type Error;
 
-    /// Puts a word on the input bus. The word must have settled at the chip when this returns.
+    /// Puts a word on the input bus. The wires must have settled at the chip before this function returns.
     ///
     /// # Errors
     /// Returns an error if the port failed.
@@ -42,7 +43,7 @@ pub trait AerPort {
     /// See [`set_input`](Self::set_input).
     fn output_request(&mut self) -> Result<bool, Self::Error>;
 
-    /// Reads the output bus's word.
+    /// Reads the number of the neuron on the output bus.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -54,14 +55,14 @@ pub trait AerPort {
     /// See [`set_input`](Self::set_input).
     fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Drives the chip's reset.
+    /// Drives the chip's reset pin.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `SCHED_FULL`, which is high while the chip's queue is full, so that spikes between neurons are lost. The
-    /// default returns `None`: the pin is not wired.
+    /// Reads `SCHED_FULL`, which is high while the chip's queue is full, so that spikes between neurons are lost.
+    /// Returns `None`, as the default does, if the pin is not wired.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

@@ -5,14 +5,14 @@ use embedded_hal::spi::SpiDevice;
 use super::aer::Carries;
 use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome};
 
-/// Number of clocks from our ACK to an output until the chip continues, with a margin.
+/// Number of clock cycles from the driver's ACK of an output until the chip continues, with a margin.
 const HANDSHAKE_CLOCKS: u32 = 32;
-/// Number of clocks that [`Running::quiesce`] allows for outputs, beyond four times the longest time without any:
-/// enough for more than a thousand outputs.
+/// Number of clock cycles that [`Running::quiesce`] allows for outputs, in addition to four times the longest time that
+/// the chip works without an output. Enough for more than a thousand outputs.
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
-/// A running chip: it takes events, and its memories cannot be accessed. After an error it still runs, unless the call
-/// consumed this value.
+/// A running chip: it takes events, and its memories cannot be accessed. After an error the chip still runs, unless the
+/// failed call consumed this value.
 #[derive(Debug)]
 pub struct Running<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -23,13 +23,13 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Self { chip }
     }
 
-    /// Sends one input, and passes neurons that fire meanwhile to `on_output`. The chip still works on the word after
-    /// it has taken it: 2 clocks for every neuron in use.
+    /// Sends one input to the chip, and passes neurons that fire meanwhile to `on_output`. When this returns, the chip
+    /// has taken the input, but works on it for another 2 clock cycles for every neuron in use.
     ///
     /// # Errors
     /// Returns an error if the input is invalid, the chip does not answer, or the port failed. With
     /// [`Phase::Idle`](super::Phase::Idle) the input was not sent. With any other [`Handshake`](ChipError::Handshake)
-    /// error it is pending, and must not be sent again.
+    /// error the input is pending, and must not be sent again.
     pub fn send(&mut self, input: I, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let word = input.word()?;
         let aer = &mut self.chip.aer;
@@ -38,7 +38,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     }
 
     /// Passes neurons that have fired to `on_output`, and continues with a pending word. Reads the pins only a few
-    /// times: call it often, as the chip stops while an output waits.
+    /// times: call this often, because the chip stops while an output waits.
     ///
     /// # Errors
     /// Returns an error if the port failed. No output is passed on twice.
@@ -48,12 +48,13 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
 
     /// Waits until the chip has processed all its input, and passes neurons that fire meanwhile to `on_output`.
     ///
-    /// No pin shows that the chip is at rest. So this waits until no output has come for the longest time that the chip
-    /// can work without one. In open loop that is a few sweeps of 2 clocks a neuron. In closed loop it is a sweep for
-    /// each spike that the queue can hold: 66 000 clocks for tinyODIN's 256 neurons.
+    /// No pin shows that the chip is at rest. Therefore this waits until no output has come for the longest time that
+    /// the chip can work without an output. In open loop that time is a few sweeps, each of 2 clock cycles for every
+    /// neuron in use. In closed loop it is one sweep for each spike that the queue can hold: 66 000 clock cycles for
+    /// tinyODIN's 256 neurons.
     ///
     /// # Errors
-    /// Returns [`Busy`](ChipError::Busy) if outputs do not end, as those of a network that drives itself; see
+    /// Returns [`Busy`](ChipError::Busy) if outputs keep coming, for example from a network that drives itself; see
     /// [`open_loop`](Self::open_loop). Returns another error if the chip does not take the pending word, or if the port
     /// failed. In both cases the chip still runs.
     pub fn quiesce(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
@@ -66,28 +67,29 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         };
         let clocks = sweeps * clocks + HANDSHAKE_CLOCKS;
         let limit = 4 * clocks + OUTPUT_CLOCKS;
-        let (looks, limit) = (chip.aer.looks(clocks), chip.aer.looks(limit));
-        match chip.aer.rest(looks, limit, &mut on_output) {
+        let (reads, limit) = (chip.aer.reads(clocks), chip.aer.reads(limit));
+        match chip.aer.rest(reads, limit, &mut on_output) {
             Ok(true) => Ok(()),
             Ok(false) => Err(ChipError::Busy),
             Err(error) => Err(ChipError::Port(error)),
         }
     }
 
-    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it. Then its memories can be
-    /// accessed, and its neurons keep their potentials.
+    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it. The chip's memories can then
+    /// be accessed; its neurons keep their potentials.
     ///
     /// # Errors
     /// Returns the errors of [`quiesce`](Self::quiesce), after which the chip still runs. Also returns an error if the
-    /// bus failed, or if the chip reads back something else than was written: then reset it.
+    /// bus failed, or if the chip reads back a different value than was written; then reset the chip.
     pub fn gate(mut self, on_output: impl FnMut(u8)) -> Outcome<Gated<'a, I, D, P>, D, P> {
         self.quiesce(on_output)?;
         self.chip.shut()?;
         Ok(Gated::new(self.chip))
     }
 
-    /// Opens the loop, so that a network that drives itself comes to rest. The loop stays open until the next
-    /// [`run`](Gated::run). This write is not verified; [`gate`](Self::gate) verifies its own.
+    /// Opens the loop (spikes no longer reach other neurons), so that a network that drives itself comes to rest. The
+    /// loop stays open until the next [`run`](Gated::run). The driver does not verify this write; [`gate`](Self::gate)
+    /// opens the loop again and verifies that.
     ///
     /// # Errors
     /// Returns an error if the bus failed: then reset the chip.

@@ -1,19 +1,21 @@
-//! Time steps in which each neuron compares with its threshold once, as in training, although the chip's neurons
-//! compare after every event.
+//! Time steps in which each neuron compares its potential with its threshold once, as in training. (By themselves the
+//! chip's neurons compare after every event.)
 
 use embedded_hal::spi::SpiDevice;
 
 use super::{AerPort, ChipError, Input, Outcome, Running};
 
-/// The sequence of events by which tinyODIN runs one time step of a network. It belongs to a [`Network`](super::Network) in
-/// open loop; `spikewire network` writes both, and [`Running::step`] runs a step.
+/// The sequence of events by which tinyODIN runs one time step of a network whose neurons compare with their thresholds
+/// once a step, as in training. `Steps` belong to a [`Network`](super::Network) in open loop; `spikewire network`
+/// writes both, and [`Running::step`] runs a step.
 ///
-/// While a step's inputs arrive, all potentials are offset downwards, so that no neuron reaches its threshold. Then events on
-/// a row of weights raise a layer, each by a *rung*, until the offset is gone and its neurons compare. The layer's spikes go
-/// to the next layer, which is raised in turn. Finally events on another row lower all neurons again. Leaks come between
-/// these: each moves a potential towards the value that is at 0 at that moment. Leaks at several heights together therefore
-/// reduce a potential by a share of it, as in training. A neuron that fired may end above its reset value, and gets leaks of
-/// its own to remove the excess.
+/// While a step's inputs arrive, all potentials are offset downwards, so that no neuron reaches its threshold. Then a
+/// series of events on an extra row of weights raises the first layer, each event by one *rung*, until the offset is
+/// gone and the neurons that are above their thresholds fire. Their spikes go to the next layer, which is raised in
+/// turn. Finally events on a second extra row lower all neurons again. Leaks are sent between these events: a leak
+/// moves the potential towards 0, wherever the offset stands at that moment. Therefore leaks at several heights
+/// together reduce a potential by a share of its value, as in training. A neuron that fired may end above its reset
+/// value; leaks that only this neuron receives remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
@@ -73,8 +75,9 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 ///
 /// The rows of the network are, in this order:
 ///
-/// 1. the inputs, and the bias if there is one;
-/// 2. for each layer, its neurons onto the next layer, if there is one, and onto themselves, if the layer is recurrent;
+/// 1. the inputs, and the bias if the network has one;
+/// 2. for each layer, its neurons onto the next layer (except for the last layer), and onto the layer itself if the
+///    layer is recurrent;
 /// 3. for each layer, a row that raises it;
 /// 4. a row that lowers all neurons;
 /// 5. a row that raises all neurons, if [`lift`](Self::lift) is not 0.
@@ -82,54 +85,56 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// The neurons' initial potentials contain the offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps<'a> {
-    /// Number of inputs.
+    /// Number of inputs, without the bias.
     pub inputs: u16,
-    /// Whether there is one more input, after the others, that belongs to every step.
+    /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// Number of rows for each input and for each neuron that sends spikes. A weight is the sum of its rows.
+    /// Number of rows of synapses for each input and for each neuron that sends spikes to neurons. The weight of an
+    /// input or neuron is the sum over its rows.
     pub rows: u16,
-    /// The layers, in order from the input. Their neurons are the chip's, from 0 on.
+    /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
     pub layers: &'a [StepsLayer],
-    /// Number of events that raise a layer, and that lower all neurons again.
+    /// Number of events that raise a layer in a step, and number of events that later lower all neurons again.
     pub rungs: u16,
-    /// For each step: after how many lowering events all neurons leak, in ascending order. The list is repeated.
+    /// The leaks of all neurons in each step: the number of lowering events that come before each leak, in ascending
+    /// order. Steps take the lists in turn.
     pub leaks: &'a [&'a [u16]],
-    /// Number of events that raise all neurons again after they were lowered, for the leaks of neurons that fired, and
-    /// that lower them after these.
+    /// Number of events that raise all neurons again after they were lowered, before the leaks of neurons that fired;
+    /// as many events lower them afterwards. 0 if these leaks need no raising.
     pub lift: u16,
-    /// For each neuron, the number of leaks that it alone gets after it has fired.
+    /// For each neuron, the number of leaks that only this neuron receives after it has fired.
     pub own_leaks: &'a [u16],
 }
 
 /// A layer of a network that runs in [`Steps`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepsLayer {
-    /// Number of neurons.
+    /// Number of neurons in the layer.
     pub neurons: u16,
-    /// Whether the layer is recurrent: its spikes act on it in the next step.
+    /// Whether the layer is recurrent: its spikes act on its own neurons in the next step.
     pub loops: bool,
 }
 
-/// The state of a network between steps: 36 bytes.
+/// The state of a network that runs in [`Steps`], between two steps. It takes 36 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepsState {
-    /// Neurons that fired in the last step.
+    /// The neurons that fired in the last step.
     fired: Fired,
-    /// Index of the next step in [`Steps::leaks`].
+    /// Index into [`Steps::leaks`] for the next step.
     turn: u16,
 }
 
 impl StepsState {
-    /// The state before the first step.
+    /// The state before the first step: no neuron has fired.
     pub const REST: Self = Self { fired: Fired([0; 8]), turn: 0 };
 }
 
-/// A set of neurons, one bit for each.
+/// A set of neurons, one bit for each of the chip's neurons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Fired([u32; 8]);
 
 impl Fired {
-    /// Adds a neuron; returns false if it was in the set.
+    /// Adds a neuron; returns false if the set already contained it.
     fn insert(&mut self, neuron: u8) -> bool {
         let Some(word) = self.0.get_mut(usize::from(neuron >> 5)) else { return false };
         let bit = 1 << (neuron & 31);
@@ -143,14 +148,14 @@ impl Fired {
         word >> (neuron & 31) & 1 == 1
     }
 
-    /// Returns the neurons of a range that are in the set, counted from the range's start.
+    /// Returns the neurons of the set that lie in `start..start + count`, each as its offset from `start`.
     fn of(self, start: u16, count: u16) -> impl Iterator<Item = u16> {
         (0..count).filter(move |at| self.contains(start.saturating_add(*at)))
     }
 }
 
 impl Steps<'_> {
-    /// Returns the row that raises the first layer.
+    /// Returns the number of the row that raises the first layer; the rows that raise the other layers follow.
     #[must_use]
     pub fn first_rise(&self) -> u16 {
         let sources = self.inputs.saturating_add(self.has_bias.into());
@@ -163,7 +168,7 @@ impl Steps<'_> {
         sources.saturating_mul(self.rows)
     }
 
-    /// Returns the total number of rows.
+    /// Returns the number of rows of synapses that the steps need, including those that raise and lower neurons.
     #[must_use]
     pub fn all_rows(&self) -> u16 {
         let gates = match (self.rungs, self.lift) {
@@ -176,14 +181,14 @@ impl Steps<'_> {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Runs a step of a network. `inputs` are the numbers of the inputs that fire, in any order; those that the network
-    /// does not have are left out and [counted](super::Counters::unmapped_events). Neurons that fire are passed to
-    /// `on_output` at once, at most once in a step. They include neurons of layers before the last, which
-    /// [`Describe::answers`](super::Describe::answers) filters out. Leaks come only between steps.
+    /// Runs one time step of a network. `inputs` are the numbers of the inputs that fire, in any order; numbers that
+    /// are not inputs of the network are dropped and [counted](super::Counters::unmapped_events). Neurons that fire are
+    /// passed to `on_output` immediately, each at most once in a step. They include neurons of all layers;
+    /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
     ///
-    /// **Time:** each event takes the chip 2 clocks for every neuron in use, and 6 more. Events are inputs, spikes,
-    /// [`rungs`](Steps::rungs) for each layer and once more for all, and leaks. The chip still works on the last event
-    /// when the call returns.
+    /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. A step consists of one
+    /// event for each row of an input or spike, [`rungs`](Steps::rungs) events for each layer, as many for lowering all
+    /// neurons, and the leaks. The chip still works on the last event when the call returns.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). The step is then incomplete and the chip's potentials are useless:
@@ -223,7 +228,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
             }
             step.row(rise, steps.rungs)?;
             rise = rise.saturating_add(1);
-            // The chip takes a word after its work on those before: by then all outputs have come.
+            // The chip takes a word only after its work on the words before: when it takes this one, all outputs of the
+            // layer have come.
             step.send(I::probe(I::PROBED))?;
             if at < last {
                 for neuron in step.fired.of(first, layer.neurons) {
@@ -232,7 +238,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
             }
             first = first.saturating_add(layer.neurons);
         }
-        // Behind those that raise.
+        // The rows that lower and lift all neurons follow the rows that raise the layers.
         let (fall, lift) = (rise, rise.saturating_add(1));
         let turn = usize::from(state.turn);
         let mut leaks = steps.leaks.get(turn).copied().unwrap_or_default().iter().peekable();
@@ -267,7 +273,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     }
 }
 
-/// A step that is being run.
+/// A step that is being run, and the neurons that fired in it so far.
 struct Step<'r, 'c, I: Input, D, P, F> {
     running: &'r mut Running<'c, I, D, P>,
     rows: u16,
@@ -285,7 +291,7 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         })
     }
 
-    /// Sends a spike on a row, `times` times.
+    /// Sends `times` spikes on a row.
     fn row(&mut self, row: u16, times: u16) -> Outcome<(), D, P> {
         for _ in 0..times {
             let Ok(pre) = u8::try_from(row) else {
@@ -297,7 +303,8 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends a spike on each row of an input or a neuron.
+    /// Sends one spike on each row of an input or a neuron. `first` is the first row of its group, `number` its index
+    /// in the group.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let first = first.saturating_add(number.saturating_mul(self.rows));
         for at in 0..self.rows {

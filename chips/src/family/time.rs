@@ -1,4 +1,4 @@
-//! Time steps, which the chip receives as leak events.
+//! Time steps, which the driver sends to the chip as leak events.
 
 use core::num::NonZeroU32;
 
@@ -8,24 +8,25 @@ use super::aer::Carries;
 use super::{AerPort, Input, Outcome, Running};
 use spikewire::Tick;
 
-/// Maximum number of leak events that are sent at once.
+/// Maximum number of leak events that one call sends.
 const MAX_LEAKS: u32 = 255;
 
-/// How late a tick may be, in µs: 67 s. A tick further back counts as one of the clock's next round, as after an hour
-/// in which the chip was gated.
+/// Longest time that a tick may lie before the last one and still count as late, in µs: 67 s. A tick that lies further
+/// back is taken for a later one, after the 32-bit clock has wrapped, for example after an hour in which the chip was
+/// gated.
 const LATEST: u32 = 1 << 26;
 
-/// Returns the time from `last` to `now` in µs; `None` if `now` is late.
+/// Returns the time from `last` to `now` in µs; `None` if `now` lies up to 67 s before `last`.
 fn passed(last: Tick, now: Tick) -> Option<u32> {
     let passed = now.micros().wrapping_sub(last.micros());
     (passed < LATEST.wrapping_neg()).then_some(passed)
 }
 
-/// Decides when leak events are due.
+/// The length of a time step, and the time at which the last leak event was due.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time {
     step: NonZeroU32,
-    /// Time at which the last leak event was due.
+    /// Time at which the last leak event was due; `None` before the first tick.
     last: Option<Tick>,
 }
 
@@ -34,20 +35,19 @@ impl Time {
         Self { step, last: None }
     }
 
-    /// Returns whether the time step of this tick is over.
+    /// Returns whether the time step that `tick` belongs to is over.
     pub(super) fn is_over(&self, tick: Tick) -> bool {
         self.last.is_some_and(|last| passed(last, tick).is_none())
     }
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Sends the leak events of the time steps that have passed at this tick, including those that passed while the
-    /// chip was gated, up to 70 minutes; the first call only notes the time. At most 255 are sent; the others are
-    /// skipped and [counted](super::Counters::skipped_steps). (255 leaks of 1 may not bring a potential of 12 bits to
-    /// 0.)
+    /// Sends the leak events for the time that has passed up to the tick `now`. Time in which the chip was gated
+    /// counts, up to 70 minutes; the first call only notes the time. A call sends at most 255 leak events; it skips and
+    /// [counts](super::Counters::skipped_steps) the rest. (255 leaks of 1 may not bring a potential of 12 bits to 0.)
     ///
     /// # Errors
-    /// Returns the errors of [`send`](Self::send). Time steps that were not sent are due at the next call.
+    /// Returns the errors of [`send`](Self::send). Leak events that were not sent are due at the next call.
     pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.advance_with(now, &mut on_output)
     }

@@ -1,4 +1,5 @@
-//! Networks for `ReckOn` as bytes, from a file or received by radio, which are known only at run time.
+//! Networks for `ReckOn` as bytes, from a file or received by radio, for programs that know the network only at run
+//! time.
 
 use super::network::check;
 use super::{DescribeReckOn, ReckOnPair, ReckOnShared};
@@ -10,16 +11,16 @@ const HEADER: usize = 16;
 const RECURRENT: u8 = 1;
 const ZERO: u8 = 2;
 
-/// A network for `ReckOn` as bytes, for networks known only at run time.
+/// A network for `ReckOn` as bytes, for programs that know the network only at run time.
 ///
-/// | bytes | what |
+/// | bytes | content |
 /// |---|---|
 /// | 4 | `SWN1` |
 /// | 1 | the chip: 3 |
 /// | 1 | bit 0: recurrent; bit 1: a neuron that fires returns to 0 |
 /// | 2, 2, 2 | neurons, inputs, outputs |
-/// | 1, 1, 1, 1 | shifts of inputs, neurons and outputs; what an output keeps |
-/// | 4 a pair of neurons | what it keeps, its threshold |
+/// | 1, 1, 1, 1 | shifts of the weights from inputs, between neurons and to outputs; share of an output's potential that a step keeps |
+/// | 4 a pair of neurons | share of a potential that a step keeps; threshold |
 /// | a row for each input | a signed weight for each neuron |
 /// | a row for each neuron | a signed weight for each neuron; only if the network is recurrent |
 /// | a row for each neuron | a signed weight for each output |
@@ -54,10 +55,10 @@ fn check_sizes([neurons, inputs, outputs]: [u16; 3]) -> Result<(), FormatError> 
 }
 
 impl<'a> ReckOnBytes<'a> {
-    /// Reads the header, and checks the length and every value.
+    /// Borrows a network from bytes, after checking their header, their length and every value.
     ///
     /// # Errors
-    /// Returns an error if the bytes are not a network for this chip.
+    /// Returns an error if the bytes do not contain a network for this chip.
     pub fn new(bytes: &'a [u8]) -> Result<Self, FormatError> {
         let (header, rest) = bytes.split_at_checked(HEADER).ok_or(FormatError::Magic)?;
         let &[a, b, c, d, kind, flags, n0, n1, i0, i1, o0, o1, s0, s1, s2, keep] = header else {
@@ -132,7 +133,8 @@ impl<'a> ReckOnBytes<'a> {
     }
 }
 
-/// Returns the weight in this row and column, of rows with `length` weights.
+/// Returns the weight in row `row` and column `column` of a table whose rows have `length` weights; 0 outside the
+/// table.
 fn weight(rows: &[u8], length: u16, row: u16, column: u16) -> i8 {
     let at = usize::from(row).wrapping_mul(length.into()).wrapping_add(column.into());
     rows.get(at).filter(|_| column < length).map_or(0, |&byte| byte as i8)

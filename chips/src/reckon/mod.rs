@@ -1,4 +1,4 @@
-//! `ReckOn`: 256 recurrent neurons, 16 leaky outputs, weights of 8 bits, learning on the chip.
+//! `ReckOn`: 256 neurons with recurrent connections, 16 leaky outputs, weights of 8 bits, and learning on the chip.
 
 mod bytes;
 mod network;
@@ -22,48 +22,54 @@ use super::ChipError;
 use super::family::Phase;
 use wire::{Address, Wire};
 
-/// `ReckOn`, on an SPI device and a port.
+/// The driver of `ReckOn`, on an SPI device and a port.
 ///
 /// Source: RTL and documentation, ChFrenkel/ReckOn; nothing was copied from them.
 ///
-/// - **SPI:** mode 0; the chip has no chip select: it needs a bus of its own and a device whose chip select is not
-///   wired. SCK at most a tenth of the chip's clock: a word that is read must be ready within half a clock of SCK.
+/// - **SPI:** mode 0, SCK at most a tenth of the chip's clock, because the chip must have a word ready within half a
+///   cycle of SCK. The chip has no chip select. Therefore no other device may share its SPI bus, and the chip-select
+///   pin of the SPI device stays unconnected.
 /// - **States:** [`reset`](Self::reset) gives a [`Programmed`] chip, whose memories can be accessed;
-///   [`Programmed::run`] gives a [`Started`] one; [`Started::begin`] gives a [`ReckOnSample`], which takes inputs and time
-///   steps until [`ReckOnSample::end`]. [`Started::program`] gives a [`Programmed`] chip again. After an error of the bus,
-///   of a handshake or of a step all calls are refused until the next reset.
-/// - **Checks:** memories are read back. Registers cannot be read. Therefore, after each register, a word that no network
-///   uses is written and read twice, so that a clock lost or doubled before it is an error.
-/// - **Faults that go unseen** need a lost and a doubled clock that cancel out. With one of them in a register's own frame or
-///   in the frame before it, the register may keep its value or take another, or a different register may be written. In the
-///   first bits of a frame that writes neurons' weights, the pair may write a register too, which is noticed unless the memory
-///   held these weights before. A read by which a load compares may become a write. [`Programmed::verify`] after the load
-///   finds that in weights and parameters; in the potential of a neuron or an output it goes unseen.
-/// - **Waits** read the pins a given number of times, then return an error.
+///   [`Programmed::run`] gives a [`Started`] chip; [`Started::begin`] gives a [`ReckOnSample`], which takes inputs and
+///   time steps until [`ReckOnSample::end`]. [`Started::program`] gives a [`Programmed`] chip again. After an error of
+///   the bus, of a handshake or of a step, the driver refuses all calls until the next reset.
+/// - **Checks:** the driver reads memories back. Registers cannot be read. Therefore, after each register, the driver
+///   twice writes and reads a word that no network uses, which detects a clock pulse that was lost or doubled before.
+/// - **Undetected faults** consist of a lost and a doubled clock pulse that cancel out. If one of the two lies in the
+///   frame of a register or in the frame before, the register may keep its old value or take a wrong one, or a
+///   different register may be written. If the pair lies in the first bits of a frame that writes weights between
+///   neurons, it may write a register, which is noticed unless the memory held the same weights before. A read by which
+///   a load compares may become a write. [`Programmed::verify`] after the load detects that in weights and parameters,
+///   but not in the potential of a neuron or an output.
+/// - **Waits:** the driver reads the pins a given number of times, then returns an error.
 ///
 /// # A time step
-/// Inputs that are sent before a tick act after that tick. Neurons leak and fire at the second tick, and their spikes act
-/// after it. Outputs show these at the third tick. With N inputs and N neurons, a step takes 2 N + 4 clocks of the chip, and N
-/// more for each event.
+/// Inputs that are sent before a tick act after that tick. At the second tick, neurons leak and fire; their spikes act
+/// after that tick. At the third tick, the outputs show these spikes. With N inputs and N neurons, a step takes 2 N + 4
+/// clock cycles of the chip, and N more for each event.
 ///
 /// # What to know about the chip
 /// - After reset learning is on: at the first tick with `TARGET_VALID` the chip would wait for a target without end.
 ///   Therefore [`Programmed::run`] always writes [`ReckOnSettings::learning`].
-/// - A tick that comes before the last step is done stops the chip until a reset, although `TIMING_ERROR_RDY` then says
-///   ready. [`ReckOnSample::step`] waits for this line before the tick. After the tick the line is low for 2 N + 4 clocks
-///   only, which a driver that reads its pins rarely would miss. Therefore the chip is always set to send an answer in each
-///   step, as the line stays low until the last byte is taken, and a step without an answer is an error.
+/// - A tick that comes before the last step is done stops the chip until a reset, although the pin `TIMING_ERROR_RDY`
+///   then says ready. [`ReckOnSample::step`] waits for this pin before the tick. After the tick the pin is low for only
+///   2 N + 4 clock cycles, which a driver that reads its pins rarely would miss. Therefore the driver always sets the
+///   chip to send an answer in each step: the pin then stays low until the last byte of the answer is taken, and a step
+///   without an answer is an error.
 /// - If `SAMPLE` falls while the chip learns and does not send an answer in each step, it goes on learning without end,
 ///   through all weights.
-/// - Neurons are processed in pairs, up to the number of neurons, inputs or outputs, whichever is the largest. A pair beyond
-///   the network whose memory holds a threshold of 0 fires at every step. Therefore [`Programmed::load`] writes all 128 pairs.
-/// - With an odd number of neurons the last would never fire, so the driver gives the chip a number one higher.
-/// - A word to a register with a count above 1 writes the same register again.
+/// - Neurons are processed in pairs, up to the number of neurons, inputs or outputs, whichever is the largest. A pair
+///   that the network does not use fires at every step if its memory holds a threshold of 0. Therefore
+///   [`Programmed::load`] writes all 128 pairs.
+/// - If the number of neurons is odd, the last one would never fire; the driver therefore tells the chip a number that
+///   is one higher.
+/// - A frame that announces more than one word to a register writes them all to the same register.
 /// - An input sent twice within a step counts once. Inputs that are sent after the last tick of a sample are lost.
 /// - Reset clears no memory.
-/// - With a `keep` above 32 768 a potential near the end of its range changes its sign as it grows out of it.
+/// - With a [`keep`](ReckOnPair::keep) above 32 768, a potential that grows beyond its range wraps around and changes
+///   its sign.
 ///
-/// # A bank's samples as time steps
+/// # Example: a time step for each sample of an encoder bank
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
 /// use spikewire_chips::{
@@ -115,7 +121,7 @@ pub struct ReckOn<D, P> {
     sizes: Sizes,
 }
 
-/// Highest number of an input, of a neuron and of an output in the network.
+/// Highest numbers of an input, a neuron and an output that the network uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sizes {
     input: u8,
@@ -125,7 +131,7 @@ struct Sizes {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Out of step with the bus, or not reset yet.
+    /// Chip and bus are out of sync, or the chip was not reset yet.
     NotReset,
     Programmed,
     Started,
@@ -134,19 +140,20 @@ enum State {
 
 type Outcome<T, D, P> = Result<T, ChipError<<D as ErrorType>::Error, <P as ReckOnPort>::Error>>;
 
-/// Duration of the reset pulse, and of the pause after it, in µs.
+/// Duration of the reset pulse, and of the pause after the pulse, in µs.
 const RESET_US: u32 = 10;
 
-/// Number of the register that opens the memories to SPI.
+/// Number of the register that opens the chip's memories to accesses over SPI.
 const OPEN: u16 = 0;
 
 impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
-    /// Longest step in clocks of the chip: 256 neurons that all fire, and learning.
+    /// Longest time step, in clock cycles of the chip: all 256 neurons fire, and the chip learns.
     pub const MAX_CLOCKS: u32 = 76_000;
 
     /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
-    /// times; [`MAX_CLOCKS`](Self::MAX_CLOCKS) suffice if each read takes at least a clock of the chip. If reads are
-    /// faster, multiply it by the number of reads in a clock, rounded up; two short waits rely on that factor.
+    /// times; [`MAX_CLOCKS`](Self::MAX_CLOCKS) polls suffice if each takes at least one clock cycle of the chip. If
+    /// polls are faster, pass `MAX_CLOCKS` times the number of polls in a clock cycle, rounded up: the driver derives
+    /// two short waits from that factor.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         let wire = Wire { device };
         let sizes = Sizes { input: 255, neuron: 255, output: 15 };
@@ -154,11 +161,11 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         Self { wire, port, polls, state: State::NotReset, settings, sizes }
     }
 
-    /// Pulses reset, which brings chip and bus into step, and checks that the chip answers. Memories keep their
-    /// content; registers do not.
+    /// Pulses reset, which brings chip and bus into sync, and checks that the chip answers. The chip's memories keep
+    /// their content; its registers do not.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or if the chip reads back something else than was written.
+    /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Programmed<'_, D, P>, D, P> {
         self.state = State::NotReset;
         self.clear_pins().map_err(ChipError::Port)?;
@@ -166,7 +173,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         self.port.set_reset(false).map_err(ChipError::Port)?;
         delay.delay_us(RESET_US);
         self.state = State::Programmed;
-        self.check_step()?;
+        self.check_sync()?;
         Ok(Programmed { chip: self })
     }
 
@@ -182,10 +189,10 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         port.set_infer(false)
     }
 
-    /// Returns the chip, if its memories can be accessed.
+    /// Returns a chip that an earlier call left with open memories.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset) or [`NotGated`](ChipError::NotGated).
+    /// Returns [`NotReset`](ChipError::NotReset), or [`NotGated`](ChipError::NotGated) if the chip runs.
     pub fn programmed(&mut self) -> Outcome<Programmed<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -194,11 +201,11 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Returns the chip, if it runs and is between samples.
+    /// Returns a chip that an earlier call left running, between two samples.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`Busy`](ChipError::Busy) within a
-    /// sample.
+    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated) if the chip does not run, or
+    /// [`Busy`](ChipError::Busy) if it is within a sample.
     pub fn started(&mut self) -> Outcome<Started<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -208,11 +215,11 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Returns the chip, if it is within a sample.
+    /// Returns a chip that an earlier call left within a sample.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated), or [`NotStarted`](ChipError::NotStarted)
-    /// between samples.
+    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated) if the chip does not run, or
+    /// [`NotStarted`](ChipError::NotStarted) if it is between samples.
     pub fn sample(&mut self) -> Outcome<ReckOnSample<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -222,7 +229,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Returns the SPI device and the port.
+    /// Consumes the driver and returns its SPI device and port.
     pub fn release(self) -> (D, P) {
         (self.wire.device, self.port)
     }
@@ -235,7 +242,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Requires a reset after an error.
+    /// Passes the result on; after an error the chip must be reset before the next call.
     fn heed<T>(&mut self, result: Outcome<T, D, P>) -> Outcome<T, D, P> {
         if result.is_err() {
             self.state = State::NotReset;
@@ -267,9 +274,9 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         self.heed(Err(ChipError::ReadBack { address: address.0, written, read }))
     }
 
-    /// Writes two words to an address that no network uses, and reads each back; a bus that is out of step by a bit
-    /// reads different ones.
-    fn check_step(&mut self) -> Outcome<(), D, P> {
+    /// Checks that chip and bus are in sync: writes two words to an address that no network uses, and reads each back.
+    /// A bus that is out of sync by one bit reads different words.
+    fn check_sync(&mut self) -> Outcome<(), D, P> {
         for word in [0xA53C_0F96, 0x5AC3_F069] {
             self.write(Address::anchor(), word)?;
             self.expect(Address::anchor(), word)?;
@@ -277,14 +284,14 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         Ok(())
     }
 
-    /// Returns the number of reads of a pin that take at least this many clocks of the chip.
-    fn looks(&self, clocks: u32) -> u32 {
+    /// Returns the number of pin reads that take at least `clocks` clock cycles of the chip.
+    fn reads(&self, clocks: u32) -> u32 {
         self.polls.div_ceil(Self::MAX_CLOCKS).saturating_mul(clocks)
     }
 
-    /// Reads the ready line up to `looks` times; returns whether it reached the level `is_high`.
-    fn wait_ready(&mut self, is_high: bool, looks: u32) -> Result<bool, P::Error> {
-        for _ in 0..looks {
+    /// Reads the ready pin up to `reads` times; returns whether it reached the level `is_high`.
+    fn wait_ready(&mut self, is_high: bool, reads: u32) -> Result<bool, P::Error> {
+        for _ in 0..reads {
             if self.port.ready()? == is_high {
                 return Ok(true);
             }

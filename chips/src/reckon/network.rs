@@ -3,19 +3,19 @@
 use crate::ChipError;
 use crate::error::in_range;
 
-/// The parameters that two adjacent neurons share.
+/// The parameters that neurons `2 n` and `2 n + 1` share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnPair {
-    /// Share of the potential that remains after a time step, in units of 1/32 768: 28 672 (0.875) to 36 863 (1.125).
+    /// Share of the potential that a time step keeps, in units of 1/32 768: 28 672 (0.875) to 36 863 (1.125).
     pub keep: u16,
-    /// Potential at which a neuron fires, 1 to 32 767.
+    /// Potential at which the two neurons fire, 1 to 32 767.
     pub threshold: i16,
 }
 
 impl ReckOnPair {
-    /// Parameters of neurons that keep their potential and almost never fire.
+    /// Parameters of neurons that keep their potential and practically never fire.
     pub const REST: Self = Self { keep: 1 << 15, threshold: i16::MAX };
 }
 
@@ -24,15 +24,17 @@ impl ReckOnPair {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnShared {
-    /// Left shifts of the weights from inputs, between neurons and to outputs, 0 to 7 each.
+    /// Left shifts that the chip applies to the weights from inputs, between neurons and to outputs, in this order; 0
+    /// to 7 each.
     pub shifts: [u8; 3],
-    /// Share of an output's potential that remains after a time step, in units of 1/128.
+    /// Share of an output's potential that a time step keeps, in units of 1/128.
     pub keep: u8,
-    /// Whether a neuron that fires returns to 0; otherwise its threshold is subtracted.
+    /// Whether a neuron that fires returns to potential 0. If false, its threshold is subtracted from its potential.
     pub resets_to_zero: bool,
 }
 
-/// A network that [`Programmed::load`](super::Programmed::load) can write.
+/// The sizes, parameters and weights of a network, as [`Programmed::load`](super::Programmed::load) writes them to the
+/// chip.
 pub trait DescribeReckOn {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
@@ -44,7 +46,7 @@ pub trait DescribeReckOn {
     fn pair(&self, pair: u16) -> ReckOnPair;
     /// Returns the weight from an input to a neuron.
     fn input_weight(&self, input: u16, neuron: u16) -> i8;
-    /// Returns the weight from a neuron to a neuron.
+    /// Returns the weight from neuron `from` to neuron `to`.
     fn recurrent_weight(&self, from: u16, to: u16) -> i8;
     /// Returns the weight from a neuron to an output.
     fn output_weight(&self, neuron: u16, output: u16) -> i8;
@@ -55,7 +57,7 @@ pub trait DescribeReckOn {
 /// A network with `IN` inputs, `N` neurons and `OUT` outputs, as constant data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReckOnNetwork<const IN: usize, const N: usize, const OUT: usize> {
-    /// Parameters of each pair of neurons: `N / 2` pairs, rounded up.
+    /// Parameters of each pair of neurons, one entry for neurons `2 n` and `2 n + 1`: `N / 2` entries, rounded up.
     pub pairs: &'static [ReckOnPair],
     /// Weights from each input to all neurons.
     pub inputs: [[i8; N]; IN],
@@ -76,7 +78,7 @@ impl<const IN: usize, const N: usize, const OUT: usize> DescribeReckOn
     for ReckOnNetwork<IN, N, OUT>
 {
     fn neurons(&self) -> u16 {
-        // More than the chip has stay more.
+        // Saturates instead of wrapping, so that a number that is too large stays too large.
         N.min(usize::from(u16::MAX)) as u16
     }
 

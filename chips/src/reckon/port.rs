@@ -1,22 +1,23 @@
-//! The wires of `ReckOn` beside SPI.
+//! The wires of `ReckOn`, except for those of SPI.
 
-/// The wires of `ReckOn` beside SPI, all active high.
+/// The wires of `ReckOn`, except for those of SPI. All are active high.
 ///
 /// | line | direction | |
 /// |---|---|---|
 /// | `AERIN_ADDR`, `AERIN_TAR_EN` | to the chip | an input's number, or a byte of a target: nine lines, written with one store |
 /// | `AERIN_REQ`, `AERIN_ACK` | to the chip, from it | the handshake of an input |
 /// | `OUT_DATA` | from the chip | a byte of its answer, eight lines |
-/// | `OUT_REQ`, `OUT_ACK` | from the chip, to it | the handshake of such a byte |
-/// | `SAMPLE`, `TIME_TICK` | to the chip | a recording's length, and its time steps |
+/// | `OUT_REQ`, `OUT_ACK` | from the chip, to it | the handshake of a byte of the answer |
+/// | `SAMPLE`, `TIME_TICK` | to the chip | high during a sample; rises for each time step |
 /// | `TARGET_VALID`, `INFER_ACC` | to the chip | whether a step learns, and whether it counts for the label |
 /// | `TIMING_ERROR_RDY` | from the chip | whether a tick may come |
-/// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of step |
+/// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of sync |
 pub trait ReckOnPort {
     /// Error type of the port; `Infallible` for the microcontroller's own pins.
     type Error;
 
-    /// Puts a byte on `AERIN_ADDR`, and drives `AERIN_TAR_EN`. Both must have settled at the chip when this returns.
+    /// Puts a byte on `AERIN_ADDR`, and drives `AERIN_TAR_EN`. The wires must have settled at the chip before this
+    /// function returns.
     ///
     /// # Errors
     /// Returns an error if the port failed.

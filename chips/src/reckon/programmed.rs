@@ -1,4 +1,4 @@
-//! A chip whose memories can be accessed.
+//! The state of a `ReckOn` whose memories can be accessed.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -11,7 +11,7 @@ use super::{
 use crate::error::{at_most, in_range};
 use crate::{ChipError, Progress};
 
-/// A chip that has been reset and does not run yet: its memories can be accessed.
+/// A `ReckOn` that has been reset and does not run yet: its memories can be accessed.
 #[derive(Debug)]
 pub struct Programmed<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
@@ -21,15 +21,15 @@ pub struct Programmed<'a, D, P> {
 const PAIRS: u16 = 128;
 
 impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
-    /// Writes a network, sets all other pairs of neurons to rest, and reads all of it back. Calls `progress` after each
-    /// pair and each row.
+    /// Writes a network, sets all pairs of neurons that it does not use to [`REST`](ReckOnPair::REST), and reads
+    /// everything back. Calls `progress` after each pair and each row.
     ///
-    /// **Time:** two transfers of 8 bytes for each word. There are 512 words for the pairs, and one for each four
-    /// weights. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at 1 MHz.
+    /// **Time:** two transfers of 8 bytes for each 32-bit word. There are 512 words for the pairs, and one for each
+    /// four weights. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at 1 MHz.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit: then nothing was written. Also returns an error if the bus failed,
-    /// or if the chip reads back something else: then reset it, and load again.
+    /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
+    /// or if the chip reads back a wrong value; then reset the chip, and load again.
     pub fn load(
         &mut self,
         network: &impl DescribeReckOn,
@@ -44,13 +44,13 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
             |address, word| chip.write(address, word),
             |done| progress(Progress { done, total }),
         )?;
-        chip.check_step()?;
+        chip.check_sync()?;
         each_word(
             network,
             |address, word| chip.expect(address, word),
             |done| progress(Progress { done: half.wrapping_add(done), total }),
         )?;
-        chip.check_step()?;
+        chip.check_sync()?;
         chip.sizes = sizes(network);
         let shared = network.shared();
         for (register, shift) in (12..).zip(shared.shifts) {
@@ -74,13 +74,13 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     ///
     /// # Errors
     /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
-    /// first difference: then reset the chip.
+    /// first difference; then reset the chip.
     pub fn verify(&mut self, network: &impl DescribeReckOn) -> Outcome<(), D, P> {
         check::<D::Error, P::Error>(network)?;
         let chip = &mut *self.chip;
         each_word(
             network,
-            // The first quarters hold what changes as the network runs.
+            // Quarters 0 to 2 hold potentials and traces, which change as the network runs.
             |address, word| match address.0 >> 28 {
                 1 if address.0 & 3 != 3 => Ok(()),
                 1 => match chip.read(address)? {
@@ -94,18 +94,18 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
             },
             |_| (),
         )?;
-        chip.check_step()
+        chip.check_sync()
     }
 
     /// Reads the weight from an input to a neuron, which learning may have changed.
     ///
     /// # Errors
-    /// Returns an error if the bus failed or is out of step: then reset the chip.
+    /// Returns an error if the bus failed or is out of sync: then reset the chip.
     pub fn input_weight(&mut self, input: u8, neuron: u8) -> Outcome<i8, D, P> {
         self.weight(Address::input(input.into()), neuron)
     }
 
-    /// Reads the weight from a neuron to a neuron.
+    /// Reads the weight from neuron `from` to neuron `to`.
     ///
     /// # Errors
     /// See [`input_weight`](Self::input_weight).
@@ -116,7 +116,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// Reads the weight from a neuron to an output.
     ///
     /// # Errors
-    /// Returns an error if there is no such output; see also [`input_weight`](Self::input_weight).
+    /// Returns an error if `output` is above 15, and the errors of [`input_weight`](Self::input_weight).
     pub fn output_weight(&mut self, neuron: u8, output: u8) -> Outcome<i8, D, P> {
         at_most("output", output.into(), 15)?;
         self.weight(Address::output(neuron.into()), output)
@@ -125,19 +125,20 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     fn weight(&mut self, row: Address, at: u8) -> Outcome<i8, D, P> {
         let address = row.next(u16::from(at >> 2));
         let word = self.chip.read(address)?;
-        self.chip.check_step()?;
+        self.chip.check_sync()?;
         self.chip.expect(address, word)?;
-        // A bus out of step may read 0, as the weight is, and write.
-        self.chip.check_step()?;
+        // If the bus was out of sync, `expect` may have read a 0 that equals the weight, and may have written to
+        // memory.
+        self.chip.check_sync()?;
         Ok((word >> (8 * u32::from(at & 3))) as i8)
     }
 
-    /// Writes a register that [`ReckOnSettings`] and the network do not contain, and checks that chip and bus are still
-    /// in step. Register 0, which opens the memories, is reserved for the driver.
+    /// Writes a register that neither [`ReckOnSettings`] nor the network sets, and checks that chip and bus are still
+    /// in sync. Register 0, which opens the memories, is reserved for the driver.
     ///
     /// # Errors
-    /// Returns an error if there is no such register. Also returns an error if the bus failed or is out of step: then
-    /// reset the chip.
+    /// Returns an error if `register` is not in 1 to 104. Also returns an error if the bus failed or is out of sync;
+    /// then reset the chip.
     pub fn set_register(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
         in_range("register", register.into(), 1, 104)?;
         self.configure(register, value)
@@ -147,20 +148,21 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.chip.expect_programmed()?;
         let result = self.chip.wire.configure(register, value);
         self.chip.heed_bus(result)?;
-        self.chip.check_step()
+        self.chip.check_sync()
     }
 
-    /// Writes the registers and lets the chip run. Checks that the memories are closed, in which case every read
-    /// returns the word that was read before.
+    /// Writes the registers and lets the chip run. Checks that the memories are closed: every read must then return the
+    /// word of the last read before.
     ///
     /// # Errors
-    /// Returns an error if a value is out of its range: then nothing was changed. Also returns an error if the bus
-    /// failed or is out of step, or if the memories are still open: then reset the chip.
+    /// Returns an error if a value is out of its range; nothing was changed then. Also returns an error if the bus
+    /// failed or is out of sync, or if the memories are still open; then reset the chip.
     pub fn run(mut self, settings: &ReckOnSettings) -> Outcome<Started<'a, D, P>, D, P> {
         check_settings::<D::Error, P::Error>(settings)?;
         let answers = settings.answers;
-        // A step that comes too early stops the chip, the ready line says ready, and MISO is that of SPI alone.
-        // An answer in each step proves the step, also where the ready line is read too seldom to be seen low.
+        // The values make a step that comes too early stop the chip, make the ready pin say ready, and keep MISO for
+        // SPI alone. They also make the chip send an answer in each step, which proves the step even where the ready
+        // pin is read too rarely to be seen low.
         let fixed = [(3, 0), (10, 0), (11, 1), (23, 0), (30, 1)];
         let chosen = [
             (25, u32::from(settings.task == super::ReckOnTask::Regression)),
@@ -182,7 +184,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         let open = chip.read(anchor)?;
         let result = chip.wire.configure(OPEN, 0);
         chip.heed_bus(result)?;
-        // Closed, the chip takes no write and reads what it read last.
+        // While its memories are closed, the chip ignores the write, and the read returns the last word read.
         let result = chip.wire.write(anchor, !open).and_then(|()| chip.wire.read(anchor));
         let read = chip.heed_bus(result)?;
         if read != open {
@@ -232,7 +234,7 @@ fn sizes(network: &impl DescribeReckOn) -> Sizes {
     let last = |count: u16| count.saturating_sub(1) as u8;
     Sizes {
         input: last(network.inputs()),
-        // The chip works on pairs: it would leave the first of an odd pair out.
+        // The chip processes pairs: with an even last number it would leave out the first neuron of the last pair.
         neuron: last(network.neurons()) | 1,
         output: last(network.outputs()),
     }
@@ -247,11 +249,12 @@ fn words(network: &impl DescribeReckOn) -> u32 {
     let rows = u32::from(network.inputs()) + 256;
     let row = u32::from(network.neurons().div_ceil(4));
     let outputs = 256 * u32::from(network.outputs().div_ceil(4));
-    // Below 2³¹ for any counts.
+    // The sum is below 2³¹ for any network that fits, so it cannot wrap.
     rows.wrapping_mul(row).wrapping_add(outputs).wrapping_add(4 * u32::from(PAIRS))
 }
 
-/// Visits every word of the chip's memories that the network needs, with its value.
+/// Calls `visit` for every word of the chip's memories that the network needs, with the word's address and value, and
+/// `progress` with the number of words so far.
 fn each_word<B, X>(
     network: &impl DescribeReckOn,
     mut visit: impl FnMut(Address, u32) -> Result<(), ChipError<B, X>>,
@@ -283,7 +286,7 @@ fn each_word<B, X>(
     for input in 0..network.inputs() {
         row(Address::input(input), neurons, &|neuron| network.input_weight(input, neuron))?;
     }
-    // All rows: a neuron beyond the network does not fire, but nothing is left to that.
+    // Clears the rows of unused neurons, too: they do not fire, but the network does not depend on that.
     for from in 0..256 {
         let is_own = from < neurons;
         let weight = |to| if is_own { network.recurrent_weight(from, to) } else { 0 };

@@ -1,4 +1,4 @@
-//! A chip that runs, and its samples, which consist of time steps.
+//! The states of a `ReckOn` that runs: between samples, and within a sample, which consists of time steps.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -6,54 +6,54 @@ use super::{OPEN, Outcome, Programmed, ReckOn, ReckOnAnswers, ReckOnPort, ReckOn
 use crate::error::at_most;
 use crate::{ChipError, Phase};
 
-/// A chip that runs and is between samples.
+/// A `ReckOn` that runs and is between two samples.
 #[derive(Debug)]
 pub struct Started<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
 }
 
-/// A chip within a sample: it takes inputs and time steps.
+/// A `ReckOn` within a sample: it takes inputs and time steps.
 #[derive(Debug)]
 pub struct ReckOnSample<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
 }
 
-/// The options of a time step.
+/// The options of a time step. By default it neither counts for the label nor learns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ReckOnStep<'a> {
-    /// Whether this step counts for the label, by the output that is highest in it.
+    /// Whether this step counts for the label: the output with the highest potential gets a point.
     pub counts: bool,
-    /// The target of this step; `None` if it does not learn.
+    /// The target from which the chip learns in this step; `None` if it does not learn.
     pub target: Option<ReckOnTarget<'a>>,
 }
 
-/// The target of a step that learns.
+/// The target from which the chip learns in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnTarget<'a> {
-    /// The output that should be the highest; given once in a sample.
+    /// The number of the output that should be the highest. Given once in a sample.
     Label(u8),
-    /// A potential for each output.
+    /// The potential that each output should have.
     Potentials(&'a [i16]),
 }
 
-/// An answer of the chip; its kind is set by [`ReckOnAnswers`].
+/// An answer of the chip. [`ReckOnAnswers`] selects which of the two the chip sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnAnswer {
-    /// The output that was the highest in the most steps that count; of several, the first.
+    /// The number of the output that was the highest in the most counted steps; the first one if several are equal.
     Label(u8),
     /// The outputs' potentials; 0 for outputs that the network does not have.
     Potentials([i16; 16]),
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
-    /// Begins a sample with a first tick; all potentials are then 0. If the chip does not take this tick, the first
-    /// [`step`](ReckOnSample::step) or [`end`](ReckOnSample::end) returns the error.
+    /// Begins a sample with a first tick, which sets all potentials to 0. If the chip does not take this tick, the
+    /// first [`step`](ReckOnSample::step) or [`end`](ReckOnSample::end) returns the error.
     ///
     /// # Errors
-    /// Returns an error if the chip is not ready, or if the port failed: then reset the chip.
+    /// Returns an error if the chip is not ready, or if the port failed; then reset the chip.
     pub fn begin(self) -> Outcome<ReckOnSample<'a, D, P>, D, P> {
         let chip = self.chip;
         let result = begin(chip);
@@ -62,37 +62,37 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
         Ok(ReckOnSample { chip })
     }
 
-    /// Opens the memories again, for example to read weights that were learnt.
+    /// Stops the chip and opens its memories again, for example to read weights that the chip has learnt.
     ///
     /// # Errors
-    /// Returns an error if the bus failed or is out of step: then reset the chip.
+    /// Returns an error if the bus failed or is out of sync: then reset the chip.
     pub fn program(self) -> Outcome<Programmed<'a, D, P>, D, P> {
         let chip = self.chip;
         let result = chip.wire.configure(OPEN, 1);
         chip.heed_bus(result)?;
         chip.state = State::Programmed;
-        chip.check_step()?;
+        chip.check_sync()?;
         Ok(Programmed { chip })
     }
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
-    /// Sends a spike of an input, which acts after the next tick. Sent twice within a step, it counts once.
+    /// Sends a spike of an input. It acts after the next tick. If an input is sent twice within a step, it counts once.
     ///
     /// # Errors
-    /// Returns an error if there is no such input. Also returns an error if the chip does not answer, or if the port
-    /// failed: then reset the chip.
+    /// Returns an error if the network has no such input. Also returns an error if the chip does not answer, or if the
+    /// port failed: then reset the chip.
     pub fn send(&mut self, input: u8) -> Outcome<(), D, P> {
         at_most("input", input.into(), self.chip.sizes.input.into())?;
         self.chip.send(input, false)
     }
 
     /// Ends a time step and begins the next: waits until the chip is ready, ticks, and takes the chip's answer, which
-    /// proves that the step was done. Returns the answer if [one is asked for in each
-    /// step](ReckOnAnswers::PotentialsEachStep).
+    /// proves that the chip has done the step. Returns the answer if the setting is
+    /// [`PotentialsEachStep`](ReckOnAnswers::PotentialsEachStep), otherwise `None`.
     ///
     /// # Errors
-    /// Returns an error if the target does not fit the network or the settings: then nothing was sent. Also returns an
+    /// Returns an error if the target does not fit the network or the settings; nothing was sent then. Also returns an
     /// error if the chip does not finish its step, if it does not take the tick, or if the port failed: then reset the
     /// chip.
     pub fn step(&mut self, step: ReckOnStep<'_>) -> Outcome<Option<ReckOnAnswer>, D, P> {
@@ -102,10 +102,10 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         Ok(self.chip.settings.answers.is_each_step().then_some(answer))
     }
 
-    /// Ends the sample with a last tick, and returns the chip's answer. All potentials are then 0.
+    /// Ends the sample with a last tick, which sets all potentials to 0, and returns the chip's answer.
     ///
     /// # Errors
-    /// Returns an error if the chip does not finish, or if the port failed: then reset the chip.
+    /// Returns an error if the chip does not finish, or if the port failed; then reset the chip.
     pub fn end(mut self) -> Outcome<(ReckOnAnswer, Started<'a, D, P>), D, P> {
         let result = self.try_end();
         let answer = self.chip.heed(result)?;
@@ -156,8 +156,9 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         let [low, high] = last.to_le_bytes();
         chip.handshake(low, true)?;
         chip.tick()?;
-        // The last byte only counts once the neurons have leaked, and no line shows when they have.
-        for _ in 0..chip.looks(STEP_CLOCKS) {
+        // The last byte counts only if it comes after the neurons have leaked. No pin shows that, so wait for the time
+        // that it takes.
+        for _ in 0..chip.reads(STEP_CLOCKS) {
             chip.port.ready().map_err(ChipError::Port)?;
         }
         chip.handshake(high, true)?;
@@ -174,10 +175,10 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
     }
 }
 
-/// Number of clocks from a tick until all neurons have leaked, with a margin.
+/// Number of clock cycles from a tick until all neurons have leaked, with a margin.
 const STEP_CLOCKS: u32 = 280;
 
-/// Number of clocks from a tick until the ready line has fallen, with a margin.
+/// Number of clock cycles from a tick until the ready pin has fallen, with a margin.
 const TICK_CLOCKS: u32 = 16;
 
 fn begin<D: SpiDevice, P: ReckOnPort>(chip: &mut ReckOn<D, P>) -> Outcome<(), D, P> {
@@ -186,9 +187,9 @@ fn begin<D: SpiDevice, P: ReckOnPort>(chip: &mut ReckOn<D, P>) -> Outcome<(), D,
     chip.port.set_sample(true).map_err(ChipError::Port)?;
     chip.until_ready()?;
     chip.port.set_tick(true).map_err(ChipError::Port)?;
-    // The line is low for as many clocks as there are inputs or neurons, and pins that are read seldom miss that: an
-    // answer to the first step proves the tick.
-    chip.wait_ready(false, chip.looks(TICK_CLOCKS)).map_err(ChipError::Port)?;
+    // The ready pin is low for as many clock cycles as there are inputs or neurons. Pins that are read rarely may miss
+    // that, so the result is ignored: the answer to the first step proves this tick.
+    chip.wait_ready(false, chip.reads(TICK_CLOCKS)).map_err(ChipError::Port)?;
     chip.port.set_tick(false).map_err(ChipError::Port)?;
     chip.until_ready()
 }
@@ -199,7 +200,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
     }
 
-    /// Ticks, for a tick after which the chip sends an answer; the ready line then stays low until the answer is taken.
+    /// Ticks, and waits until the chip has taken the tick. The chip must be set to send an answer after it: the ready
+    /// pin then stays low until the answer is taken.
     fn tick(&mut self) -> Outcome<(), D, P> {
         self.port.set_tick(true).map_err(ChipError::Port)?;
         let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;
@@ -207,14 +209,14 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_taken { Ok(()) } else { Err(ChipError::Handshake(Phase::Acknowledge)) }
     }
 
-    /// Waits until the step is done, and takes the bytes of the answer meanwhile.
+    /// Waits until the step is done, takes the bytes of the answer meanwhile, and returns the answer.
     fn finish(&mut self) -> Outcome<ReckOnAnswer, D, P> {
         let mut bytes = [0; 32];
         let mut taken = 0_usize;
         for _ in 0..self.polls {
             if self.port.output_request().map_err(ChipError::Port)? {
                 let byte = self.take()?;
-                // More than the chip has outputs are refused below.
+                // Counts bytes beyond the longest answer without storing them; `answer` refuses such a count.
                 if let Some(place) = bytes.get_mut(taken) {
                     *place = byte;
                 }
@@ -252,7 +254,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
                 }
                 Ok(ReckOnAnswer::Potentials(potentials))
             }
-            // None at all: the tick began the sample, as the chip did not take the one before.
+            // With no bytes at all, this tick began the sample, because the chip had missed the tick that should have
+            // begun it.
             _ => Err(ChipError::Unfinished),
         }
     }

@@ -1,13 +1,13 @@
 //! The registers of `ReckOn` that set its answers and its learning.
 
-/// The kind of the chip's answers, and when they are returned. The chip sends one in every step, which proves the step:
-/// one byte for a label, or two for each output's potential.
+/// What the chip answers, and when the driver returns the answers. In any setting the chip sends an answer in every
+/// step, which proves the step: one byte for a label, or two for each output's potential.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnAnswers {
-    /// Returns a label after the sample: the output that was the highest in the most steps with
-    /// [`ReckOnStep::counts`](super::ReckOnStep::counts).
+    /// Returns a label after the sample: the number of the output that was the highest in the most steps with
+    /// [`counts`](super::ReckOnStep::counts) set.
     Label,
     /// Returns the outputs' potentials after the sample.
     Potentials,
@@ -25,7 +25,7 @@ impl ReckOnAnswers {
     }
 }
 
-/// The kind of targets from which the chip learns.
+/// What the targets are, from which the chip learns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -36,42 +36,45 @@ pub enum ReckOnTask {
     Regression,
 }
 
-/// How the chip learns, by e-prop. Every field is a register of the chip, whose documentation describes how they act
-/// together.
+/// How the chip learns, by eligibility propagation (e-prop). Every field is a register of the chip; the chip's
+/// documentation describes how they act together.
 ///
-/// A step that learns takes up to 8 704 clocks more. Weights change by 1, at random. For a run that can be repeated,
-/// seed the sources of random numbers: registers 85 to 92, with
+/// A step that learns takes up to 8 704 clock cycles more. Weights change by 1, with a probability that depends on the
+/// learning signal. To make a run repeatable, seed the chip's random generators: write registers 85 to 92 with
 /// [`Programmed::set_register`](super::Programmed::set_register).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnLearning {
-    /// Whether weights from inputs, between neurons and to outputs learn.
+    /// Whether the weights from inputs, between neurons and to outputs learn, in this order.
     pub learns: [bool; 3],
-    /// Shifts of the traces of inputs, neurons and outputs, 0 to 7 each.
+    /// Scales of the traces of inputs, neurons and outputs, in this order: number of binary places by which a trace is
+    /// finer, 0 to 7 each.
     pub traces: [u8; 3],
     /// Shift of the learning signal, 0 to 15.
     pub signal: u8,
-    /// Potentials that separate the five slopes in [`slopes`](Self::slopes), ascending.
+    /// Four potentials, ascending. They bound the five ranges for which [`slopes`](Self::slopes) has a value each.
     pub thresholds: [i16; 4],
-    /// Slopes that replace the derivative of firing, -16 to 15 each.
+    /// Slopes for the five ranges of a neuron's potential, -16 to 15 each. They stand in for the derivative of firing.
     pub slopes: [i8; 5],
-    /// How likely weights from inputs, between neurons and to outputs move: right shift and left shift, 0 to 31 each.
+    /// Right shift and left shift, 0 to 31 each, that set how likely a weight is to change: for the weights from
+    /// inputs, between neurons and to outputs, in this order.
     pub rates: [(u8, u8); 3],
     /// Whether outputs are compared with targets directly, without the chip's hard sigmoid.
     pub is_linear: bool,
 }
 
-/// The registers with which the chip runs a network.
+/// The registers that set the chip's answers and its learning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnSettings {
-    /// Kind of the chip's answers.
+    /// What the chip answers, and when the driver returns the answers.
     pub answers: ReckOnAnswers,
-    /// Kind of the targets. Labels exist only in classification.
+    /// What the targets are. [`Label`](ReckOnAnswers::Label) answers need
+    /// [`Classification`](ReckOnTask::Classification).
     pub task: ReckOnTask,
-    /// How the chip learns; `None` switches learning off, which is on after reset.
+    /// How the chip learns; `None` switches learning off. (After a reset it is on.)
     pub learning: Option<ReckOnLearning>,
 }
 

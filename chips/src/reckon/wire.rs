@@ -1,46 +1,50 @@
-//! SPI without chip select: a header of 32 bits and then 32-bit words, which the chip counts from its reset.
+//! SPI without chip select: a header of 32 bits, then 32-bit words, which the chip delimits by counting clock pulses
+//! from its reset.
 
 use embedded_hal::spi::SpiDevice;
 
 const READ: u32 = 1 << 31;
 
-/// The address of a word in one of the chip's memories.
+/// The address of a 32-bit word in one of the chip's memories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Address(pub(super) u32);
 
 impl Address {
-    /// Addresses one of the four words of a pair of neurons.
+    /// Returns the address of one of the four words of a pair of neurons.
     pub(super) const fn pair(pair: u16, quarter: u32) -> Self {
         Self(1 << 28 | (pair as u32) << 2 | quarter)
     }
 
-    /// Addresses the weights from an input to the first four neurons; the next address holds the next four.
+    /// Returns the address of the weights from an input to neurons 0 to 3. The weights to each next four neurons follow
+    /// at the next address.
     pub(super) const fn input(input: u16) -> Self {
         Self(3 << 28 | (input as u32) << 6)
     }
 
-    /// Addresses the weights from a neuron to the first four neurons; the next address holds the next four.
+    /// Returns the address of the weights from a neuron to neurons 0 to 3. The weights to each next four neurons follow
+    /// at the next address.
     pub(super) const fn recurrent(neuron: u16) -> Self {
         Self(4 << 28 | (neuron as u32) << 6)
     }
 
-    /// Addresses the weights from a neuron to the first four outputs; the next address holds the next four.
+    /// Returns the address of the weights from a neuron to outputs 0 to 3. The weights to each next four outputs follow
+    /// at the next address.
     pub(super) const fn output(neuron: u16) -> Self {
         Self(5 << 28 | (neuron as u32) << 2)
     }
 
-    /// Addresses a word that no network uses.
+    /// Returns the address of a word that no network uses, for checks.
     pub(super) const fn anchor() -> Self {
         Self::output(0x1AA)
     }
 
-    /// Returns the address `words` further on.
+    /// Returns the address that is `words` words further on.
     pub(super) const fn next(self, words: u16) -> Self {
         Self(self.0.wrapping_add(words as u32))
     }
 }
 
-/// The bus, while it is in step.
+/// The SPI device of a chip that is in sync with the bus.
 #[derive(Debug)]
 pub(super) struct Wire<D> {
     pub(super) device: D,
@@ -56,15 +60,16 @@ impl<D: SpiDevice> Wire<D> {
     }
 
     pub(super) fn read(&mut self, address: Address) -> Result<u32, D::Error> {
-        // The chip ignores the word that is sent. Taken for a header, it is one of a read. And a header of neurons that
-        // loses its first bit writes an output's potential, the low half of the word: 0 is what it is before a sample.
+        // The chip ignores the word that is sent while it is read. Should a fault make the chip take it for a header,
+        // the word is the header of a read. Should the header of neurons lose its first bit, the chip writes the word's
+        // low half to an output's potential: 0 is the value that the potential has before a sample.
         let mut bytes = frame(READ | address.0, 0xFFFF_0000);
         self.device.transfer_in_place(&mut bytes)?;
         Ok(u64::from_be_bytes(bytes) as u32)
     }
 }
 
-/// Makes a frame: a header that announces one word, and the word.
+/// Makes a frame: the header, with a count of one word, and the word.
 fn frame(header: u32, word: u32) -> [u8; 8] {
     (u64::from(header | 1 << 16) << 32 | u64::from(word)).to_be_bytes()
 }

@@ -1,4 +1,4 @@
-//! AKD1500: golden bytes, blocks, and errors at every transaction.
+//! Tests of the AKD1500 driver: expected bytes on the bus, sizes of blocks, and errors at every transaction.
 
 use std::collections::BTreeMap;
 
@@ -54,7 +54,8 @@ fn the_bytes_on_the_bus_are_golden() {
     chip.release().done();
 }
 
-/// Returns the transactions of `program`, with blocks by the table of block sizes.
+/// Returns the transactions that `program` should make: writes and then reads, in blocks as the chip's documentation
+/// sizes them. `back` are the words that the reads return.
 fn programming(address: u32, words: &[u32], back: &[u32]) -> Vec<[Transaction<u8>; 4]> {
     let mut blocks = Vec::new();
     let mut at = 0;
@@ -74,23 +75,23 @@ fn programming(address: u32, words: &[u32], back: &[u32]) -> Vec<[Transaction<u8
     writes.chain(reads).collect()
 }
 
-/// A fault of a byte on its way to the chip.
+/// A fault of one byte on its way from the driver to the chip.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
-    /// The byte's clocks are lost, so that the following bytes come early.
+    /// The clock pulses of the byte are lost, so that the following bytes arrive early.
     Lost,
-    /// The byte comes twice.
+    /// The byte arrives twice.
     Doubled,
-    /// A bit of the byte is flipped.
+    /// The bit with this number is flipped.
     Flipped(u8),
 }
 
-/// The chip's memory behind its bus, as in the vendor's sources. Chip select begins a block; of an incomplete block the
-/// whole words are written.
+/// The chip's memory behind its SPI, modelled on the vendor's sources. Chip select begins a block. If a block ends
+/// early, its complete words are still written.
 #[derive(Debug, Default)]
 struct Memory {
     words: BTreeMap<u32, u32>,
-    /// Number of bytes that the chip was sent so far.
+    /// Number of bytes that the driver has sent so far.
     sent: usize,
     fault: Option<(usize, Fault)>,
 }
@@ -100,8 +101,8 @@ impl ErrorType for Memory {
 }
 
 impl Memory {
-    /// Appends the byte to the block as the chip receives it: once, twice, flipped, or not at all.
-    fn on_its_way(&mut self, byte: u8, block: &mut Vec<u8>) {
+    /// Appends `byte` to the block as the chip receives it: once, twice, with a flipped bit, or not at all.
+    fn receive(&mut self, byte: u8, block: &mut Vec<u8>) {
         let fault = self.fault.filter(|(at, _)| *at == self.sent).map(|(_, fault)| fault);
         self.sent += 1;
         match fault {
@@ -125,10 +126,10 @@ impl SpiDevice for Memory {
         for operation in operations {
             match operation {
                 Operation::Write(bytes) => {
-                    bytes.iter().for_each(|&byte| self.on_its_way(byte, &mut block));
+                    bytes.iter().for_each(|&byte| self.receive(byte, &mut block));
                 }
                 Operation::Read(bytes) => {
-                    // A header that is short or no read's leaves the line low.
+                    // If the header is too short, or not that of a read, the chip keeps the line low.
                     let is_read = block.len() == 5 && block[0] & 0xF8 == 0x60;
                     for (at, byte) in bytes.iter_mut().enumerate() {
                         let word = is_read.then(|| {
@@ -142,9 +143,9 @@ impl SpiDevice for Memory {
             }
         }
         if block.len() >= 4 && block[0] & 0xF8 == 0x80 {
-            let told = [1, 4, 8, 16, 32][usize::from(block[0] & 7).min(4)];
+            let count = [1, 4, 8, 16, 32][usize::from(block[0] & 7).min(4)];
             let (data, _) = block[4..].as_chunks::<4>();
-            for (word, bytes) in data.iter().take(told).enumerate() {
+            for (word, bytes) in data.iter().take(count).enumerate() {
                 self.words.insert(Self::address(&block, word), u32::from_be_bytes(*bytes));
             }
         }
@@ -159,8 +160,8 @@ fn memory(words: impl Iterator<Item = u32>) -> Memory {
     Memory { words, ..Memory::default() }
 }
 
-/// Each byte of a write and of its reading back is lost, doubled and flipped in turn. The memory held other words
-/// before.
+/// Every byte of a write and of its reading back suffers each fault in turn: `program` returns an error, or memory is
+/// right. The memory held other words before.
 #[test]
 fn one_fault_on_the_bus_is_an_error_or_did_no_harm_and_the_next_call_mends_it() {
     let words: Vec<u32> = (0..61).map(|n| 0x0101_0101 * n + 0x8000_0001).collect();
@@ -183,7 +184,7 @@ fn one_fault_on_the_bus_is_an_error_or_did_no_harm_and_the_next_call_mends_it() 
             assert_eq!(chip.program(PLACE, &words), Ok(()), "{fault:?} at {at}");
         }
     }
-    // Not noticed are faults of the dummy bytes, whose bits mean nothing.
+    // Faults in the five dummy bytes of the reads go unnoticed, because their bits mean nothing.
     assert!(noticed >= (bytes - 5) * 9, "{noticed} of {}", bytes * 10);
 }
 
@@ -258,7 +259,7 @@ fn bad_addresses_and_values_are_refused_without_a_byte() {
         assert!(matches!(refused, Err(ChipError::OutOfRange { what: "address", .. })));
     }
     assert!(matches!(chip.write(0xFCFF_FFFC, &[0, 0]), Err(ChipError::OutOfRange { max: 4, .. })));
-    // As the vendor's driver.
+    // These addresses lie after the chip's memory, so the vendor's driver refuses them, too.
     for address in [0xFD00_0000, 0xFEDC_BA98, 0xFFFF_FFFC] {
         let refused = Err(ChipError::OutOfRange {
             what: "address",

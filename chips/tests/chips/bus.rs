@@ -1,13 +1,14 @@
-//! A bus that fails on request, which the mocks of embedded-hal-mock cannot do.
+//! An SPI bus that fails when a test wants it to, which the mocks of `embedded-hal-mock` cannot do.
 
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 
-/// Passes transactions on, except for one that fails before any byte is sent.
+/// An SPI device that passes transactions on to another device, except for one transaction, which fails before any byte
+/// is sent.
 #[derive(Debug)]
 pub(crate) struct Failing<D> {
     /// The bus to which transactions are passed.
     pub(crate) device: D,
-    /// Number of transactions that succeed before one fails.
+    /// Number of transactions that succeed before one of them fails.
     pub(crate) left: usize,
 }
 

@@ -1,5 +1,5 @@
-//! Faults that the chips' code showed under drivers that call it in the wrong order; this driver must cause none of
-//! them.
+//! Faults that tinyODIN and ODIN show if a driver makes calls in the wrong order: tests that this driver causes none of
+//! them, even with lost and doubled clock pulses.
 
 use std::num::NonZeroU32;
 
@@ -41,7 +41,7 @@ fn events(addresses: impl IntoIterator<Item = u16>) -> impl Iterator<Item = Even
     addresses.into_iter().map(event)
 }
 
-/// Fills the memory with neurons at rest, far from their thresholds.
+/// Fills the memory of neurons with neurons of potential 0, without leak and far from their thresholds.
 fn at_rest(board: &TinyBoard) {
     board.pins().chip.neurons.fill(neuron(2047, 0, 0));
 }
@@ -67,7 +67,7 @@ proptest! {
             *place = neuron(threshold, 3, n as u32 % 7);
         }
         board.pins().chip.neurons[254] = 1 << 31;
-        // Nothing drives itself for ever: only the inputs' rows are weights.
+        // Only the rows of the inputs have weights, so that no network drives itself without end.
         for row in 0..8 {
             board.pins().chip.synapses[32 * row..32 * row + 32].fill(weight * 0x1111_1111);
         }
@@ -83,7 +83,7 @@ proptest! {
                 twin = Some(board.pins().chip.clone());
             }
         }
-        // A twin that is left to work in peace.
+        // `twin` finishes its work undisturbed, to show the right result.
         let mut twin = twin.unwrap();
         for _ in 0..20_000 {
             let request = twin.output().request;
@@ -99,7 +99,7 @@ proptest! {
                 prop_assert_eq!(&board.pins().chip.synapses, &twin.synapses);
                 prop_assert_eq!(&out, &board.pins().chip.fired);
             }
-            // Where a spike comes back for ever.
+            // In closed loop, a spike may return to the queue without end.
             Err(error) => {
                 prop_assert_eq!(error, ChipError::Busy);
                 prop_assert!(!is_open_loop && !twin.is_idle());
@@ -108,7 +108,7 @@ proptest! {
     }
 }
 
-/// The gate is shut too early, as it would be if too few reads of the pins were made for each clock.
+/// The gate is shut too early here, as if the driver read the pins too few times for each clock cycle of the chip.
 #[test]
 fn parameters_stay_whole_even_where_the_gate_shuts_on_a_chip_that_works() {
     for clocks in 0..200 {
@@ -191,7 +191,7 @@ fn odin_is_gated_behind_a_sweep_and_an_output() {
 fn programming_makes_no_neuron_fire() {
     for was_open in [true, false] {
         let board = TinyBoard::new(16, 1);
-        // As an earlier run may have left the register, which reset does not touch.
+        // The register may be left from an earlier run, because a reset does not change it.
         board.pins().chip.registers.0[1] = was_open.into();
         let mut chip = tiny(&board);
         let mut gated = chip.reset(&mut board.clone()).unwrap();
@@ -207,7 +207,7 @@ fn programming_makes_no_neuron_fire() {
         for n in 0..=255 {
             assert_eq!(gated.neuron(n), Ok(TinyOdinNeuron::REST));
         }
-        // And again, after the loop was closed.
+        // Programming is also harmless after a run in closed loop.
         gated.set_neuron(0, &TinyOdinNeuron { potential: 3, ..TinyOdinNeuron::REST }).unwrap();
         assert_eq!(board.pins().chip.waiting(), 0);
     }
@@ -286,7 +286,7 @@ fn no_clock_lost_or_doubled_in_odins_start_is_overlooked() {
         assert!(!pins.chip.is_gated());
         registers
     };
-    // Every clock of the last frames, and others.
+    // Tries every clock pulse of the last frames, and some of those before.
     let mut noticed = 0;
     let at = (0..clocks - 100).step_by(41).chain(clocks - 100..clocks);
     for at in at.clone() {
@@ -329,7 +329,7 @@ fn odin_programmed_run_and_gated_with_a_fault_is_an_error_or_right() {
         (result, (pins.chip.neurons[7], pins.chip.synapses.clone()), pins.spi_clocks)
     };
     let (read, right, clocks) = flight(None);
-    // 3 and 5 lie below 9, another 5 above.
+    // Potentials 3 and 3 + 5 are below the threshold of 9; another 5 makes the neuron fire and return to 0.
     assert_eq!(read, Ok((0, OdinSynapse { weight: 5, is_mapped: true })));
     let mut noticed = 0;
     for at in (0..clocks).step_by(61) {
@@ -347,7 +347,7 @@ fn odin_programmed_run_and_gated_with_a_fault_is_an_error_or_right() {
 
 #[test]
 fn a_start_is_verified_and_changes_nothing_where_all_neurons_leak() {
-    // Above rest, below it, at rest, and next to the threshold.
+    // Potentials above 0, below 0, at 0, and just below the threshold.
     for (threshold, leak, potential) in [(2047, 1, 5), (9, 127, -1920_i32), (1, 3, 0), (60, 7, 59)]
     {
         let all = neuron(threshold, leak, potential as u32);
@@ -363,7 +363,7 @@ fn a_start_is_verified_and_changes_nothing_where_all_neurons_leak() {
         };
         let (result, is_whole, clocks) = start(None);
         assert_eq!((result, is_whole), (Ok(()), true), "{threshold} {leak} {potential}");
-        // The gate stays shut.
+        // The lost clock pulse leaves the gate shut.
         let (result, ..) = start(Some((clocks - 1, ClockFault::Lost)));
         assert_eq!(result, Err(ChipError::NotStarted));
     }
@@ -383,8 +383,9 @@ fn a_start_that_no_neuron_can_show_is_refused_and_changes_nothing() {
     assert!(gated.run(&OPEN).is_ok());
 }
 
-/// Accesses memory that holds these words while a clock is lost and another doubled, in either order; the first fault
-/// is at every `stride`-th clock. Returns the number of pairs.
+/// Accesses memory filled with different words, while one clock pulse is lost and another doubled, in either order.
+/// Tries every `stride`-th clock pulse as the first fault, and every later one as the second. Asserts that the access
+/// returns an error or that memory is right; returns the number of pairs tried.
 fn pairs_within_an_access(stride: usize) -> usize {
     use ClockFault::{Doubled, Lost};
     let access = |words: (u32, u32), is_neuron: bool, faults: &[(u64, ClockFault)]| {
@@ -393,7 +394,7 @@ fn pairs_within_an_access(stride: usize) -> usize {
         board.pins().chip.synapses.fill(words.1);
         let mut chip = tiny(&board);
         let mut gated = chip.reset(&mut board.clone()).unwrap();
-        gated.check_step().unwrap();
+        gated.check_sync().unwrap();
         let (mut neurons, mut synapses, start) = {
             let pins = board.pins();
             (pins.chip.neurons.clone(), pins.chip.synapses.clone(), pins.spi_clocks)
@@ -434,9 +435,10 @@ fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
     assert!(pairs_within_an_access(77) > 10_000);
 }
 
-/// Two faults that cancel out in the last frames of a step check, and leave a wrong value in the byte that it writes.
+/// Two faults that cancel out in the last frames of a sync check, and leave a wrong value in the byte that the check
+/// writes, are an error.
 #[test]
-fn a_pair_within_a_step_check_is_an_error() {
+fn a_pair_within_a_sync_check_is_an_error() {
     use ClockFault::{Doubled, Lost};
     for (before, lost, doubled) in
         [(0xEDFF_1087, 580, 614), (0xB941_10FA, 588, 631), (0x46A2_1000, 535, 570)]
@@ -508,7 +510,7 @@ fn a_word_that_was_acknowledged_before_a_reset_is_not_sent_again() {
     let mut events = events([1, 2]);
     while board.pins().chip.taken.is_empty() {
         assert!(running.feed(FromEvents(&mut events), spike, drop).is_err());
-        board.run(20); // ACK rises when nobody looks
+        board.run(20); // ACK rises when nobody reads
     }
     let gated = chip.reset(&mut board.clone()).unwrap();
     let mut running = gated.run(&OPEN).unwrap();

@@ -1,4 +1,5 @@
-//! The frames of tinyODIN and ODIN, their order, handshakes and time steps, on the models of the chips.
+//! The frames on the SPI bus of tinyODIN and ODIN and their order, handshakes and time steps, tested on the chips'
+//! models.
 
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;
@@ -23,7 +24,8 @@ const OPEN: TinyOdinRegisters = TinyOdinRegisters {
     last_neuron: 255,
 };
 
-/// Makes a board whose first `firing` neurons fire at every event, and a chip that runs on it.
+/// Makes a board with a running chip, whose first `firing` neurons fire at every event, and a driver for the chip.
+/// `clocks` is the time of a port call.
 fn running(clocks: u32, polls: u32, firing: usize) -> (TinyBoard, Tiny) {
     let board = TinyBoard::new(4, clocks);
     let mut chip = TinyOdin::new(board.spi(), board.port(), polls);
@@ -44,7 +46,7 @@ fn spike(event: Event) -> TinyOdinInput {
     TinyOdinInput::Spike { pre: event.address as u8 }
 }
 
-/// Records the frames on the bus.
+/// An SPI device that records the frames that it passes on.
 struct Recorder<D> {
     device: D,
     frames: Rc<RefCell<Vec<[u8; 5]>>>,
@@ -69,20 +71,20 @@ impl<D: SpiDevice> SpiDevice for Recorder<D> {
 }
 
 #[test]
-fn looks_a_clock_multiply_the_polls_of_every_wait() {
-    /// Returns the number of calls of the port until the driver gives up on a chip whose gate was shut.
-    fn polls(looks: u32, polls: u32) -> u64 {
+fn reads_per_clock_multiply_the_polls_of_every_wait() {
+    /// Returns the number of port calls that the driver makes before it gives up on a chip whose gate is shut.
+    fn polls(reads: u32, polls: u32) -> u64 {
         let board = Board::<silicon::TinyOdin>::new(8, 1);
         board.pins().chip.neurons.fill(0x1000);
         let mut chip = TinyOdin::new(board.spi(), board.port(), polls)
-            .with_looks_a_clock(NonZeroU32::new(looks).unwrap());
+            .with_reads_per_clock(NonZeroU32::new(reads).unwrap());
         let registers = TinyOdinRegisters {
             is_open_loop: true,
             output_source: OutputSource::Neurons,
             last_neuron: 255,
         };
         chip.reset(&mut board.clone()).unwrap().run(&registers).unwrap();
-        // The gate shuts behind the driver's back.
+        // Shuts the gate without the driver's knowledge.
         board.spi().write(&[0, 0, 0, 0, 1]).unwrap();
         board.run(20);
         let before = board.pins().calls;
@@ -90,14 +92,14 @@ fn looks_a_clock_multiply_the_polls_of_every_wait() {
         assert_eq!(sent, Err(ChipError::Handshake(Phase::Acknowledge)));
         board.pins().calls - before
     }
-    // A read of both REQ and ACK a poll; a few calls around them.
+    // Each poll reads REQ and ACK; a few more calls come before and after.
     let (one, five) = (polls(1, 100), polls(5, 100));
     assert!((200..210).contains(&one) && (1000..1010).contains(&five), "{one} {five}");
 }
 
-/// The step check changes the byte of synapses (255, 248) and (255, 249), and restores it.
+/// The sync check changes the byte of synapses (255, 248) and (255, 249), and restores it.
 #[test]
-fn the_byte_that_the_step_check_writes_keeps_its_synapses() {
+fn the_byte_that_the_sync_check_writes_keeps_its_synapses() {
     let board = TinyBoard::new(4, 1);
     let mut chip = TinyOdin::new(board.spi(), board.port(), 1_600);
     let mut gated = chip.reset(&mut board.clone()).unwrap();
@@ -116,7 +118,8 @@ fn the_bytes_on_the_bus_are_golden() {
     let taken = || std::mem::take(&mut *frames.borrow_mut());
     assert_eq!(taken()[..2], [[0, 0, 0, 0, 1], [0, 0, 0x10, 0, 1]], "gated, in open loop");
     gated.set_neuron_byte(5, 1, 0x30).unwrap();
-    // Read, five frames of check, write, five, read. A read's data is ones, which the chip ignores.
+    // Each access is a read, five frames of check, a write, five frames of check, and a read. The data of a read is
+    // ones, which the chip ignores.
     let ends = |frames: Vec<[u8; 5]>| [frames[0], frames[6], frames[12]];
     let read = [0x90, 0x10, 0x5F, 0xFF, 0xFF];
     assert_eq!(ends(taken()), [read, [0x50, 0x10, 0x50, 0, 0x30], read]);
@@ -126,7 +129,8 @@ fn the_bytes_on_the_bus_are_golden() {
     gated.set_synapse(7, 4, -5).unwrap();
     assert_eq!(ends(taken()), [read, [0x64, 0x0E, 0, 0xF0, 0x0B], read]);
     assert_eq!((gated.synapse(7, 5), gated.synapse(7, 4)), (Ok(3), Ok(-5)));
-    // The check changes its byte, also where that is the check's own, and looks at a byte that is not 0.
+    // The sync check changes its byte to a different value, even if that byte is the one accessed. It also reads a byte
+    // that is not 0.
     gated.set_synapse(255, 248, 5).unwrap();
     gated.set_synapse(255, 249, -6).unwrap();
     for leak in [3, 0] {
@@ -134,7 +138,7 @@ fn the_bytes_on_the_bus_are_golden() {
         gated.set_neuron(5, &neuron).unwrap();
     }
     taken();
-    gated.check_step().unwrap();
+    gated.check_sync().unwrap();
     let check = taken();
     let written: Vec<_> = check.iter().filter(|frame| frame[0] == 0x61).copied().collect();
     assert_eq!(written, [[0x61, 0xFF, 0xF0, 0, 0x5A], [0x61, 0xFF, 0xF0, 0, 0xA5]]);
@@ -217,17 +221,18 @@ fn an_error_at_every_transfer_asks_for_a_reset() {
     }
 }
 
-/// A port whose input ACK can be held, and whose output bus may never be idle; counts the reads of the latter.
+/// A port whose input ACK can be held at a level, and whose output bus can be kept from being idle. Counts the reads of
+/// the output bus's REQ.
 struct Held<P> {
     port: P,
     acknowledge: Rc<Cell<Option<bool>>>,
     is_noisy: Rc<Cell<bool>>,
-    looks: Rc<Cell<u32>>,
+    reads: Rc<Cell<u32>>,
 }
 
 impl<P> Held<P> {
     fn new(port: P, acknowledge: Rc<Cell<Option<bool>>>) -> Self {
-        Self { port, acknowledge, is_noisy: Rc::default(), looks: Rc::default() }
+        Self { port, acknowledge, is_noisy: Rc::default(), reads: Rc::default() }
     }
 }
 
@@ -245,9 +250,9 @@ impl<P: AerPort> AerPort for Held<P> {
         Ok(self.acknowledge.get().unwrap_or(pin))
     }
     fn output_request(&mut self) -> Result<bool, P::Error> {
-        self.looks.set(self.looks.get() + 1);
+        self.reads.set(self.reads.get() + 1);
         let pin = self.port.output_request()?;
-        Ok(if self.is_noisy.get() { self.looks.get() % 2 == 1 } else { pin })
+        Ok(if self.is_noisy.get() { self.reads.get() % 2 == 1 } else { pin })
     }
     fn output(&mut self) -> Result<u8, P::Error> {
         self.port.output()
@@ -260,34 +265,35 @@ impl<P: AerPort> AerPort for Held<P> {
     }
 }
 
-/// No pin shows that the chip is at rest: the driver waits for the longest time that the chip may work without an
-/// output, and longer if outputs come.
+/// Because no pin shows that the chip is at rest, the driver waits for the longest time that the chip may work without
+/// an output, and longer if outputs come.
 #[test]
-fn rest_is_waited_for_as_long_as_the_chip_may_work() {
+fn quiesce_waits_as_long_as_the_chip_may_work() {
     let waits = |is_open_loop: bool, is_noisy: bool| {
         let board = TinyBoard::new(4, 1);
         let port = Held::new(board.port(), Rc::default());
-        let (noise, looks) = (port.is_noisy.clone(), port.looks.clone());
+        let (noise, reads) = (port.is_noisy.clone(), port.reads.clone());
         let mut chip = TinyOdin::new(board.spi(), port, 1_600);
         let gated = chip.reset(&mut board.clone()).unwrap();
         board.pins().chip.neurons.fill(1 << 31);
         let registers = TinyOdinRegisters { is_open_loop, last_neuron: 9, ..OPEN };
         let mut running = gated.run(&registers).unwrap();
         noise.set(is_noisy);
-        looks.set(0);
+        reads.set(0);
         let result = running.quiesce(drop);
         assert_eq!(result, if is_noisy { Err(ChipError::Busy) } else { Ok(()) });
-        looks.get()
+        reads.get()
     };
-    // A sweep of ten neurons takes 24 clocks at most: four of them, or one for each place of the queue and two more.
+    // Applying a spike to ten neurons takes at most 24 clock cycles. The driver waits for four such sweeps in open
+    // loop; in closed loop for one for each place of the queue, and two more.
     let (open, closed) = (4 * 24 + 32, (128 + 2) * 24 + 32);
     assert_eq!((waits(true, false), waits(false, false)), (open, closed));
     assert_eq!(waits(true, true), 4 * open + (1 << 15));
 }
 
-/// The port cannot say whether the queue is full if it has no pin for it.
+/// A port without a pin for `SCHED_FULL` cannot say whether the queue is full: the default returns `None`.
 #[test]
-fn a_port_may_have_no_pin_for_the_queue() {
+fn a_port_may_leave_the_full_pin_unwired() {
     let port = TinyBoard::new(4, 1).port();
     let mut port = Held::new(port, Rc::default());
     assert_eq!(port.queue_full(), Ok(None));
@@ -390,7 +396,7 @@ fn any_word_is_through_within_the_most_clocks_of_the_chip() {
     let board = TinyBoard::new(4, 1);
     let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
     let gated = chip.reset(&mut board.clone()).unwrap();
-    // The queue fills as 255 neurons fire at the first spike.
+    // The queue fills because 255 neurons fire at the first spike.
     board.pins().chip.neurons.fill(1 << 12 | 1);
     board.pins().chip.neurons[254] = 1 << 31;
     let mut running = gated.run(&TinyOdinRegisters { is_open_loop: false, ..OPEN }).unwrap();
@@ -426,7 +432,7 @@ fn leak_events_are_the_time_step() {
     assert_eq!((taken, running.counters().skipped_steps), (8 + 255, 745));
 }
 
-/// The ticks' clock wraps after 71.6 minutes.
+/// The 32-bit clock of ticks wraps after 71.6 minutes; steps up to 70 minutes apart must not count as late.
 #[test]
 fn time_steps_that_passed_in_an_hour_are_not_taken_for_the_past() {
     const MINUTE: u32 = 60_000_000;
@@ -443,7 +449,7 @@ fn time_steps_that_passed_in_an_hour_are_not_taken_for_the_past() {
         running.feed(FromEvents([event(later, 9)].into_iter()), spike, drop).unwrap();
         running.advance(later.wrapping_add(1_000).into(), drop).unwrap();
         assert_eq!(board.pins().chip.taken.len(), 255 + 2, "{minutes} minutes");
-        // A minute late is late.
+        // An event that is a minute older than the last one counts as late.
         let late = event(later.wrapping_sub(MINUTE), 9);
         running.feed(FromEvents([late].into_iter()), spike, drop).unwrap();
         assert_eq!(board.pins().chip.taken.len(), 255 + 3, "{minutes} minutes");
@@ -513,8 +519,8 @@ fn the_same_handshake_carries_odins_words() {
     assert_eq!(board.pins().chip.taken, [0x0_FFFF, 0x1_0705, 0x7F], "the probe comes first");
 }
 
-/// The bounds are the clocks that an earlier driver took, with one clock for each read of the pins: 32.9, 136.4 and
-/// 518.5 for a spike, 15.5 for a virtual event, 11.6 for an output.
+/// The upper bounds are the clock cycles that an earlier driver took, with one clock cycle for each pin read: 32.9,
+/// 136.4 and 518.5 for a spike, 15.5 for a virtual event, 11.6 for an output.
 #[test]
 fn throughput_is_that_of_the_chip() {
     for (neurons, most) in [(12, 32.9), (64, 136.4), (256, 518.5)] {

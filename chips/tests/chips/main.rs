@@ -1,4 +1,5 @@
-//! Tests of the drivers against the chips' models, as one program, so that shared code is compiled and linked once.
+//! Tests of the chip drivers against models of the chips. They are one program, so that shared code is compiled and
+//! linked once.
 
 #![expect(clippy::indexing_slicing, clippy::unwrap_used, reason = "a test may panic")]
 
@@ -20,8 +21,9 @@ mod xylo;
 use flight_data::Record;
 use proptest::test_runner::{Config, FileFailurePersistence};
 
-/// Configures a property test with this many cases, times `CASES_TIMES`. Cases that failed before, whose seeds are in
-/// `<test>.proptest-regressions`, come first; the others are drawn from the seed in `.cargo/config.toml`.
+/// Configures a property test to try `count` cases, times the environment variable `CASES_TIMES`. Cases that failed
+/// before, whose seeds are in `<test>.proptest-regressions`, come first; the others are drawn from the seed in
+/// `.cargo/config.toml`.
 fn cases(count: u32) -> Config {
     let times = std::env::var("CASES_TIMES").map_or(1, |times| times.parse().unwrap());
     let failed = FileFailurePersistence::WithSource("proptest-regressions");
@@ -33,7 +35,7 @@ fn cases(count: u32) -> Config {
     }
 }
 
-/// Returns a recorded flight of a hexarotor.
+/// Returns the samples of a recorded flight of a hexarotor.
 fn flight() -> impl Iterator<Item = Record> {
     flight_data::records(flight_data::HEXAROTOR)
 }

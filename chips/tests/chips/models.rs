@@ -1,5 +1,5 @@
-//! Drives the models of tinyODIN and ODIN by hand, and compares how long words take, and what goes wrong in a wrong
-//! order, with figures from a simulation of the chips' register-transfer code.
+//! Tests of the models of tinyODIN and ODIN without the drivers: how long words take, and what goes wrong if a driver
+//! makes accesses in the wrong order. The expected figures come from a simulation of the chips' register-transfer code.
 
 #![allow(
     clippy::cast_possible_wrap,
@@ -17,7 +17,7 @@ const READ: u32 = 1 << 19;
 const NEURON: u32 = 1 << 16;
 const SYNAPSE: u32 = 2 << 16;
 
-/// Sends a frame of 20 bits of address and 20 of data; returns the last byte that comes back.
+/// Sends an SPI frame of 20 bits of address and 20 bits of data; returns the last byte that comes back.
 fn frame<K: Kind>(board: &Board<K>, address: u32, data: u32) -> u8 {
     let [_, _, _, bytes @ ..] = (u64::from(address) << 20 | u64::from(data)).to_be_bytes();
     let mut frame: [u8; 5] = bytes;
@@ -25,7 +25,7 @@ fn frame<K: Kind>(board: &Board<K>, address: u32, data: u32) -> u8 {
     frame[4]
 }
 
-/// Makes a chip that was reset and gated, with these registers.
+/// Makes a board with a chip that was reset and gated, and whose registers have these values.
 fn gated<K: Kind>(ratio: u32, registers: &[(u32, u32)]) -> Board<K> {
     let board = Board::new(ratio, 1);
     board.pins().chip.set_reset(true);
@@ -39,7 +39,8 @@ fn gated<K: Kind>(ratio: u32, registers: &[(u32, u32)]) -> Board<K> {
     board
 }
 
-/// Sends a word with its handshake, and ignores outputs; returns the number of clocks until ACK.
+/// Sends a word with its handshake, and ignores outputs. Returns the number of clock cycles from REQ to ACK, or `None`
+/// if no ACK comes.
 fn send<K: Kind>(board: &Board<K>, word: u32) -> Option<u64> {
     let mut port = board.port();
     port.set_input(word).unwrap();
@@ -79,7 +80,8 @@ fn a_sweep_takes_two_clocks_a_neuron_and_a_virtual_event_two_in_all() {
             board.pins().chip.clocks - start
         };
         let sweep = 2 * u64::from(last + 1);
-        // WAIT before, and the pop after, of which the handshake hides some.
+        // The state WAIT before the sweep and the removal from the queue after it take up to three more cycles, some of
+        // which the handshake hides.
         assert!((sweep..sweep + 3).contains(&work(0x007)), "{last}");
         assert!(work(0x225) <= 3);
         let leak = send(&board, 0x1FF).unwrap();
@@ -89,7 +91,7 @@ fn a_sweep_takes_two_clocks_a_neuron_and_a_virtual_event_two_in_all() {
 
 #[test]
 fn gating_within_a_sweep_writes_the_last_spi_data_to_the_rest() {
-    // CLK/SCK, and how many potentials are wrong after.
+    // The ratio of the chip's clock to SCK, and the number of potentials that are wrong afterwards.
     for (ratio, wrong) in [(4, 176), (16, 0)] {
         let board = gated::<TinyOdin>(ratio, &OPEN);
         for neuron in 0..256 {
@@ -188,7 +190,7 @@ fn in_closed_loop_a_leak_overtakes_the_spikes_that_wait() {
         }
         board.pins().chip.synapses[..32].fill(0x1111_1111); // those of 0
         frame(&board, 0, 0);
-        // Twenty neurons fire at the spike: their outputs are answered at once.
+        // The spike makes twenty neurons fire, whose outputs are acknowledged immediately.
         send(&board, 0).unwrap();
         for _ in 0..20 {
             let request = |chip: &silicon::Chip<TinyOdin>| chip.output().request;
@@ -256,7 +258,7 @@ fn odins_bistability_moves_the_synapses_from_the_neuron() {
     frame(&board, 0, 0);
     assert!((64..72).contains(&send(&board, 0x0980).unwrap()));
     let pins = board.pins();
-    // Unmapped ones stay; mapped ones go from 4 up and from 3 down, and stay at 7 and 0.
+    // Synapses without the mapping bit stay. With it, weights from 4 rise, weights up to 3 fall; 7 and 0 stay.
     for post in 0..=255_u8 {
         let new = [0x8, 0x3, 0xF, 0x0, 0xD, 0x5, 0xA, 0xE][usize::from(post & 7)];
         assert_eq!(pins.chip.synapse(9, post), new);
@@ -281,7 +283,8 @@ fn odins_synapse_needs_the_mapping_bit_or_register_24() {
     }
 }
 
-/// Computes tinyODIN's neuron in plain arithmetic.
+/// Returns the potential of a neuron of tinyODIN after an event, and whether it fires, computed in plain arithmetic.
+/// `neuron` is threshold, leak and potential; `event` is a weight, or `None` for a time step.
 fn expected(neuron: (i32, i32, i32), event: Option<i32>) -> (i32, bool) {
     let (threshold, leak, potential) = neuron;
     let next = match event {

@@ -1,4 +1,5 @@
-//! Networks on the models of the chips: described, loaded, verified, run on a flight and read out.
+//! Tests of networks on the models of tinyODIN and ODIN: described, loaded, verified, run on a recorded flight, and
+//! decoded.
 
 use std::num::NonZeroU32;
 
@@ -33,7 +34,7 @@ fn tiny(
     TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS)
 }
 
-/// Every input neuron passes its spike on, so that the outputs are the encoder's events.
+/// Each neuron passes its input's spike on, so that the outputs are the events of the encoder.
 #[test]
 fn a_network_of_64_neurons_flies() {
     let board = TinyBoard::new(16, 1);
@@ -71,7 +72,7 @@ fn a_network_is_described_neuron_by_neuron() {
     assert_eq!(Inputs::<3, 2>::one_to_one(5), tall, "the last drives none");
 }
 
-/// A code with one neuron and two polarities has an input for each polarity.
+/// A code with one neuron and two polarities has one input for each polarity.
 #[test]
 fn events_find_their_inputs() {
     let step = StepForward::<f32>::new(1.0);
@@ -108,7 +109,8 @@ fn answers_go_into_a_queue() {
 
 #[test]
 fn loading_tells_how_far_it_is_and_takes_as_long_as_it_says() {
-    // 64 neurons of 4 bytes, 192 disabled, 64 rows of 32 bytes; each written and read.
+    // The bytes are those of 64 neurons, one for each of 192 disabled neurons, and 64 rows; each byte is written and
+    // read.
     let board = TinyBoard::new(4, 1);
     let mut chip = tiny(&board);
     let mut gated = chip.reset(&mut board.clone()).unwrap();
@@ -120,7 +122,7 @@ fn loading_tells_how_far_it_is_and_takes_as_long_as_it_says() {
     assert_eq!(u64::from(total) + 10, frames, "and two checks of the step");
     assert_eq!((seen.first(), seen.last()), (Some(&(4, total)), Some(&(total, total))));
     assert!(seen.is_sorted());
-    // What the documentation says of all of tinyODIN.
+    // The documentation of `load` gives this number of frames for a network that fills tinyODIN.
     assert_eq!(2 * (256 * 4 + 256 * 128), 67_584);
 }
 
@@ -175,7 +177,7 @@ fn loading_with_a_fault_is_an_error_or_right() {
             }
         }
     }
-    // Those in the last frame, after which nothing is read, are noticed at the next call.
+    // A fault in the last frame, after which nothing is read, shows at the next call.
     assert!(noticed > 2 * at.count() - 100, "{noticed}");
 }
 
@@ -244,9 +246,10 @@ fn a_network_may_have_all_neurons_of_the_chip() {
     assert_eq!(gated.load(&network, |_| ()), Ok(()));
 }
 
-/// The error has the address in the chip's memory, and the network's bits, at the first difference.
+/// The error contains the address of the first difference in the chip's memory, and the bits that the network has
+/// there.
 #[test]
-fn what_differs_from_the_network_is_told() {
+fn verify_reports_the_first_difference() {
     let board = TinyBoard::new(4, 1);
     let mut chip = tiny(&board);
     let mut gated = chip.reset(&mut board.clone()).unwrap();
@@ -261,7 +264,7 @@ fn what_differs_from_the_network_is_told() {
     }
 }
 
-/// The network has two layers: an input drives a neuron, which drives a second, which inhibits the first.
+/// The network has two neurons: an input drives the first, which drives the second, which inhibits the first.
 #[test]
 fn a_recurrent_network_runs_in_closed_loop_on_either_chip() {
     let board = TinyBoard::new(8, 1);
@@ -331,24 +334,24 @@ fn network(
     }
 }
 
-/// A network either comes back unchanged from its bytes, or cannot be written.
+/// Writing a network as bytes fails if the network would not come back unchanged.
 #[test]
-fn bytes_do_not_leave_out_what_they_cannot_say() {
+fn a_network_that_bytes_cannot_hold_is_not_written() {
     let network = network(&[3], &[50], true, false);
     let written = |network: &TinyOdinNetwork<4, 7, 3>| {
         NetworkBytes::<TinyOdinInput>::write(network, &mut [0; 200])
     };
     assert!(written(&network).is_ok());
-    // A neuron that is two outputs is the first of them alone, and neuron 7 is none of the network.
+    // A neuron cannot be two outputs, and neuron 7 is not part of the network.
     for outputs in [[6, 6, 4], [6, 7, 4], [7, 6, 4]] {
         assert_eq!(written(&TinyOdinNetwork { outputs, ..network }), Err(FormatError::Value));
     }
-    // A weight of 0 would act as a spike of its own; virtual events reach 16 neurons.
+    // A weight of 0 would act as a full spike; only the first 16 neurons take virtual events.
     for virtual_input in [(0, 0), (0, 8), (16, 1)] {
         let inputs = Inputs::Virtual([virtual_input; 4]);
         assert_eq!(written(&TinyOdinNetwork { inputs, ..network }), Err(FormatError::Value));
     }
-    // ODIN has signs and three bits.
+    // ODIN has weights of three bits and a sign: -8 does not fit.
     let odin = |weight| OdinNetwork::<1, 1, 1> {
         neurons: [OdinNeuron::REST],
         inputs: Inputs::Rows([[weight]]),
@@ -417,7 +420,7 @@ proptest! {
     }
 }
 
-/// ODIN's neurons as a reference, to which inputs are applied one after the other.
+/// A reference for ODIN, which applies inputs to the neurons one after the other, without queue and timing.
 #[derive(Clone, Debug)]
 struct Twin {
     neurons: Vec<u128>,
@@ -507,7 +510,7 @@ proptest! {
         let mut out = vec![];
         for &input in &inputs {
             running.send(input, |neuron| out.push(neuron)).unwrap();
-            // A leak overtakes nothing in open loop: at most one word waits, and is worked off first.
+            // In open loop no leak overtakes a spike: at most one word waits, and the chip finishes it first.
             twin.take(input);
         }
         running.gate(|neuron| out.push(neuron)).unwrap();
@@ -539,7 +542,7 @@ fn bytes_that_are_no_network_say_why() {
     assert_eq!(changed(9, 1), Err(FormatError::Size));
     let given = length - 1;
     assert_eq!(new(&buffer[..given]), Err(FormatError::Length { needed: length, given }));
-    // Beyond the last neuron there is no weight, though the next row follows.
+    // A weight onto a neuron beyond the last is 0, although the bytes of the next row follow.
     let square = TinyOdinNetwork::<2, 2, 1> {
         neurons: [TinyOdinNeuron::REST; 2],
         inputs: Inputs::Rows([[1, 2], [3, 4]]),
@@ -550,7 +553,7 @@ fn bytes_that_are_no_network_say_why() {
     let end = NetworkBytes::write(&square, &mut room).unwrap();
     let read = NetworkBytes::<TinyOdinInput>::new(&room[..end]).unwrap();
     assert_eq!([0, 1, 2].map(|post| read.input_weight(0, post)), [1, 2, 0]);
-    // Weights of four bits, either of two in a byte.
+    // A weight that does not fit into four bits is refused in both halves of a byte.
     for weights in [[8, 0], [0, 8], [-9, 0], [0, -9]] {
         let wrong = TinyOdinNetwork::<1, 2, 1> {
             neurons: [TinyOdinNeuron::REST; 2],

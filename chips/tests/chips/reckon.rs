@@ -1,4 +1,5 @@
-//! The driver of `ReckOn` on the chip's model, which is held against the chip's own code by `cargo verify reckon`.
+//! Tests of the driver of `ReckOn` on the model of the chip. (`cargo verify reckon` compares the model with the chip's
+//! register-transfer code.)
 
 #![allow(clippy::needless_range_loop, reason = "a neuron's number is its column in several tables")]
 
@@ -35,7 +36,8 @@ fn on(board: &Board) -> Chip {
     ReckOn::new(board.spi(), board.port(), Chip::MAX_CLOCKS)
 }
 
-/// The network in plain arithmetic: at a tick neurons fire and outputs are read, then spikes and inputs act.
+/// The network in plain arithmetic. At a tick, neurons fire and outputs are read; then spikes and inputs act on the
+/// potentials.
 #[derive(Clone)]
 struct Plain {
     potentials: [i32; 4],
@@ -52,7 +54,7 @@ impl Plain {
             let ReckOnPair { keep, threshold } = PAIRS[n / 2];
             let potential = self.potentials[n];
             self.fired[n] = potential >= i32::from(threshold);
-            // 16 bits: with a `keep` above 1 a potential near the end of its range changes its sign.
+            // The chip keeps 16 bits: with a `keep` above 1 a potential near the end of its range wraps around.
             self.potentials[n] = i32::from(((potential * i32::from(keep)) >> 15) as i16);
             if self.fired[n] {
                 let reset = self.potentials[n] - i32::from(threshold);
@@ -151,14 +153,14 @@ fn a_network_as_bytes_is_the_same_and_damaged_bytes_are_refused() {
     let small = ReckOnBytes::write(&NETWORK, &mut [0; 71]).unwrap_err();
     assert_eq!(small, FormatError::Length { needed: length, given: 71 });
 
-    // Without weights between neurons it has no rows of them.
+    // A network without weights between neurons is written without rows for them.
     let shared = ReckOnShared { resets_to_zero: true, ..NETWORK.shared };
     let layer = ReckOnNetwork { recurrent: &[[0; 4]; 4], shared, ..NETWORK };
     assert_eq!(ReckOnBytes::write(&layer, &mut buffer), Ok(length - 16));
     assert_eq!(buffer[5], 2, "it has no flag but that of neurons that return to 0");
 }
 
-/// The number of neurons must not be truncated to 16 bits.
+/// A network of 65 540 neurons is refused: the number must not wrap to 4 in 16 bits.
 #[test]
 fn a_network_of_far_too_many_neurons_is_refused() {
     static LARGE: ReckOnNetwork<1, 65_540, 1> = ReckOnNetwork {
@@ -266,7 +268,7 @@ fn a_target_that_does_not_fit_is_refused_and_the_sample_goes_on() {
     programmed.load(&NETWORK, |_| ()).unwrap();
     let mut sample = programmed.run(&ReckOnSettings::POTENTIALS).unwrap().begin().unwrap();
     let with = |target| ReckOnStep { counts: false, target: Some(target) };
-    // The chip does not learn.
+    // Without learning, every target is refused.
     for target in [ReckOnTarget::Label(0), ReckOnTarget::Potentials(&[1, 2, 3])] {
         assert!(matches!(sample.step(with(target)), Err(Error::OutOfRange { .. })));
     }
@@ -286,7 +288,7 @@ fn a_target_that_does_not_fit_is_refused_and_the_sample_goes_on() {
 fn settings_that_the_chip_has_no_bits_for_are_refused() {
     let with = |learning| ReckOnSettings { learning: Some(learning), ..ReckOnSettings::POTENTIALS };
     let label = ReckOnSettings { task: ReckOnTask::Regression, ..ReckOnSettings::LABEL };
-    for (settings, told) in [
+    for (settings, message) in [
         (label, "label of a regression 1 must lie in 0..=0"),
         (with(ReckOnLearning { signal: 16, ..LEARNING }), "signal 16 must lie in 0..=15"),
         (with(ReckOnLearning { traces: [0, 8, 0], ..LEARNING }), "trace 8 must lie in 0..=7"),
@@ -299,11 +301,11 @@ fn settings_that_the_chip_has_no_bits_for_are_refused() {
         let board = Board::new(10, 1);
         let mut chip = on(&board);
         let programmed = chip.reset(&mut board.clone()).unwrap();
-        assert_eq!(programmed.run(&settings).err().unwrap().to_string(), told);
+        assert_eq!(programmed.run(&settings).err().unwrap().to_string(), message);
     }
 }
 
-/// Learning may have changed the weights.
+/// Every weight of a loaded network can be read back, for example after the chip has learnt.
 #[test]
 fn each_weight_can_be_read() {
     let board = Board::new(10, 1);
@@ -334,15 +336,15 @@ fn loading_says_how_far_it_is() {
     let board = Board::new(10, 1);
     let mut chip = on(&board);
     let mut programmed = chip.reset(&mut board.clone()).unwrap();
-    let mut told = Vec::new();
-    programmed.load(&NETWORK, |progress| told.push(progress)).unwrap();
-    assert!(told.is_sorted_by_key(|progress| progress.done));
-    let last = told.pop().unwrap();
+    let mut reports = Vec::new();
+    programmed.load(&NETWORK, |progress| reports.push(progress)).unwrap();
+    assert!(reports.is_sorted_by_key(|progress| progress.done));
+    let last = reports.pop().unwrap();
     assert_eq!(last.done, last.total);
 }
 
-/// The outputs take two words in each row, and four registers hold pairs whose potential grows, including those at
-/// rest.
+/// Loads a network whose outputs take two words in each row. Registers 65 to 68 mark the pairs whose `keep` is 32 768
+/// or more, including the unused pairs.
 #[test]
 fn many_pairs_and_outputs_are_loaded() {
     static MOSTLY_GROW: [ReckOnPair; 33] = {
@@ -360,17 +362,17 @@ fn many_pairs_and_outputs_are_loaded() {
     let board = Board::new(10, 1);
     let mut chip = on(&board);
     let mut programmed = chip.reset(&mut board.clone()).unwrap();
-    let mut told = Vec::new();
-    programmed.load(&wide, |progress| told.push(progress)).unwrap();
-    let last = told.pop().unwrap();
+    let mut reports = Vec::new();
+    programmed.load(&wide, |progress| reports.push(progress)).unwrap();
+    let last = reports.pop().unwrap();
     assert_eq!(last.done, last.total);
     let grows = [65, 66, 67, 68].map(|register| board.pins().chip.register_value(register));
     assert_eq!(grows, [u32::MAX, !1, u32::MAX, u32::MAX], "one of 128 does not");
 }
 
-/// Slopes are registers of five bits with a sign.
+/// The slopes are written to registers of five bits with a sign.
 #[test]
-fn learning_is_told_in_registers() {
+fn slopes_are_written_with_their_sign() {
     let board = Board::new(10, 1);
     let mut chip = on(&board);
     let learning = ReckOnLearning { slopes: [-16, -1, 0, 5, 15], ..LEARNING };
@@ -380,7 +382,8 @@ fn learning_is_told_in_registers() {
     assert_eq!(slopes, [16, 31, 0, 5, 15]);
 }
 
-/// Faults of the port: `AERIN_ACK` and `OUT_REQ` that are stuck at a level, and an answer with this number of bytes.
+/// Faults of the port: the levels at which `AERIN_ACK` and `OUT_REQ` are stuck, and the number of bytes that an answer
+/// has instead of the right one.
 #[derive(Default)]
 struct Lines {
     acknowledge: Cell<Option<bool>>,
@@ -388,14 +391,14 @@ struct Lines {
     bytes: Cell<Option<u32>>,
 }
 
-/// A port whose lines can be made to misbehave.
-struct Odd<'a> {
+/// A port whose lines can show the faults in `lines`.
+struct FaultyPort<'a> {
     port: Port,
     lines: &'a Lines,
     is_taken: bool,
 }
 
-impl ReckOnPort for Odd<'_> {
+impl ReckOnPort for FaultyPort<'_> {
     type Error = u64;
 
     fn set_input(&mut self, byte: u8, is_target: bool) -> Result<(), u64> {
@@ -410,8 +413,8 @@ impl ReckOnPort for Odd<'_> {
     }
     fn output_request(&mut self) -> Result<bool, u64> {
         let pin = self.port.output_request()?;
-        let told = self.lines.bytes.get().map(|left| left > 0 && !self.is_taken);
-        Ok(self.lines.request.get().or(told).unwrap_or(pin))
+        let reports = self.lines.bytes.get().map(|left| left > 0 && !self.is_taken);
+        Ok(self.lines.request.get().or(reports).unwrap_or(pin))
     }
     fn output(&mut self) -> Result<u8, u64> {
         self.port.output()
@@ -444,14 +447,15 @@ impl ReckOnPort for Odd<'_> {
     }
 }
 
-/// Runs a sample on a chip without a network, which has 16 outputs. The faults are set once the sample has begun.
-fn odd<T>(
+/// Begins a sample on a chip that was never loaded, which has 16 outputs; then sets faults with `set`, and returns the
+/// result of `act`.
+fn with_faults<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),
-    act: impl Fn(&mut ReckOnSample<'_, Spi, Odd<'_>>) -> T,
+    act: impl Fn(&mut ReckOnSample<'_, Spi, FaultyPort<'_>>) -> T,
 ) -> T {
     let (board, lines) = (Board::new(10, 1), Lines::default());
-    let port = Odd { port: board.port(), lines: &lines, is_taken: false };
+    let port = FaultyPort { port: board.port(), lines: &lines, is_taken: false };
     let mut chip = ReckOn::new(board.spi(), port, Chip::MAX_CLOCKS);
     let started = chip.reset(&mut board.clone()).unwrap().run(settings).unwrap();
     let mut sample = started.begin().unwrap();
@@ -462,9 +466,10 @@ fn odd<T>(
 #[test]
 fn a_line_that_stays_as_it_is_ends_the_handshake() {
     let settings = &ReckOnSettings::POTENTIALS;
-    let silent = odd(settings, |lines| lines.acknowledge.set(Some(false)), |sample| sample.send(0));
+    let silent =
+        with_faults(settings, |lines| lines.acknowledge.set(Some(false)), |sample| sample.send(0));
     assert_eq!(silent, Err(Error::Handshake(Phase::Acknowledge)));
-    let stuck = odd(
+    let stuck = with_faults(
         settings,
         |lines| lines.request.set(Some(true)),
         |sample| sample.step(ReckOnStep::default()),
@@ -472,23 +477,24 @@ fn a_line_that_stays_as_it_is_ends_the_handshake() {
     assert_eq!(stuck, Err(Error::Handshake(Phase::Release)));
 }
 
-/// A right answer has two bytes for each of 16 outputs, or one byte for a label.
+/// An answer that has neither two bytes for each of 16 outputs nor one byte for a label is an error.
 #[test]
-fn an_answer_of_another_length_is_none() {
+fn an_answer_of_the_wrong_length_is_an_error() {
     let answer = |settings, bytes| {
         let set = |lines: &Lines| lines.bytes.set(Some(bytes));
-        odd(settings, set, |sample| sample.step(ReckOnStep::default()))
+        with_faults(settings, set, |sample| sample.step(ReckOnStep::default()))
     };
     let potentials = |bytes| answer(&ReckOnSettings::POTENTIALS, bytes);
     assert!(matches!(potentials(32), Ok(Some(ReckOnAnswer::Potentials(_)))));
     assert_eq!([1, 31, 33].map(potentials), [1, 31, 33].map(|_| Err(Error::Unfinished)));
     let label = |bytes| answer(&ReckOnSettings::LABEL, bytes);
-    // A label so far, which proves the step; the label is that of the sample.
+    // The chip sends a label in every step, which proves the step, but the driver returns only the label after the
+    // sample.
     assert_eq!(label(1), Ok(None));
     assert_eq!([2, 32].map(label), [2, 32].map(|_| Err(Error::Unfinished)));
 }
 
-/// A bus on which the chip does not hear that its memories are to be closed.
+/// An SPI device that drops the write to register 0, so that the chip's memories stay open.
 #[derive(Debug)]
 struct Open(Spi);
 
@@ -501,7 +507,7 @@ impl SpiDevice for Open {
         &mut self,
         operations: &mut [embedded_hal::spi::Operation<'_, u8>],
     ) -> Result<(), ErrorKind> {
-        // A register, one word, register 0.
+        // The header of a write of one word to register 0, and a value of 0.
         let close = [0, 1, 0, 0, 0, 0, 0, 0];
         match operations {
             [embedded_hal::spi::Operation::Write(bytes)] if **bytes == close => Ok(()),
@@ -519,9 +525,9 @@ fn a_chip_whose_memories_stay_open_is_not_started() {
     assert_eq!(error, Error::NotStarted);
 }
 
-/// A difference in a pair of neurons outside the network is found, like that in a weight.
+/// `verify` notices different parameters of a pair of neurons, but ignores potentials.
 #[test]
-fn another_pair_is_not_the_network_that_was_loaded() {
+fn verify_compares_the_parameters_of_pairs() {
     static OTHERS: [[ReckOnPair; 2]; 3] = [
         [PAIRS[0], ReckOnPair { keep: 0x88E8, ..PAIRS[1] }],
         [PAIRS[0], ReckOnPair { threshold: 251, ..PAIRS[1] }],
@@ -532,7 +538,7 @@ fn another_pair_is_not_the_network_that_was_loaded() {
         let mut chip = on(&board);
         let mut programmed = chip.reset(&mut board.clone()).unwrap();
         programmed.load(&NETWORK, |_| ()).unwrap();
-        // A part of a potential, which changes as the network runs.
+        // Changes part of a potential, as running the network does.
         board.pins().chip.neurons[1] ^= 0xF << 96;
         programmed.verify(&NETWORK).unwrap();
         let other = ReckOnNetwork { pairs, ..NETWORK };
@@ -571,7 +577,7 @@ fn words_are_those_of_the_chips_documentation() {
     let (heard, _) = chip.release();
     let words: Vec<u32> =
         heard.0.as_chunks().0.iter().map(|&bytes| u32::from_be_bytes(bytes)).collect();
-    // Output weights of row 0x1AA: written, and read.
+    // A write and a read of the output weights of row 0x1AA, which no network uses.
     assert_eq!(words, [0x5001_06A8, 0xA53C_0F96, 0xD001_06A8, 0xFFFF_0000]);
 }
 
@@ -617,7 +623,7 @@ fn sample_falling_while_the_chip_learns_ends_in_an_answer() {
     inputs.sample = false;
     pins.chip.set_inputs(inputs);
     pins.chip.run(100_000);
-    // Without an answer in each step it would learn for ever.
+    // Without an answer in each step, the chip would go on learning without end.
     assert_eq!(pins.chip.state(), State::Send);
 }
 
@@ -632,8 +638,8 @@ fn spi_needs_an_eighth_of_the_chips_clock_to_read() {
     assert_eq!(ratios, [2, 3, 4, 5, 6, 7]);
 }
 
-/// Asserts that the chip holds what the caller was told.
-fn expected(board: &Board, network: &impl DescribeReckOn, at: &str) {
+/// Asserts that the chip's weights and registers are those of `network`.
+fn assert_holds(board: &Board, network: &impl DescribeReckOn, at: &str) {
     let pins = board.pins();
     for input in 0..network.inputs() {
         for neuron in 0..network.neurons() {
@@ -658,8 +664,9 @@ fn expected(board: &Board, network: &impl DescribeReckOn, at: &str) {
     assert_eq!(pins.chip.register_value(69), 110, "{at}");
 }
 
-/// Makes calls in any order, with up to three SPI clocks lost or doubled and up to two calls of the port failing. After
-/// each `Ok` the chip is as the caller was told, and every answer is that of plain arithmetic.
+/// Makes calls in random order, with up to three SPI clock pulses lost or doubled and up to two calls of the port
+/// failing. Asserts that after each `Ok` the chip has the network that was loaded, and that every answer is that of
+/// plain arithmetic.
 fn search(seed: u64, count: &mut [u32; 2]) {
     let mut random = Pcg32::seed_from_u64(seed);
     let mut below = |end: u32| random.next_u32() % end;
@@ -668,7 +675,8 @@ fn search(seed: u64, count: &mut [u32; 2]) {
     let mut chip = ReckOn::new(board.spi(), board.port(), 3_000);
     let mut last = 0;
     for _ in 0..below(4) {
-        // Further apart than a register's frame and its check: closer ones may cancel out.
+        // The faults lie further apart than the frame of a register and its check, because closer faults may cancel out
+        // unnoticed.
         last += 400 + u64::from(below(240_000));
         let fault = if below(2) == 0 { ClockFault::Lost } else { ClockFault::Doubled };
         board.pins().clock_faults.push_back((last, fault));
@@ -695,7 +703,7 @@ fn search(seed: u64, count: &mut [u32; 2]) {
                 Ok(mut programmed) => {
                     is_loaded = programmed.load(&NETWORK, |_| ()).is_ok();
                     if is_loaded {
-                        expected(&board, &NETWORK, &at);
+                        assert_holds(&board, &NETWORK, &at);
                     }
                     is_loaded
                 }
@@ -716,7 +724,7 @@ fn search(seed: u64, count: &mut [u32; 2]) {
                 Ok(Ok(mut programmed)) => {
                     let is_same = programmed.verify(&NETWORK).is_ok();
                     if is_same {
-                        expected(&board, &NETWORK, &at);
+                        assert_holds(&board, &NETWORK, &at);
                     }
                     is_same
                 }
@@ -741,8 +749,8 @@ fn search(seed: u64, count: &mut [u32; 2]) {
                     }
                     match sample.step(ReckOnStep::default()) {
                         Ok(answer) => {
-                            let told = Some(ReckOnAnswer::Potentials(plain.step(&inputs)));
-                            assert_eq!(answer, told, "{at}");
+                            let reports = Some(ReckOnAnswer::Potentials(plain.step(&inputs)));
+                            assert_eq!(answer, reports, "{at}");
                             true
                         }
                         Err(_) => false,
@@ -770,7 +778,8 @@ fn two_thousand_orders_with_faults_are_right_or_refused() {
     println!("calls refused, and Ok: {count:?}");
 }
 
-/// Returns the number of clocks from a tick to the ready line, for a network with as many inputs as neurons.
+/// Returns the number of clock cycles from a tick until the chip is ready, for a network of `size` inputs and `size`
+/// neurons, in a step with `events` inputs.
 fn clocks_of_a_step(size: u16, events: u16) -> u64 {
     let board = Board::new(10, 1);
     let mut chip = on(&board);
@@ -795,7 +804,7 @@ fn clocks_of_a_step(size: u16, events: u16) -> u64 {
     pins.chip.run(4);
     let mut clocks = 4;
     while !pins.chip.is_ready() {
-        // An answer takes as long as it is not taken.
+        // Leaves out the time of the answer, which depends on how quickly it is taken.
         clocks += u64::from(pins.chip.state() != State::Send);
         inputs.output_acknowledge = pins.chip.outputs().request;
         pins.chip.set_inputs(inputs);

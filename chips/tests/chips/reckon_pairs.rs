@@ -1,4 +1,5 @@
-//! A lost and a doubled SPI clock within one access to `ReckOn`, after which chip and bus are in step again.
+//! Tests of `ReckOn` with one lost and one doubled SPI clock pulse within the same access. Afterwards chip and bus are
+//! in sync again, so that sync checks alone do not notice the faults.
 
 use embedded_hal::spi::ErrorKind;
 use rand_core::{Rng, SeedableRng};
@@ -8,15 +9,15 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// Selects the part of a chip that is compared, and the calls that the driver makes before.
-type Look = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
+/// Which part of a chip's content to compare, and the calls that the driver makes before the comparison.
+type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
-/// Number of clocks in a frame.
+/// Number of clock pulses in a frame.
 const FRAME: u64 = 64;
 
-/// Returns registers and memories, without the word that the driver uses to check the step.
-fn all(chip: &Model) -> (Vec<u32>, Vec<u128>) {
+/// Returns the chip's registers and memories, without the word that the driver's sync check uses.
+fn whole_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     let registers = (0..=104).map(|register| chip.register_value(register)).collect();
     let outputs = chip.output_weights.iter().enumerate().filter(|(at, _)| *at != 0x1AA);
     let weights = chip.input_weights.iter().chain(chip.recurrent_weights.iter());
@@ -26,23 +27,24 @@ fn all(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (registers, memories.chain(outputs.map(|(_, word)| word)).collect())
 }
 
-/// Returns all registers, and the part of the memories that `verify` reads of [`NETWORK`]: the last quarter of a pair
-/// of neurons, and the first word of a row, in which two neurons and an output lie. Potentials are not included.
-fn of_network(chip: &Model) -> (Vec<u32>, Vec<u128>) {
+/// Returns all registers, and the part of the memories that `verify` reads for [`NETWORK`]: the last quarter of each
+/// pair of neurons, and the first word of each row, which holds the weights to two neurons or one output. Leaves out
+/// potentials.
+fn network_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     let word = |row: u128| row & u128::from(u32::MAX);
     let rows = (0..256).map(|neuron| word(chip.recurrent_weights[neuron << 4]));
     let outputs = (0..256).map(|neuron| word(chip.output_weights[neuron]));
     let parameters = chip.neurons.iter().map(|pair| pair >> 100);
     let own = parameters.chain([word(chip.input_weights[0])]);
-    (all(chip).0, own.chain(rows).chain(outputs).collect())
+    (whole_content(chip).0, own.chain(rows).chain(outputs).collect())
 }
 
-/// Runs an access on a chip whose memories hold `words`, with these faults. Returns its result, the content of the chip
-/// after it, and its number of clocks.
-fn with<T>(
+/// Fills a chip's memories with `words`, plans `faults`, and calls `access`. Returns the result, the content of the
+/// chip afterwards, and the number of SPI clock pulses that the access took.
+fn run_access<T>(
     words: u128,
     faults: &[(u64, ClockFault)],
-    (view, confirm): Look,
+    (view, confirm): Comparison,
     access: impl FnOnce(&mut Chip) -> Outcome<T>,
 ) -> (Outcome<T>, (Vec<u32>, Vec<u128>), u64) {
     let board = Board::new(10, 1);
@@ -61,7 +63,7 @@ fn with<T>(
     board.pins().clock_faults.extend(faults.iter().map(|&(at, fault)| (start + at, fault)));
     let result = access(&mut chip);
     let clocks = board.pins().spi_clocks - start;
-    let result = result.and_then(|told| confirm(&mut chip).map(|()| told));
+    let result = result.and_then(|value| confirm(&mut chip).map(|()| value));
     let mut pins = board.pins();
     pins.chip.run(20);
     (result, view(&pins.chip), clocks)
@@ -75,18 +77,18 @@ const NETWORK: ReckOnNetwork<1, 2, 1> = ReckOnNetwork {
     shared: ReckOnShared { shifts: [0; 3], keep: 110, resets_to_zero: true },
 };
 
-/// Number of words that a load of [`NETWORK`] writes: 128 pairs of four, and rows of one input, of all neurons and to
-/// the outputs.
+/// Number of words that loading [`NETWORK`] writes: four for each of 128 pairs of neurons, one for the input, and two
+/// for each of 256 neurons.
 const LOADED: u64 = 512 + 1 + 256 + 256;
 
-/// Compares everything immediately.
-const AT_ONCE: Look = (all, |_| Ok(()));
-/// Compares what the network needs, after it has been verified; this notices reads that became writes.
-const VERIFIED: Look = (of_network, |chip| chip.programmed()?.verify(&NETWORK));
+/// Compares all registers and memories, immediately after the access.
+const AT_ONCE: Comparison = (whole_content, |_| Ok(()));
+/// Compares only what the network needs, after `verify`, which notices reads that a fault turned into writes.
+const VERIFIED: Comparison = (network_content, |chip| chip.programmed()?.verify(&NETWORK));
 
 const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];
 
-/// Returns where two chips differ, with both words.
+/// Returns the positions at which the contents of two chips differ, with both words.
 fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usize, u128, u128)> {
     let words = |of: &(Vec<u32>, Vec<u128>)| {
         of.0.iter().map(|&word| u128::from(word)).chain(of.1.iter().copied()).collect::<Vec<_>>()
@@ -95,23 +97,24 @@ fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usi
     both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
 }
 
-/// Tries pairs of faults in an access. `some` pairs are random, with the second fault within `reach` clocks; all pairs
-/// within the first frame are tried if `all_in_first`. Pairs are left out if a fault lies in a register's own frame,
-/// which `is_register` recognises, or in the frame before it.
+/// Tries pairs of faults in an access: `some` random pairs whose faults are less than `reach` clock pulses apart and,
+/// if `all_in_first`, all pairs within the first frame. Leaves out pairs in which a fault lies in the frame of a
+/// register, which `is_register` recognises, or in the frame before it. Asserts that the access returns an error, or
+/// has the same effect as without faults; returns the number of pairs tried.
 fn pairs<T: PartialEq + std::fmt::Debug>(
     (some, all_in_first): (usize, bool),
     reach: u64,
-    look: Look,
+    comparison: Comparison,
     is_register: impl Fn(u64) -> bool,
     access: impl Fn(&mut Chip) -> Outcome<T>,
 ) -> usize {
     let mut random = Pcg32::seed_from_u64(7);
     let mut tried = 0;
     for words in WORDS {
-        let (result, right, clocks) = with(words, &[], look, &access);
+        let (result, right, clocks) = run_access(words, &[], comparison, &access);
         let result = result.unwrap();
         let mut pair = |first: u64, second: u64| {
-            // A header whose count of words moves by a bit takes the next frame along.
+            // If the count of words in a header shifts by a bit, the header also covers the next frame.
             let is_own = [first, second].into_iter().any(|at| {
                 [at.saturating_sub(1), at, at + 1, at + FRAME]
                     .iter()
@@ -122,8 +125,8 @@ fn pairs<T: PartialEq + std::fmt::Debug>(
             }
             for faults in [[(first, Lost), (second, Doubled)], [(first, Doubled), (second, Lost)]] {
                 tried += 1;
-                if let (Ok(told), held, _) = with(words, &faults, look, &access) {
-                    assert_eq!(told, result, "{words:x}: {faults:?}");
+                if let (Ok(value), held, _) = run_access(words, &faults, comparison, &access) {
+                    assert_eq!(value, result, "{words:x}: {faults:?}");
                     let differ = differences(&held, &right);
                     assert!(differ.is_empty(), "{words:x}: {faults:?}: {differ:x?}");
                 }
@@ -145,9 +148,9 @@ fn accesses((some, all_in_first): (usize, bool)) -> usize {
     pairs(tries, 400, AT_ONCE, none, |chip| chip.programmed()?.input_weight(5, 2))
         + pairs(tries, 400, AT_ONCE, none, |chip| chip.programmed()?.recurrent_weight(21, 3))
         + pairs(tries, 400, AT_ONCE, none, |chip| chip.programmed()?.output_weight(42, 1))
-        // A register's frame, then four that check the step.
+        // One frame writes the register, and four check that chip and bus are in sync.
         + pairs(tries, 400, AT_ONCE, |frame| frame == 0, |chip| chip.programmed()?.set_register(69, 110))
-        // The same for each register; then the memories close.
+        // Five frames for each register; then the memories are closed.
         + pairs(
             (some / 3, false),
             2 * FRAME,
@@ -155,7 +158,7 @@ fn accesses((some, all_in_first): (usize, bool)) -> usize {
             |frame| frame % 5 == 0,
             |chip| chip.programmed()?.run(&ReckOnSettings::POTENTIALS).map(drop),
         )
-        // Written, checked, read, checked; then registers.
+        // Words written, four frames of check, words read, four frames of check; then five frames for each register.
         + pairs(
             (some / 60, false),
             FRAME,
@@ -170,23 +173,25 @@ fn a_lost_and_a_doubled_clock_within_an_access_are_an_error_or_right() {
     assert!(accesses((30, false)) > 500);
 }
 
-/// A clock doubled before the second read makes it a write, which reads 0; a clock lost at its end hides that.
+/// A pulse doubled before the second read turns it into a write of 0; a pulse lost at its end hides the shift. The
+/// driver must notice it.
 #[test]
 fn a_weight_that_is_read_is_not_written_where_it_ends() {
     let faults = [(5 * FRAME - 1, Doubled), (6 * FRAME - 1, Lost)];
-    let (result, ..) = with(0, &faults, AT_ONCE, |chip| chip.programmed()?.input_weight(5, 2));
+    let (result, ..) =
+        run_access(0, &faults, AT_ONCE, |chip| chip.programmed()?.input_weight(5, 2));
     assert!(result.is_err());
 }
 
-/// Without its first bit, the header that reads a word of neurons writes an output's potential. The word then reads 0,
-/// which is its right value.
+/// A header that reads a word of neurons, and that loses its first bit, writes an output's potential. The read then
+/// returns 0, which equals the word. The potential must stay 0.
 #[test]
 fn a_word_of_neurons_that_is_read_moves_no_output() {
-    // All words; the check; the first word that is read.
+    // All words are written, the sync is checked, and the first word is read.
     let first = (LOADED + 4 + 1) * FRAME;
     let faults = [(first, Lost), (first + 8, Doubled)];
     let (result, (_, held), _) =
-        with(0, &faults, AT_ONCE, |chip| chip.programmed()?.load(&NETWORK, |_| ()));
+        run_access(0, &faults, AT_ONCE, |chip| chip.programmed()?.load(&NETWORK, |_| ()));
     assert_eq!(result, Ok(()), "nobody notices");
     assert!(held.iter().rev().skip(511).take(16).all(|potential| *potential == 0));
 }

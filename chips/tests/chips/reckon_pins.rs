@@ -1,5 +1,5 @@
-//! The driver of `ReckOn` with pins that are read rarely and late: for any size of network its answers are those of the
-//! chip.
+//! Tests of `ReckOn` with a driver that reads its pins rarely and late: for networks of any size its answers are those
+//! of a driver with fast pins.
 
 use std::cell::Cell;
 
@@ -11,18 +11,18 @@ use spikewire_chips::{
     ReckOnSettings, ReckOnShared, ReckOnStep, Started,
 };
 
-/// A random network in which each neuron has its own input, with three outputs.
-struct Drawn {
+/// A network with random weights, a given number of neurons, up to eight inputs and three outputs.
+struct RandomNetwork {
     neurons: u16,
 }
 
-/// Returns the weight between two places.
+/// Returns the random weight of a kind (0 from inputs, 1 between neurons, 2 to outputs) for this sender and receiver.
 fn weight(kind: u64, from: u16, to: u16) -> i8 {
     let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
     Pcg32::seed_from_u64(place).next_u32() as i8
 }
 
-impl DescribeReckOn for Drawn {
+impl DescribeReckOn for RandomNetwork {
     fn neurons(&self) -> u16 {
         self.neurons
     }
@@ -49,12 +49,12 @@ impl DescribeReckOn for Drawn {
     }
 }
 
-/// Duration of the port's calls, in clocks of the chip: before a pin is read or set, and after.
+/// Duration of the port's calls: clock cycles of the chip before a pin is read or set, and after it.
 #[derive(Default)]
 struct Pace {
     before: Cell<u32>,
     after: Cell<u32>,
-    /// Number of a tick that does not reach the chip.
+    /// Number of the tick that does not reach the chip, from 0 on; `None` if all ticks do.
     lost: Cell<Option<u32>>,
     /// Number of ticks so far.
     ticks: Cell<u32>,
@@ -121,7 +121,7 @@ impl ReckOnPort for Slow<'_> {
 
 type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
 
-/// Number of steps in a sample.
+/// Number of time steps in a sample.
 const STEPS: u32 = 6;
 
 const SETTINGS: [ReckOnSettings; 3] = [
@@ -130,7 +130,7 @@ const SETTINGS: [ReckOnSettings; 3] = [
     ReckOnSettings::POTENTIALS,
 ];
 
-/// Makes a board, and a driver whose pins have this pace. Calls of the board's own port take no time.
+/// Makes a board, and a driver whose port calls last as long as `pace` says at the time.
 fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     let board = Board::new(10, 0);
     let port = Slow { port: board.port(), board: board.clone(), pace };
@@ -138,7 +138,7 @@ fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     (board, chip)
 }
 
-/// The answers of a sample, and the neurons that fired in it.
+/// The answers in a sample, and the neurons that fired in it.
 type Answered = (Vec<Option<ReckOnAnswer>>, Vec<u8>);
 
 fn sample<'a, 'b>(
@@ -161,12 +161,12 @@ fn sample<'a, 'b>(
     Ok(((answers, fired), started))
 }
 
-/// At 26 clocks a call, the ready line of networks of up to 10 neurons is low for less than a call during a step, and
-/// that of networks of up to 25 neurons at the tick that begins a sample.
+/// With 26 clock cycles a call, the ready pin is low for less than one call: in steps of networks of up to 10 neurons,
+/// and at the tick that begins a sample for up to 25 neurons.
 #[test]
 fn pins_that_are_read_seldom_change_no_answer() {
     for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {
-        let network = Drawn { neurons };
+        let network = RandomNetwork { neurons };
         let pace = Pace::default();
         let (board, mut chip) = on(&pace);
         pace.before.set(1);
@@ -197,11 +197,12 @@ fn pins_that_are_read_seldom_change_no_answer() {
     }
 }
 
-/// If a tick does not reach the chip, no answer is taken for that of another step, at any pace.
+/// If a tick does not reach the chip, the driver returns an error instead of the answer to a different step, for any
+/// duration of the port's calls.
 #[test]
 fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
     for neurons in [2, 16, 64] {
-        let network = Drawn { neurons };
+        let network = RandomNetwork { neurons };
         let pace = Pace::default();
         let (board, mut chip) = on(&pace);
         pace.before.set(1);
@@ -210,7 +211,7 @@ fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
             for (lost, clocks) in (0..=STEPS + 1).flat_map(|lost| [1, 9, 26].map(|at| (lost, at))) {
                 pace.before.set(1);
                 let mut programmed = chip.reset(&mut board.clone()).unwrap();
-                // A reset leaves the memories and not the registers.
+                // A reset keeps the memories but clears the registers, so write the registers of the network again.
                 let last = u32::from(neurons) - 1;
                 for (register, value) in
                     [(12, 2), (8, 1), (69, 110), (94, last.min(7)), (95, last | 1), (96, 2)]
@@ -221,10 +222,12 @@ fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
                 pace.ticks.set(0);
                 pace.lost.set(Some(lost));
                 pace.before.set(clocks);
-                let told = sample(started, &board, network.inputs()).map(|(answered, _)| answered);
+                let result =
+                    sample(started, &board, network.inputs()).map(|(answered, _)| answered);
                 let at = format!("tick {lost}, {neurons} neurons, {settings:?}, {clocks} clocks");
-                let is_said = matches!(told, Err(ChipError::Handshake(_) | ChipError::Unfinished));
-                assert!(is_said, "{at}: {told:?}");
+                let is_said =
+                    matches!(result, Err(ChipError::Handshake(_) | ChipError::Unfinished));
+                assert!(is_said, "{at}: {result:?}");
                 assert!(matches!(chip.sample(), Err(ChipError::NotReset)), "{at}");
                 pace.lost.set(None);
             }

@@ -1,7 +1,9 @@
-//! A random search: calls of tinyODIN's driver in any order, with late answers to outputs, and with up to three SPI
-//! clocks lost or doubled. Whenever a call is `Ok`, the chip's memories and registers must be as the caller knows them.
+//! A random search for faults: makes calls of tinyODIN's driver in any order, with late acknowledgements of outputs,
+//! and with up to three SPI clock pulses lost or doubled. Whenever a call returns `Ok`, the chip's memories and
+//! registers must be what the caller expects.
 //!
-//! `cargo test` tries a few schedules, `cargo test --release -p host-tests --test chip_search -- --ignored` 100 000.
+//! `cargo test` tries a few schedules; `cargo test --release -p spikewire-chips --test chips -- --ignored schedules` tries
+//! 100 000.
 
 use std::num::NonZeroU32;
 
@@ -19,10 +21,10 @@ type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;
 type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
 
-/// Number of SPI clocks, eight frames, within which a lost and a doubled clock may cancel out before the driver checks.
-/// Such a pair can go unseen, as the registers cannot be read back.
+/// Number of SPI clock pulses in eight frames, within which a lost and a doubled pulse may cancel out before the driver
+/// checks. Such a pair can go unnoticed, because registers cannot be read back.
 const CANCELLING: u64 = 320;
-/// Mask of the potential's bits.
+/// Mask of the bits that hold a neuron's potential.
 const STATE: u128 = 0xFFF;
 
 struct Random(Pcg32);
@@ -32,7 +34,7 @@ impl Random {
         (u64::from(self.0.next_u32()) * u64::from(end)).wrapping_shr(32) as u32
     }
 
-    /// Draws a number below 2^`bits`; small numbers are as frequent as large ones.
+    /// Draws a number below 2^`bits`, whose number of bits is uniformly distributed.
     fn of_any_size(&mut self, bits: u32) -> u32 {
         let bits = self.below(bits + 1);
         self.below(1 << bits)
@@ -72,19 +74,19 @@ impl Random {
     }
 }
 
-/// What the caller knows of the chip.
+/// What the caller of the driver expects of the chip.
 struct Known {
     neurons: Vec<u128>,
     synapses: Vec<u32>,
     registers: Option<TinyOdinRegisters>,
     fired: Vec<u8>,
     out: Vec<u8>,
-    /// Whether a closed loop has changed the potentials.
+    /// Whether the chip ran in closed loop, in which the test does not predict the potentials.
     is_stale: bool,
 }
 
 impl Known {
-    /// Takes over the content of the memories, as that of unknown memory is accepted.
+    /// Takes the chip's present memories as expected, for a chip that was just reset.
     fn of(board: &TinyBoard) -> Self {
         let pins = board.pins();
         let (neurons, synapses) = (pins.chip.neurons.clone(), pins.chip.synapses.clone());
@@ -105,7 +107,7 @@ impl Known {
         }
     }
 
-    /// Applies a word that the chip processes.
+    /// Applies an input to the expected neurons.
     fn take(&mut self, input: TinyOdinInput) {
         let Some(TinyOdinRegisters { last_neuron, .. }) = self.registers else { return };
         let none = Drive { is_event: true, is_leak: false, virtual_bits: 0, synapse: 0, pre: 0 };
@@ -128,7 +130,7 @@ impl Known {
         }
     }
 
-    /// Compares a chip at rest with what the caller knows.
+    /// Asserts that a chip at rest has the expected memories and outputs.
     fn compare(&mut self, board: &TinyBoard, at: &str) {
         let pins = board.pins();
         let is_exact = !std::mem::take(&mut self.is_stale);
@@ -170,7 +172,7 @@ impl Known {
     }
 }
 
-/// Counts of outcomes.
+/// Counts of calls, errors and gatings.
 #[derive(Debug, Default)]
 struct Tally {
     calls: u32,
@@ -178,7 +180,7 @@ struct Tally {
     gates: u32,
 }
 
-/// Runs one schedule; panics if a call is `Ok` and there is a difference.
+/// Makes the random calls of one schedule. Panics if a call returns `Ok` and the chip is not as expected.
 fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
     let mut random = Random(Pcg32::seed_from_u64(seed));
     let board = TinyBoard::new(2 + random.below(63), 1 + random.below(3));
@@ -238,7 +240,7 @@ fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
                     known.compare(&board, &at);
                 }
             }
-            // Nothing was changed, or the chip runs on.
+            // After these errors the chip is unchanged or goes on running.
             Err(ChipError::NoProbe | ChipError::Busy | ChipError::Handshake(Phase::Idle)) => {}
             Err(_) => {
                 tally.errors += 1;
@@ -248,7 +250,7 @@ fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
     }
 }
 
-/// Makes a call on a gated chip.
+/// Makes a random call on a gated chip.
 fn gated(
     random: &mut Random,
     chip: &mut Tiny,
@@ -312,7 +314,7 @@ fn start(
     known.registers = Some(registers);
     let pins = board.pins();
     assert!(!pins.chip.is_gated(), "{at}");
-    // The probe has left every neuron as it was.
+    // The probe must have left every neuron unchanged.
     assert_eq!(known.neurons, pins.chip.neurons, "{at}");
     let [_, open, source, last, ..] = pins.chip.registers.0;
     let expected = (registers.is_open_loop, false, registers.last_neuron);
@@ -320,7 +322,7 @@ fn start(
     Ok(())
 }
 
-/// Makes a call on a running chip.
+/// Makes a random call on a running chip.
 fn running(
     random: &mut Random,
     chip: &mut Tiny,
@@ -333,7 +335,7 @@ fn running(
         0 => {
             let gated = running.gate(|neuron| out.push(neuron)).map(drop);
             if gated.is_ok() {
-                // For the comparison the registers still count.
+                // The comparison after gating still needs the registers, which tell whether the loop was open.
                 known.out = out;
                 finish(known);
                 return Ok(());
@@ -358,7 +360,7 @@ fn running(
                 known.take(input);
             }
             match sent {
-                // Under way: the calls that follow bring it to its end.
+                // The word is pending; later calls finish it.
                 Err(ChipError::Handshake(_)) => Ok(()),
                 sent => sent,
             }
@@ -371,7 +373,7 @@ fn running(
     }
 }
 
-/// Updates what the caller knows when the chip has been gated; from then on spikes of a closed loop no longer count.
+/// Updates the expectations after the chip was gated. If the loop was closed, spikes and potentials are not compared.
 fn finish(known: &mut Known) {
     if !known.is_open_loop() {
         known.fired.clear();

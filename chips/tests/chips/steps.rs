@@ -1,4 +1,5 @@
-//! Steps in which each neuron compares once: tinyODIN's model, clock by clock, against plain arithmetic.
+//! Tests of `Steps`, in which each neuron compares with its threshold once a step: the driver on tinyODIN's model
+//! against plain arithmetic.
 
 use proptest::prelude::*;
 use silicon::Board;
@@ -6,16 +7,18 @@ use spikewire_chips::{
     Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
 };
 
-/// A neuron in plain arithmetic. Its potential is the one at which it compares, without what rungs add to it.
+/// A neuron in plain arithmetic. Its potential is the one that it compares with its threshold. The offset that the
+/// chip's potential has during a step is left out.
 #[derive(Clone, Debug)]
 struct Neuron {
     threshold: i32,
     leak: i32,
-    /// Amount by which a rung raises the potential.
+    /// Amount by which an event that raises the neuron (a rung) changes its potential.
     rung: i32,
-    /// Number of leaks that it alone gets after a spike.
+    /// Number of leaks that only this neuron receives after a spike.
     own: u16,
-    /// Weights from the layer before, listed by row, and of the bias; `own_weights` are those from its own layer.
+    /// Weights from the layer before, grouped by sending neuron, then by row. The bias and the weights from the
+    /// neuron's own layer are separate.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -28,7 +31,7 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Number of events that raise a neuron up to 0; `above` is the number that raise it further.
+    /// Number of rungs that raise a neuron up to 0; `above` is the number of further rungs before it compares.
     below: u16,
     above: u16,
     leaks: Vec<Vec<u16>>,
@@ -41,7 +44,7 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl Net {
-    /// Runs a step; returns the neurons of each layer that fire.
+    /// Runs a step; returns the neurons of each layer that fire. `before` are those that fired in the step before.
     fn step(&mut self, step: usize, inputs: &[u16], before: &[Vec<u16>]) -> Vec<Vec<u16>> {
         let [below, above, lift] = [self.below, self.above, self.lift].map(i32::from);
         let rows = self.rows;
@@ -63,9 +66,10 @@ impl Net {
                 }
                 if potential >= neuron.threshold {
                     own.push(at);
-                    // A neuron that fires early is raised on from 0: by what it was beyond its threshold, in whole rungs.
+                    // On the chip, a neuron that fires returns to 0 before all rungs have come. The other rungs then
+                    // raise it: as many as fit into the excess over its threshold.
                     let beyond = (potential - neuron.threshold) / neuron.rung;
-                    // If they lead to its threshold once more it fires again, which counts once.
+                    // If these rungs lead to the threshold again, the neuron fires again, which counts once.
                     let again = (neuron.threshold + above * neuron.rung - 1) / neuron.rung + 1;
                     let beyond = beyond % again;
                     potential = (beyond - above) * neuron.rung;
@@ -104,7 +108,7 @@ impl Net {
         None
     }
 
-    /// Returns the weight of a row onto a neuron.
+    /// Returns the weight of row `row` of the chip's synapses onto neuron `post`.
     fn row(&self, row: usize, post: usize) -> i8 {
         let (layer, _, neuron) = self.neuron(post).unwrap();
         let rows = self.rows;
@@ -149,7 +153,8 @@ impl Net {
     }
 }
 
-/// A network whose rows are all inputs, in open loop; the second value is the number of rows.
+/// The network as `load` takes it: all rows of synapses are inputs, in open loop. The second field is the number of
+/// rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {
@@ -230,7 +235,8 @@ prop_compose! {
     ) -> Net {
         let leaks = leaks.into_iter().map(|leaks| leaks.into_iter().collect()).collect();
         let layers = if is_deep { vec![one, two] } else { vec![one] };
-        // At most 11 spikes of two rows of 3 each, and seven leaks of 4: 94, below what 26 rungs of 4 lower.
+        // A step adds at most 11 spikes of two rows of weight 3, and seven leaks of 4: 94 in all, less than the 104 by
+        // which 26 rungs of 4 lower a neuron.
         Net { inputs, has_bias, rows, layers, below: 26, above, leaks, lift }
     }
 }

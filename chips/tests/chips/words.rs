@@ -1,4 +1,4 @@
-//! The words on the input buses of tinyODIN and ODIN, and the fields of their memories.
+//! Tests of the input words of tinyODIN and ODIN, and of the fields in their memories.
 
 use proptest::prelude::*;
 use spikewire_chips::{
@@ -41,7 +41,7 @@ fn tiny_odin_words_are_golden() {
 fn errors_of_a_chip_are_told_in_words() {
     use spikewire_chips::FormatError;
     let read_back = ChipError::ReadBack { address: 0x1F, written: 3, read: 0xA };
-    for (error, told) in [
+    for (error, text) in [
         (ChipError::Bus("noise"), "the bus failed: \"noise\""),
         (ChipError::Port(7), "the port failed: 7"),
         (ChipError::NotReset, "the chip must be reset first"),
@@ -51,13 +51,13 @@ fn errors_of_a_chip_are_told_in_words() {
             "weight -9 must lie in -8..=7",
         ),
     ] {
-        assert_eq!(error.to_string(), told);
+        assert_eq!(error.to_string(), text);
     }
     let short = FormatError::Length { needed: 300, given: 12 };
     assert_eq!(short.to_string(), "the network takes 300 bytes, not 12");
 }
 
-/// Events that do not fit are counted, and the list for the next step begins empty.
+/// Events that do not fit into the list are counted. After `clear` the list is empty, and the count stays.
 #[test]
 fn a_list_of_spikes_counts_what_it_has_no_room_for() {
     use spikewire::{Event, Polarity, Tick};
@@ -105,7 +105,8 @@ fn a_virtual_event_of_odin_has_its_sign_apart() {
     }
 }
 
-/// A time step without a spike lowers the potential by the leak; the neuron before it was higher by that.
+/// `before_step` returns the state that a time step turns into the given one: its potential is higher by the leak. It
+/// returns `None` if no state does that.
 #[test]
 fn before_a_time_step_a_neuron_of_odin_was_higher() {
     let neuron = |potential| OdinNeuron { threshold: 100, leak: 5, potential, ..OdinNeuron::REST };
@@ -123,7 +124,7 @@ fn before_a_time_step_a_neuron_of_odin_was_higher() {
     assert_eq!(before(OdinNeuron { learning: Some(learning), ..neuron(0) }), None);
 }
 
-/// Checks the registers by number, and what they say about the loop and the longest sweep.
+/// Checks the numbers and values of the registers, the open loop, and the longest sweep.
 #[test]
 fn registers_are_those_of_the_documentation() {
     fn written<I: Input>(registers: &I::Registers) -> Vec<(u16, u32)> {

@@ -1,4 +1,4 @@
-//! Xylo: packing of counts, the registers of a time step, and errors at every access.
+//! Tests of the Xylo driver: how counts are packed, which registers a time step accesses, and errors at every access.
 
 use std::num::NonZeroU32;
 
@@ -6,12 +6,12 @@ use proptest::prelude::*;
 use spikewire::{Bins, Event, Polarity, Tick};
 use spikewire_chips::{ChipError, InputBank, Registers, Xylo, XyloMap, pack_counts};
 
-/// A chip that is done after some reads of its status, and whose outputs 0 and 2 fired.
+/// Registers of a chip that is done after `busy` reads of its status, and whose outputs 0, 2 and 31 fired.
 #[derive(Debug, Default)]
 struct Chip {
     accesses: Vec<(char, u16, u32)>,
     busy: u32,
-    /// Whether the next step reads the second bank.
+    /// Whether the next time step reads the second bank of inputs.
     is_second: bool,
     fails_at: Option<usize>,
 }
@@ -92,7 +92,7 @@ fn counts_go_to_the_bank_that_the_next_step_reads() {
         let counts = [first, first + 1].map(|register| ('w', register, 0x2222_2222));
         assert_eq!(xylo.release().accesses, [&[('r', 0x171, pointer)][..], &counts].concat());
     }
-    // Where the public sources do not tell the bit, both banks have the counts.
+    // The A2 map has no register for the next bank, so both banks get the counts.
     let mut xylo = Xylo::new(Chip::default(), XyloMap::a2(0x40), 5);
     assert_eq!(xylo.next_bank(), Ok(None));
     xylo.set_next_input([3; 16]).unwrap();
@@ -142,7 +142,7 @@ fn a_step_under_way_takes_no_counts_and_no_second_trigger() {
     assert_eq!(written, expected, "one trigger, and no counts while it ran");
 }
 
-/// Accesses 3 to 5 are the trigger, the status, the outputs.
+/// The accesses that fail are the trigger (3), the status (4) and the outputs (5); the next call returns the outputs.
 #[test]
 fn an_error_of_the_bus_loses_no_outputs() {
     for (number, triggers) in [(3, 2), (4, 1), (5, 1)] {

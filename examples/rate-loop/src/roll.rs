@@ -3,13 +3,13 @@
 use core::num::NonZeroU32;
 use spikewire_chips::{Inputs, TinyOdinNetwork, TinyOdinNeuron};
 
-/// The input that every step must be told, before its others.
+/// The input that carries the bias: it must fire in every step, before the other inputs.
 pub const BIAS: u16 = 20;
 
-/// Steps from one leak of all neurons to the next, 5038 µs in the recording.
+/// Number of steps between two leaks of all neurons, 5038 µs in the recording.
 pub const STEPS_A_LEAK: NonZeroU32 = NonZeroU32::new(1).unwrap();
 
-/// Layers of 12 (node `lif1`), 3 (node `lif2`). Inputs: 20, of 20 neurons of 1 column.
+/// Neurons in each layer: 12 (node `lif1`), 3 (node `lif2`). Inputs: 20, of 20 neurons of 1 column.
 #[rustfmt::skip]
 pub static NETWORK: TinyOdinNetwork<21, 15, 3> = TinyOdinNetwork {
     neurons: [

@@ -2,13 +2,13 @@
 
 use spikewire_chips::{ReckOnNetwork, ReckOnPair, ReckOnShared};
 
-/// Steps from inputs to the answer that shows what they did; a step is a tick, 5000 µs in the recording.
+/// Number of steps from inputs to the answer that shows their effect; a step is a tick, 5000 µs in the recording.
 pub const LATE: usize = 2;
 
-/// What 1 in an answer stands for in the units of the training.
+/// The value of 1 in an answer, in the units of the training.
 pub const UNIT: f32 = 0.0009810269;
 
-/// Layers of 32 (node `neurons`); 3 outputs. Inputs: 25, of 25 neurons of 1 column.
+/// Neurons in each layer: 32 (node `neurons`); 3 outputs. Inputs: 25, of 25 neurons of 1 column.
 #[rustfmt::skip]
 pub static NETWORK: ReckOnNetwork<25, 32, 3> = ReckOnNetwork {
     pairs: &[

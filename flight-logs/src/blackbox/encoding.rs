@@ -1,4 +1,5 @@
-//! Decodes the numbers that are packed into frames. See "Blackbox Internals" of Betaflight's documentation.
+//! Decodes the numbers packed into the frames of a Betaflight blackbox log. See "Blackbox Internals" in Betaflight's
+//! documentation.
 
 /// The bytes of a frame, and the index of the next one to read.
 pub(crate) struct Input<'a> {
@@ -6,38 +7,39 @@ pub(crate) struct Input<'a> {
     pub at: usize,
 }
 
-/// The reason that a frame cannot be decoded.
+/// Reason that the bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
     /// The bytes end within the frame.
     End,
-    /// The bytes cannot be those of a frame.
+    /// The bytes cannot be a frame.
     Odd,
 }
 
-/// How one or several numbers of a frame are packed.
+/// Encoding of one number of a frame, or of several neighbouring numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
-    /// Variable length, seven bits in each byte; the lowest bit of the number is the sign.
+    /// Variable length, seven bits in each byte; the lowest bit of the number is the sign (zigzag).
     Signed,
-    /// Variable length, seven bits in each byte.
+    /// Variable length, seven bits in each byte, unsigned.
     Unsigned,
-    /// 14 bits, negated.
+    /// Variable length, seven bits in each byte, of a 14-bit two's complement number that is then negated.
     Negative14,
-    /// Up to eight numbers, after a byte that marks those that are not 0.
+    /// Up to eight numbers. A first byte marks those that are not 0, and only these follow.
     UpToEight,
-    /// Three numbers of one size, of four possible ones.
+    /// Three numbers of 2, 4 or 6 bits each, or each with its own length of 1 to 4 bytes.
     Three,
-    /// Four numbers, each with its own size of four possible ones.
+    /// Four numbers, each of 0, 4, 8 or 16 bits.
     Four,
-    /// No bytes; the number is 0.
+    /// No bytes: the number is 0.
     Null,
-    /// Three numbers of one size, of four possible ones, of which the third may have fewer bits.
+    /// Three numbers of 2 bits each, of 5, 5 and 4 bits, of 8, 7 and 7 bits, or each with its own length of 1 to 4
+    /// bytes.
     ThreeVariable,
 }
 
 impl Encoding {
-    /// Returns the encoding with this number in the header.
+    /// Returns the encoding with this number in the log's header; `None` if the number is unknown.
     pub(crate) fn of(number: i64) -> Option<Self> {
         Some(match number {
             0 => Self::Signed,
@@ -52,7 +54,8 @@ impl Encoding {
         })
     }
 
-    /// Returns how many fields are packed together, if `in_a_row` neighbouring fields have this encoding.
+    /// Returns the number of fields that one group of this encoding packs, if `in_a_row` neighbouring fields have the
+    /// encoding.
     pub(crate) fn group(self, in_a_row: usize) -> usize {
         match self {
             Self::UpToEight => in_a_row.min(8),
@@ -70,12 +73,12 @@ impl Input<'_> {
         Ok(byte)
     }
 
-    /// Reads a number with seven bits in each byte, five bytes at most.
+    /// Reads an unsigned number of variable length: seven bits in each byte, low bits first, at most five bytes.
     pub(crate) fn unsigned(&mut self) -> Result<u32, Fault> {
         let mut number = 0_u32;
-        for place in 0..5 {
+        for index in 0..5 {
             let byte = self.byte()?;
-            number |= u32::from(byte & 0x7f) << (7 * place);
+            number |= u32::from(byte & 0x7f) << (7 * index);
             if byte < 0x80 {
                 return Ok(number);
             }
@@ -83,13 +86,14 @@ impl Input<'_> {
         Err(Fault::Odd)
     }
 
-    /// Reads a number whose code alternates between the signs: 0, -1, 1, -2.
+    /// Reads a signed number of variable length, zigzag-encoded: codes 0, 1, 2, 3 are 0, -1, 1, -2.
     pub(crate) fn signed(&mut self) -> Result<i32, Fault> {
         let number = self.unsigned()?;
         Ok((number >> 1) as i32 ^ -((number & 1) as i32))
     }
 
-    /// Reads the numbers that this encoding packs together.
+    /// Reads one group of `count` numbers with this encoding. `version` is the log's data version. Unused items of the
+    /// result are 0.
     pub(crate) fn numbers(
         &mut self,
         encoding: Encoding,
@@ -105,8 +109,8 @@ impl Input<'_> {
             Encoding::UpToEight if count == 1 => numbers[0] = self.signed()?,
             Encoding::UpToEight => {
                 let which = self.byte()?;
-                for (place, number) in numbers.iter_mut().enumerate().take(count) {
-                    if which >> place & 1 == 1 {
+                for (index, number) in numbers.iter_mut().enumerate().take(count) {
+                    if which >> index & 1 == 1 {
                         *number = self.signed()?;
                     }
                 }
@@ -132,12 +136,12 @@ impl Input<'_> {
             (2, false) => {
                 [part(lead, 0, 6), part(self.byte()?.into(), 0, 6), part(self.byte()?.into(), 0, 6)]
             }
-            // Of 5, 5 and 4 bits.
+            // Numbers of 5, 5 and 4 bits.
             (1, true) => {
                 let both = lead << 8 | u32::from(self.byte()?);
                 [part(both, 9, 5), part(both, 4, 5), part(both, 0, 4)]
             }
-            // Of 8, 7 and 7 bits.
+            // Numbers of 8, 7 and 7 bits.
             (2, true) => {
                 let two = lead << 8 | u32::from(self.byte()?);
                 let three = two << 8 | u32::from(self.byte()?);
@@ -145,8 +149,8 @@ impl Input<'_> {
             }
             _ => {
                 let mut numbers = [0; 3];
-                for (place, number) in numbers.iter_mut().enumerate() {
-                    let bytes = (lead >> (2 * place) & 3) + 1;
+                for (index, number) in numbers.iter_mut().enumerate() {
+                    let bytes = (lead >> (2 * index) & 3) + 1;
                     let mut read = 0;
                     for byte in 0..bytes {
                         read |= u32::from(self.byte()?) << (8 * byte);
@@ -158,42 +162,43 @@ impl Input<'_> {
         })
     }
 
-    /// Reads four numbers as in version 1, where numbers of four bits come in pairs.
+    /// Reads four numbers as data version 1 packs them: 4-bit numbers come in pairs, in one byte.
     fn four_bytes(&mut self) -> Result<[i32; 4], Fault> {
         let mut which = self.byte()?;
         let mut numbers = [0; 4];
-        let mut place = 0;
-        while place < 4 {
+        let mut index = 0;
+        while index < 4 {
             match which & 3 {
                 1 => {
                     let both = u32::from(self.byte()?);
-                    numbers[place] = extend(both, 4);
-                    place += 1;
+                    numbers[index] = extend(both, 4);
+                    index += 1;
                     which >>= 2;
-                    if let Some(second) = numbers.get_mut(place) {
+                    if let Some(second) = numbers.get_mut(index) {
                         *second = extend(both >> 4, 4);
                     }
                 }
-                2 => numbers[place] = extend(self.byte()?.into(), 8),
+                2 => numbers[index] = extend(self.byte()?.into(), 8),
                 3 => {
                     let low = u32::from(self.byte()?);
-                    numbers[place] = extend(u32::from(self.byte()?) << 8 | low, 16);
+                    numbers[index] = extend(u32::from(self.byte()?) << 8 | low, 16);
                 }
                 _ => {}
             }
-            place += 1;
+            index += 1;
             which >>= 2;
         }
         Ok(numbers)
     }
 
-    /// Reads four numbers as in version 2: each takes a whole number of half bytes, without gaps, the high half first.
+    /// Reads four numbers as data version 2 packs them: each takes 0, 1, 2 or 4 half bytes, without gaps, the high half
+    /// of a byte first.
     fn four_nibbles(&mut self) -> Result<[i32; 4], Fault> {
         let which = self.byte()?;
         let mut half: Option<u8> = None;
         let mut numbers = [0; 4];
-        for (place, number) in numbers.iter_mut().enumerate() {
-            let halves = match which >> (2 * place) & 3 {
+        for (index, number) in numbers.iter_mut().enumerate() {
+            let halves = match which >> (2 * index) & 3 {
                 3 => 4,
                 kind => kind,
             };
@@ -214,7 +219,7 @@ impl Input<'_> {
     }
 }
 
-/// Extends the sign of a number in the lowest `bits` bits.
+/// Sign-extends the lowest `bits` bits of `number`.
 fn extend(number: u32, bits: u32) -> i32 {
     let shift = 32 - bits;
     (number << shift) as i32 >> shift
@@ -227,7 +232,7 @@ mod tests {
     #[test]
     fn every_encoding_as_documented() {
         use Encoding::{Four, Negative14, Null, Signed, Three, ThreeVariable, Unsigned, UpToEight};
-        // Encoding, numbers together, version, bytes, numbers.
+        // Encoding, numbers in the group, data version, bytes, expected numbers.
         type Case = (Encoding, usize, i64, &'static [u8], &'static [i32]);
         let cases: [Case; 17] = [
             (Signed, 1, 2, &[3], &[-2]),

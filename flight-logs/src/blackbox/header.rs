@@ -1,27 +1,28 @@
-//! The header of a log: lines `H name:value`, which define the fields of each kind of frame.
+//! The header of a Betaflight blackbox log: lines `H name:value`, which define the fields of each kind of frame.
 
 use super::encoding::Encoding;
 
-/// The part of the header that is needed to decode frames.
+/// Values of the header that are needed to decode frames.
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
     pub version: i64,
-    /// Number of iterations from one full frame to the next.
+    /// Number of loop iterations from one full frame (I-frame) to the next.
     pub full_every: i64,
     /// Share of loop iterations that is logged, as numerator and denominator.
     pub logged: (i64, i64),
     pub min_throttle: i32,
     pub min_motor: i32,
     pub battery: i32,
-    /// Fields of full frames; `changes` has those of frames that hold differences from the frame before.
+    /// Fields of full frames.
     pub full: Fields,
+    /// Fields of frames that hold differences from the frame before.
     pub changes: Fields,
     pub slow: Fields,
     pub gps: Fields,
     pub home: Fields,
 }
 
-/// The fields of a kind of frame.
+/// The fields of one kind of frame, a column of values each: the items with one index describe one field.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fields {
     pub names: Vec<String>,
@@ -30,17 +31,17 @@ pub(crate) struct Fields {
     pub encodings: Vec<Encoding>,
 }
 
-/// Largest interval that is accepted, in iterations.
+/// Upper bound of `I interval` and of both parts of `P interval`, in iterations.
 const MOST: i64 = 1 << 12;
 
 impl Header {
-    /// Parses the header of a log from its lines.
+    /// Parses the header of a log from its lines, given as pairs of name and value.
     ///
     /// # Errors
-    /// Returns an error that names what is missing or unknown.
+    /// Returns the reason if a definition is missing or unknown.
     pub(crate) fn parse(lines: &[(String, String)]) -> Result<Self, String> {
         let get = |key: &str| {
-            lines.iter().rev().find(|(own, _)| own == key).map(|(_, value)| value.as_str())
+            lines.iter().rev().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
         };
         let number = |key: &str| {
             let first = get(key)?.split(',').next()?;
@@ -57,7 +58,9 @@ impl Header {
         if changes.encodings.len() != full.names.len() {
             return Err("frames of changes have other fields than those of all".to_owned());
         }
-        let logged = match get("P interval").map(|own| own.split_once('/').unwrap_or(("1", own))) {
+        let logged = match get("P interval")
+            .map(|interval| interval.split_once('/').unwrap_or(("1", interval)))
+        {
             Some((some, of)) => (some.trim().parse().unwrap_or(1), of.trim().parse().unwrap_or(1)),
             None => (1, 1),
         };
@@ -76,7 +79,7 @@ impl Header {
         })
     }
 
-    /// Returns how many iterations the logger leaves out on purpose after this one.
+    /// Returns the number of iterations after `after` for which, by the header, no frame is logged.
     pub(crate) fn skipped(&self, after: i64) -> i64 {
         let (some, of) = self.logged;
         let is_logged =
@@ -115,21 +118,22 @@ impl Fields {
         Ok(Self { names, signed, predictors, encodings })
     }
 
-    /// Returns the index of a field.
-    pub(crate) fn place(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|own| own == name)
+    /// Returns the index of the field `name`.
+    pub(crate) fn index(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|field| field == name)
     }
 
-    /// Defines these fields as a message of 8-byte numbers; fields whose names count from 0 form an array.
+    /// Returns the text of a message definition in which each field is an `int64`. Fields `name[0]`, `name[1]` and so
+    /// on form an array.
     pub(crate) fn definition(&self) -> String {
         let mut text = String::new();
         let mut names = self.names.as_slice();
         while let Some(first) = names.first() {
             let (base, count) = match first.strip_suffix("[0]") {
                 Some(base) => {
-                    let own = (0..).zip(names);
-                    let count =
-                        own.take_while(|(n, name): &(usize, _)| **name == format!("{base}[{n}]"));
+                    let numbered = (0..).zip(names);
+                    let count = numbered
+                        .take_while(|(n, name): &(usize, _)| **name == format!("{base}[{n}]"));
                     (base.to_owned(), count.count())
                 }
                 None => (first.replace(['[', ']'], "_"), 1),

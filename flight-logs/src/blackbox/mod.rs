@@ -1,8 +1,8 @@
-//! Reads blackbox logs of Betaflight and related firmware: full frames, and between them frames of differences.
+//! Reads blackbox logs of Betaflight and related firmware: full frames (I), and between them frames of differences (P).
 //!
-//! The frames of the main loop are on the topic `main`, values that change rarely on `slow`, and those of the GPS on
-//! `gps`. Those of a second log in the file are on `main:1` and so on. Numbers are as logged, in the flight
-//! controller's units.
+//! The frames of the main loop are on the topic `main`, frames of values that change rarely on `slow`, and frames of
+//! the GPS on `gps`. In a file with several logs, the topics of the second log are `main:1` and so on. Numbers have the
+//! units in which the flight controller logs them.
 
 mod encoding;
 mod header;
@@ -18,49 +18,51 @@ use encoding::{Fault, Input};
 use header::{Fields, Header};
 use std::path::Path;
 
-/// The first bytes of a log.
+/// First bytes of a blackbox log.
 pub(crate) const START: &[u8] = b"H Product:Blackbox";
 
-/// The topic of the frames of the main loop.
+/// Name of the topic with the frames of the main loop.
 pub(crate) const MAIN: &str = "main";
 
-/// Longest plausible step between frames, in µs and in iterations. A longer one counts as damage unless the following
-/// frames confirm it.
+/// Longest plausible step between two frames, in µs and in iterations. A longer step counts as damage unless the
+/// following frames confirm it.
 const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
 
-/// A log that is being read.
+/// Reader of a file with one or several blackbox logs.
 pub(crate) struct Blackbox {
     faults: Faults,
     window: Window,
-    /// Number of logs in the file so far: a flight controller appends one for each flight.
+    /// Number of logs in the file so far. A flight controller appends one for each flight.
     logs: usize,
     session: Option<Session>,
     topics: Vec<Topic>,
     message: Vec<u8>,
-    /// Offset at which the present damage began.
+    /// Offset of the first byte of the range that is being skipped as damaged.
     damaged: Option<u64>,
 }
 
-/// One of the logs in the file.
+/// State of decoding one of the logs in a file.
 struct Session {
     header: Header,
-    /// Index of its main topic; `slow` and `gps` are the indices of the other topics.
+    /// Index in [`Blackbox::topics`] of this log's topic for the main loop.
     main: usize,
     slow: Option<usize>,
     gps: Option<usize>,
-    /// The last two frames, the latest first.
+    /// Values of the last two frames of the main loop, the latest first.
     previous: Option<[Vec<i32>; 2]>,
     home: Vec<i32>,
-    /// Iteration and time of the last good frame.
+    /// Iteration and time in µs of the last good frame.
     last: Option<(i64, i64)>,
-    /// Iteration and time of a frame far from the last good one, until the next frame confirms or refutes it.
+    /// Iteration and time in µs of a full frame that is too far from the last good one. The next full frame confirms or
+    /// refutes it.
     doubted: Option<(i64, i64)>,
-    /// Indices of the fields `loopIteration` and `time`.
+    /// Index of the field `loopIteration`.
     iteration: Option<usize>,
+    /// Index of the field `time`.
     time: usize,
 }
 
-/// The outcome of reading a frame.
+/// A decoded frame.
 enum Frame {
     Message { topic: usize, time: i64, numbers: Vec<i64> },
     Other,
@@ -80,9 +82,9 @@ impl Blackbox {
         })
     }
 
-    /// Reads the header of a log.
+    /// Reads the header of a log, and adds the log's topics. An invalid header is counted as damage.
     fn head(&mut self) -> Result<()> {
-        let place = self.window.place();
+        let offset = self.window.offset();
         let mut lines = Vec::new();
         loop {
             self.window.fill(&mut self.faults)?;
@@ -95,7 +97,7 @@ impl Blackbox {
             }
             self.window.pass(end + 1);
         }
-        // Where there is not even a line, the start is passed over.
+        // Without a single line, the start is skipped, so that it is not found again.
         if lines.is_empty() {
             self.window.pass(START.len());
         }
@@ -103,26 +105,26 @@ impl Blackbox {
             Ok(header) => header,
             Err(why) => {
                 let what = format!("the head of a log: {why}");
-                return self.faults.skip(place, what);
+                return self.faults.skip(offset, what);
             }
         };
         let name = |name: &str| match self.logs {
             0 => name.to_owned(),
             log => format!("{name}:{log}"),
         };
-        let mut add = |own: &str, fields: &Fields| {
+        let mut add = |base: &str, fields: &Fields| {
             let definition = fields.definition();
-            let topic = Topic::new(name(own), String::new(), Dialect::Ros1, &definition);
+            let topic = Topic::new(name(base), String::new(), Dialect::Ros1, &definition);
             self.topics.push(topic);
             self.topics.len() - 1
         };
         let main = add(MAIN, &header.full);
         let slow = (!header.slow.names.is_empty()).then(|| add("slow", &header.slow));
         let gps = (!header.gps.names.is_empty()).then(|| add("gps", &header.gps));
-        let (iteration, time) = (header.full.place("loopIteration"), header.full.place("time"));
+        let (iteration, time) = (header.full.index("loopIteration"), header.full.index("time"));
         self.logs += 1;
         let Some(time) = time else {
-            return self.faults.skip(place, "the head of a log: it has no field `time`");
+            return self.faults.skip(offset, "the head of a log: it has no field `time`");
         };
         self.session = Some(Session {
             header,
@@ -139,9 +141,9 @@ impl Blackbox {
         Ok(())
     }
 
-    /// Reads a frame, or skips a byte that cannot begin one.
+    /// Decodes the next frame. A byte that cannot begin a frame is skipped as damage.
     fn frame(&mut self) -> Result<Option<Entry>> {
-        let place = self.window.place();
+        let offset = self.window.offset();
         let Some(session) = &mut self.session else {
             self.window.pass(1);
             return Ok(None);
@@ -149,7 +151,7 @@ impl Blackbox {
         let left = self.window.left();
         let mut input = Input { bytes: left, at: 0 };
         let frame = session.frame(&mut input).and_then(|frame| {
-            // What follows tells whether it was one.
+            // A frame counts only if another frame or the end follows it.
             let is_followed = left.get(input.at).is_none_or(|next| KINDS.contains(next));
             if is_followed || matches!(frame, Frame::End) { Ok(frame) } else { Err(Fault::Odd) }
         });
@@ -157,7 +159,7 @@ impl Blackbox {
         if frame.is_ok()
             && let Some(damaged) = self.damaged.take()
         {
-            self.faults.lose(damaged, format!("{} bytes are no frames", place - damaged));
+            self.faults.lose(damaged, format!("{} bytes are no frames", offset - damaged));
         }
         match frame {
             Ok(Frame::Message { topic, time, numbers }) => {
@@ -165,7 +167,7 @@ impl Blackbox {
                 self.message.clear();
                 self.message.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
                 let time = time.saturating_mul(1000);
-                return Ok(Some(Entry { topic, time, at: place, sequence: None }));
+                return Ok(Some(Entry { topic, time, at: offset, sequence: None }));
             }
             Ok(Frame::Other) => self.window.pass(taken),
             Ok(Frame::End) => {
@@ -174,11 +176,11 @@ impl Blackbox {
             }
             Err(Fault::End) if self.window.is_at_end() && self.damaged.is_none() => {
                 self.window.pass(AHEAD);
-                self.faults.end(place, "the log ends within a frame")?;
+                self.faults.end(offset, "the log ends within a frame")?;
             }
             Err(_) => {
                 session.previous = None;
-                self.damaged.get_or_insert(place);
+                self.damaged.get_or_insert(offset);
                 self.window.pass(1);
             }
         }
@@ -186,7 +188,7 @@ impl Blackbox {
     }
 }
 
-/// The bytes with which frames begin.
+/// First bytes of the kinds of frames: full, differences, slow, GPS, GPS home, event.
 const KINDS: &[u8] = b"IPSGHE";
 
 impl Session {
@@ -209,8 +211,8 @@ impl Session {
             b'G' => {
                 let frame = self.numbers(&self.header.gps, false, input)?;
                 let numbers = self.header.gps.widened(&frame);
-                let own = self.header.gps.place("time").and_then(|place| numbers.get(place));
-                let time = own.copied().or(self.last.map(|(_, time)| time)).unwrap_or_default();
+                let logged = self.header.gps.index("time").and_then(|index| numbers.get(index));
+                let time = logged.copied().or(self.last.map(|(_, time)| time)).unwrap_or_default();
                 Ok(self.gps.map_or(Frame::Other, |topic| Frame::Message { topic, time, numbers }))
             }
             b'H' => {
@@ -222,14 +224,14 @@ impl Session {
         }
     }
 
-    /// Accepts a frame of the main loop if it follows from the frame before.
+    /// Accepts a frame of the main loop if its time and iteration plausibly continue those of the last good frame.
     fn main(&mut self, frame: Vec<i32>, is_full: bool) -> Result<Frame, Fault> {
         let mut numbers = self.header.full.widened(&frame);
         let mut time = numbers[self.time];
         let iteration =
-            self.iteration.and_then(|place| numbers.get(place)).copied().unwrap_or_default();
+            self.iteration.and_then(|index| numbers.get(index)).copied().unwrap_or_default();
         if let Some((before, last)) = self.last {
-            // The count of µs starts anew at 32 bits.
+            // The time in µs has 32 bits, and starts again at 0.
             let wraps = (last - time + (1 << 31)).div_euclid(1 << 32).max(0);
             time += wraps << 32;
             let follows = |(before, last): (i64, i64)| {
@@ -252,7 +254,7 @@ impl Session {
         Ok(Frame::Message { topic: self.main, time, numbers })
     }
 
-    /// Decodes the numbers of a frame: for each field the packed difference plus the prediction.
+    /// Decodes the values of a frame: for each field the packed difference plus the prediction.
     fn numbers(
         &self,
         fields: &Fields,
@@ -262,19 +264,19 @@ impl Session {
         let none = [Vec::new(), Vec::new()];
         let before = match (&self.previous, is_change) {
             (Some(previous), true) => previous,
-            // Changes of a frame that is missing mean nothing.
+            // Differences cannot be decoded if the frame before them is missing.
             (None, true) => return Err(Fault::Odd),
             (_, false) => &none,
         };
         let mut frame: Vec<i32> = Vec::with_capacity(fields.encodings.len());
         while let Some(&encoding) = fields.encodings.get(frame.len()) {
-            let own = fields.encodings[frame.len()..].iter().take_while(|own| **own == encoding);
-            let count = encoding.group(own.count());
+            let same = fields.encodings[frame.len()..].iter().take_while(|next| **next == encoding);
+            let count = encoding.group(same.count());
             let packed = input.numbers(encoding, count, self.header.version)?;
             for number in packed.into_iter().take(count) {
-                let place = frame.len();
-                let Some(&predictor) = fields.predictors.get(place) else { break };
-                let past = |frame: &Vec<i32>| frame.get(place).copied().unwrap_or_default();
+                let index = frame.len();
+                let Some(&predictor) = fields.predictors.get(index) else { break };
+                let past = |frame: &Vec<i32>| frame.get(index).copied().unwrap_or_default();
                 let (one, two) = (past(&before[0]), past(&before[1]));
                 let predicted = match predictor {
                     0 => 0,
@@ -285,13 +287,13 @@ impl Session {
                     5 => self
                         .header
                         .full
-                        .place("motor[0]")
+                        .index("motor[0]")
                         .and_then(|motor| frame.get(motor).copied())
                         .unwrap_or_default(),
                     6 => one.wrapping_add(1).wrapping_add(self.header.skipped(one.into()) as i32),
                     7 => {
-                        // The second of two is the longitude.
-                        let is_second = place > 0 && fields.predictors[place - 1] == 7;
+                        // Of two neighbouring fields with this predictor, the second is the longitude.
+                        let is_second = index > 0 && fields.predictors[index - 1] == 7;
                         self.home.get(usize::from(is_second)).copied().unwrap_or_default()
                     }
                     8 => 1500,
@@ -318,7 +320,7 @@ impl Session {
                     }
                 }
             }
-            // Logging goes on at an iteration and a time.
+            // Logging resumes at this iteration and time.
             14 => {
                 let (iteration, time) = (input.unsigned()?, input.unsigned()?);
                 self.last = Some((iteration.into(), time.into()));
@@ -342,7 +344,7 @@ impl Session {
 }
 
 impl Fields {
-    /// Converts the numbers of a frame, so that unsigned fields are not negative.
+    /// Converts the values of a frame to 64 bits: values of unsigned fields are not negative.
     fn widened(&self, frame: &[i32]) -> Vec<i64> {
         let numbers = frame.iter().zip(&self.signed);
         numbers
@@ -357,7 +359,7 @@ impl Log for Blackbox {
             self.window.fill(&mut self.faults)?;
             if self.window.left().is_empty() {
                 if let Some(damaged) = self.damaged.take() {
-                    let what = format!("{} bytes are no frames", self.window.place() - damaged);
+                    let what = format!("{} bytes are no frames", self.window.offset() - damaged);
                     self.faults.lose(damaged, what);
                 }
                 if self.session.take().is_some() {

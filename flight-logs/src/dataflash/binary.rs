@@ -1,4 +1,5 @@
-//! Reads the binary form of the log: each message is a header of three bytes, followed by the columns without gaps.
+//! Reads `ArduPilot`'s binary logs, `.bin`. Each message is a header of three bytes, followed by its columns without
+//! gaps.
 
 use super::format::{Column, FMT, Format, Formats, Letter};
 use crate::bytes::Bytes;
@@ -9,30 +10,30 @@ use crate::window::Window;
 use crate::{Entry, Log, Result};
 use std::path::Path;
 
-/// First bytes of a message; the type follows them.
+/// First two bytes of a message. The third is its type.
 const HEAD: &[u8] = &[0xa3, 0x95];
-/// Number of bytes before a message's columns.
+/// Length of a message's header in bytes.
 const CONTENT: usize = 3;
 
-/// A log that is being read.
+/// Reader of a binary log.
 pub(crate) struct Binary {
     window: Window,
     faults: Faults,
     formats: Formats,
     message: Vec<u8>,
-    /// Time of the last message that contained one, in ns.
+    /// Time of the last message that contained a time, in ns.
     time: i64,
-    /// Offset at which the present damage began.
+    /// Offset of the first byte of the range that is being skipped as damaged.
     damaged: Option<u64>,
 }
 
-/// What the next bytes are.
+/// Classification of the next bytes in the log.
 enum Ahead {
-    /// A message of this type and length.
+    /// A message, with its type, and its length in bytes.
     Message(u8, usize),
-    /// A message that is cut off by the end of the file.
+    /// A message that the end of the file cuts off.
     Cut,
-    /// Bytes that begin no message.
+    /// Bytes that are no message.
     Odd,
 }
 
@@ -48,10 +49,11 @@ impl Binary {
         })
     }
 
-    /// Examines the next bytes. A message that is not followed by another is doubtful, as bytes may be missing in it.
+    /// Classifies the next bytes. A message counts only if another message or the end follows it, because bytes may be
+    /// missing from it.
     fn look(&self) -> Ahead {
         let left = self.window.left();
-        let begins = |bytes: &[u8]| bytes.iter().zip(HEAD).all(|(own, head)| own == head);
+        let begins = |bytes: &[u8]| bytes.iter().zip(HEAD).all(|(byte, head)| byte == head);
         if !begins(left) {
             return Ahead::Odd;
         }
@@ -64,9 +66,10 @@ impl Binary {
         }
     }
 
-    /// Reads a message: stores what it defines, and converts its columns to the definition of its topic.
+    /// Processes a message of type `kind`. A definition is stored; the columns of other messages are converted to the
+    /// definition of their topic. Returns the message's entry.
     fn take(&mut self, kind: u8, length: usize) -> Result<Option<Entry>> {
-        let at = self.window.place();
+        let at = self.window.offset();
         let content = &self.window.left()[CONTENT..length];
         let Some(format) = self.formats.get(kind) else { return Ok(None) };
         self.message.clear();
@@ -74,15 +77,17 @@ impl Binary {
         let mut defined = None;
         if let Ok(columns) = &format.columns {
             let mut rest = content;
-            for (place, column) in columns.iter().enumerate() {
-                let Some((own, after)) = rest.split_at_checked(column.letter.size()) else { break };
+            for (index, column) in columns.iter().enumerate() {
+                let Some((bytes, after)) = rest.split_at_checked(column.letter.size()) else {
+                    break;
+                };
                 rest = after;
-                convert(column.letter, own, &mut self.message);
-                if format.instance == Some(place) {
-                    instance = whole(column.letter, own).unwrap_or_default();
+                convert(column.letter, bytes, &mut self.message);
+                if format.instance == Some(index) {
+                    instance = whole(column.letter, bytes).unwrap_or_default();
                 }
-                if let Some((_, unit)) = format.time.filter(|(time, _)| *time == place) {
-                    let time = whole(column.letter, own).unwrap_or_default();
+                if let Some((_, unit)) = format.time.filter(|(time, _)| *time == index) {
+                    let time = whole(column.letter, bytes).unwrap_or_default();
                     self.time = time.saturating_mul(unit);
                 }
             }
@@ -103,19 +108,19 @@ impl Binary {
         Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
     }
 
-    /// Ends a range of damage before this offset.
+    /// Counts the range skipped as damaged, which ends at the current position.
     fn end_damage(&mut self) -> Result<()> {
         match self.damaged.take() {
             None => Ok(()),
             Some(damaged) => {
-                let count = self.window.place() - damaged;
+                let count = self.window.offset() - damaged;
                 self.faults.skip(damaged, format!("{count} bytes are no messages"))
             }
         }
     }
 }
 
-/// What a message defines.
+/// A definition that a message contains.
 enum Defined {
     /// The format of a message type.
     Format(u8, Format),
@@ -124,7 +129,7 @@ enum Defined {
 }
 
 impl Defined {
-    /// Parses the content of `FMT`; `None` if it is not a definition.
+    /// Parses the content of an `FMT` message, which defines a format; returns `None` if it is invalid.
     fn of_format(content: &[u8]) -> Option<Self> {
         let (&[kind, length], rest) = content.split_first_chunk()?;
         let (name, rest) = rest.split_at_checked(4)?;
@@ -136,61 +141,62 @@ impl Defined {
         is_good.then(|| Self::Format(kind, format()))
     }
 
-    /// Parses the type and the units in an `FMTU`.
+    /// Parses the content of an `FMTU` message, which assigns units to a type's columns; `columns` are those of `FMTU`
+    /// itself. Returns `None` if it is no such message.
     fn of_units(columns: &[Column], content: &[u8]) -> Option<Self> {
         let column = |name: &str| {
-            let place = columns.iter().position(|column| column.name == name)?;
-            let before: usize = columns[..place].iter().map(|own| own.letter.size()).sum();
-            content.get(before..before + columns[place].letter.size())
+            let index = columns.iter().position(|column| column.name == name)?;
+            let before: usize = columns[..index].iter().map(|column| column.letter.size()).sum();
+            content.get(before..before + columns[index].letter.size())
         };
         let kind = *column("FmtType")?.first()?;
         Some(Self::Units(kind, printed(column("UnitIds")?)?.to_owned()))
     }
 }
 
-/// Returns a text up to its first NUL; `None` if it contains anything but printable ASCII.
+/// Returns the text up to the first NUL; `None` if it contains anything but printable ASCII.
 fn printed(bytes: &[u8]) -> Option<&str> {
     let text = bytes.split(|&byte| byte == 0).next()?;
     let is_printed = text.iter().all(|byte| matches!(byte, b' '..=b'~'));
     str::from_utf8(text).ok().filter(|_| is_printed)
 }
 
-/// Appends a column to a message, converted to the message's definition.
-fn convert(letter: Letter, own: &[u8], message: &mut Vec<u8>) {
+/// Appends the bytes of a column to `message`, converted to the form that the topic's definition describes.
+fn convert(letter: Letter, column: &[u8], message: &mut Vec<u8>) {
     match letter {
-        Letter::Number(_) | Letter::Array | Letter::Mode => message.extend(own),
-        Letter::Half => message.extend(half(own).to_le_bytes()),
+        Letter::Number(_) | Letter::Array | Letter::Mode => message.extend(column),
+        Letter::Half => message.extend(half(column).to_le_bytes()),
         Letter::Scaled(_, unit) => {
-            let number = whole(letter, own).unwrap_or_default() as f64 / f64::from(unit);
+            let number = whole(letter, column).unwrap_or_default() as f64 / f64::from(unit);
             message.extend(number.to_le_bytes());
         }
         Letter::Text(_) => {
-            let text = own.split(|&byte| byte == 0).next().unwrap_or_default();
+            let text = column.split(|&byte| byte == 0).next().unwrap_or_default();
             message.extend((text.len() as u32).to_le_bytes());
             message.extend(text);
         }
     }
 }
 
-/// Returns the value of a column, if its letter stands for an integer.
-fn whole(letter: Letter, own: &[u8]) -> Option<i64> {
+/// Returns the value of a column that holds an integer; `None` for other types.
+fn whole(letter: Letter, column: &[u8]) -> Option<i64> {
     let (Letter::Number(number) | Letter::Scaled(number, _)) = letter else { return None };
     Some(match number {
-        Number::I8 => i8::from_le_bytes(*own.first_chunk()?).into(),
-        Number::U8 => u8::from_le_bytes(*own.first_chunk()?).into(),
-        Number::I16 => i16::from_le_bytes(*own.first_chunk()?).into(),
-        Number::U16 => u16::from_le_bytes(*own.first_chunk()?).into(),
-        Number::I32 => i32::from_le_bytes(*own.first_chunk()?).into(),
-        Number::U32 => u32::from_le_bytes(*own.first_chunk()?).into(),
-        Number::I64 => i64::from_le_bytes(*own.first_chunk()?),
-        Number::U64 => i64::try_from(u64::from_le_bytes(*own.first_chunk()?)).ok()?,
+        Number::I8 => i8::from_le_bytes(*column.first_chunk()?).into(),
+        Number::U8 => u8::from_le_bytes(*column.first_chunk()?).into(),
+        Number::I16 => i16::from_le_bytes(*column.first_chunk()?).into(),
+        Number::U16 => u16::from_le_bytes(*column.first_chunk()?).into(),
+        Number::I32 => i32::from_le_bytes(*column.first_chunk()?).into(),
+        Number::U32 => u32::from_le_bytes(*column.first_chunk()?).into(),
+        Number::I64 => i64::from_le_bytes(*column.first_chunk()?),
+        Number::U64 => i64::try_from(u64::from_le_bytes(*column.first_chunk()?)).ok()?,
         Number::Bool | Number::F32 | Number::F64 => return None,
     })
 }
 
-/// Converts a float of two bytes: sign, five bits of exponent, ten bits of fraction.
-fn half(own: &[u8]) -> f64 {
-    let bits = own.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
+/// Converts an IEEE 754 half-precision float, little-endian, to `f64`.
+fn half(column: &[u8]) -> f64 {
+    let bits = column.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
     let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
     let magnitude = match exponent {
         0 => fraction * 2_f64.powi(-24),
@@ -217,12 +223,12 @@ impl Log for Binary {
                     }
                 }
                 Ahead::Cut if self.damaged.is_none() => {
-                    let place = self.window.place();
+                    let offset = self.window.offset();
                     self.window.pass(usize::MAX);
-                    self.faults.end(place, "the log ends within a message")?;
+                    self.faults.end(offset, "the log ends within a message")?;
                 }
                 Ahead::Cut | Ahead::Odd => {
-                    self.damaged.get_or_insert(self.window.place());
+                    self.damaged.get_or_insert(self.window.offset());
                     let mut behind = self.window.left().iter().skip(1);
                     let next = behind.position(|byte| *byte == HEAD[0]);
                     self.window.pass(next.map_or(usize::MAX, |next| next + 1));

@@ -1,14 +1,15 @@
-//! Formats of messages: each `FMT` defines the name of a message, its columns, and a letter for the type of each.
+//! Formats of `ArduPilot`'s messages. Each `FMT` message defines the name of a message type, its columns, and a letter
+//! for each column's type.
 
 use crate::definition::{Definition, Field, Kind, Number, Shape};
 use crate::topic::Topic;
 use crate::wire::Wire;
 use std::collections::HashMap;
 
-/// Type of the message that defines the others, and needs no definition itself.
+/// Type of `FMT` messages, whose own format is fixed.
 pub(crate) const FMT: u8 = 0x80;
 
-/// The formats of a log, and the topics of the messages so far.
+/// The message formats defined so far in a log, and the topics of its messages.
 #[derive(Default)]
 pub(crate) struct Formats {
     of_type: HashMap<u8, Format>,
@@ -19,15 +20,16 @@ pub(crate) struct Formats {
 /// The format of a message type.
 pub(crate) struct Format {
     name: String,
-    /// Length of a message in bytes, including its header.
+    /// Length of a message in bytes, including its header of three bytes.
     pub length: usize,
-    /// The columns in order, or the reason that they cannot be read.
+    /// The columns in order, or the reason that the messages cannot be read.
     pub columns: Result<Vec<Column>, String>,
-    /// Index of the column that distinguishes instances, such as the first and the second sensor.
+    /// Index of the column that holds the instance number, such as the number of the sensor. Each instance has a topic
+    /// of its own.
     pub instance: Option<usize>,
-    /// Index of the column with the time, and the length of its unit in ns.
+    /// Index of the column with the time, and the time's unit in ns.
     pub time: Option<(usize, i64)>,
-    /// Index of the topic of each instance so far.
+    /// Index in [`Formats::topics`] of each instance's topic.
     topics: HashMap<i64, usize>,
 }
 
@@ -37,18 +39,18 @@ pub(crate) struct Column {
     pub letter: Letter,
 }
 
-/// The type for which a letter stands.
+/// Type of a column, for which a letter stands in the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Letter {
-    /// A number without a factor.
+    /// A number, logged as it is.
     Number(Number),
-    /// A float of two bytes.
+    /// A half-precision float, two bytes.
     Half,
-    /// An integer that is logged as a multiple of the value: 100 or 10 million times.
+    /// A fixed-point number: an integer that is to be divided by this factor, 100 or 10 million.
     Scaled(Number, u32),
-    /// A text of this many bytes.
+    /// A text, padded with NUL to this number of bytes.
     Text(usize),
-    /// An array of 32 two-byte numbers.
+    /// An array of 32 `i16`.
     Array,
     /// A flight mode: a number in a binary log, a name in a text log.
     Mode,
@@ -82,7 +84,7 @@ impl Letter {
         })
     }
 
-    /// Returns the size in a message, in bytes.
+    /// Returns the size of a column in a binary message, in bytes.
     pub(crate) fn size(self) -> usize {
         match self {
             Self::Number(number) | Self::Scaled(number, _) => number.size(),
@@ -95,7 +97,8 @@ impl Letter {
 }
 
 impl Format {
-    /// Makes a format from the texts of its definition.
+    /// Creates a format from the values of an `FMT` message. `letters` has a letter for each column, and `columns` the
+    /// comma-separated names.
     pub(crate) fn new(name: &str, length: usize, letters: &str, columns: &str) -> Self {
         let columns = self::columns(length, letters, columns);
         let time = columns.as_ref().ok().and_then(|columns| time(name, columns));
@@ -103,7 +106,8 @@ impl Format {
         Self { name, length, columns, instance: None, time, topics: HashMap::new() }
     }
 
-    /// Returns the definition of the messages into which this format is converted.
+    /// Returns the definition of this format's messages after conversion. With `is_text` the log is a text log, whose
+    /// numbers become `f64`.
     fn definition(&self, is_text: bool) -> Result<Definition, String> {
         let columns = self.columns.as_ref().map_err(Clone::clone)?;
         let field = |column: &Column| {
@@ -125,7 +129,10 @@ impl Format {
     }
 }
 
-/// Parses the columns. Their letters must be known, and their sizes with the header must add up to `length`.
+/// Parses the columns of a format.
+///
+/// # Errors
+/// Returns the reason if a letter is unknown, or if header and columns do not add up to `length` bytes.
 fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, String> {
     const HEAD: usize = 3;
     let mut names = names.split(',').map(str::trim);
@@ -133,7 +140,7 @@ fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, Str
     for letter in letters.chars() {
         let letter =
             Letter::of(letter).ok_or_else(|| format!("format letter `{letter}` is not known"))?;
-        // A column that has no name cannot be asked for.
+        // A column without a name cannot be selected.
         columns.push(Column { name: names.next().unwrap_or_default().to_owned(), letter });
     }
     let sum = HEAD + columns.iter().map(|column| column.letter.size()).sum::<usize>();
@@ -144,8 +151,8 @@ fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, Str
     }
 }
 
-/// Finds the column with the time since start: the first column, or `T` for the GPS, whose `TimeMS` is the satellites'
-/// time.
+/// Finds the column with the time since boot, and its unit in ns. It is the first column, except in messages of the
+/// GPS, in which `TimeMS` is the satellites' time and `T` the time since boot.
 fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
     const MICROSECOND: i64 = 1_000;
     const MILLISECOND: i64 = 1_000_000;
@@ -153,15 +160,15 @@ fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
         "TimeUS" => Some((0, MICROSECOND)),
         "TimeMS" => Some((0, MILLISECOND)),
         _ if matches!(name, "GPS" | "GPS2") => {
-            let place = columns.iter().position(|column| column.name == "T")?;
-            Some((place, MILLISECOND))
+            let index = columns.iter().position(|column| column.name == "T")?;
+            Some((index, MILLISECOND))
         }
         _ => None,
     }
 }
 
 impl Formats {
-    /// Returns the formats with which every log begins.
+    /// Returns the formats that every log has from the start: `FMT` itself.
     pub(crate) fn new() -> Self {
         let mut formats = Self::default();
         let columns = "Type,Length,Name,Format,Columns";
@@ -173,12 +180,12 @@ impl Formats {
         self.of_type.get(&kind)
     }
 
-    /// Returns the type of the messages with this name.
+    /// Returns the type of messages called `name`, if one is defined.
     pub(crate) fn named(&self, name: &str) -> Option<u8> {
         self.by_name.get(name).copied()
     }
 
-    /// Defines a type, or redefines it; the column that distinguishes its instances stays.
+    /// Defines the format of a type, or replaces it. If the name stays the same, so does the instance column.
     pub(crate) fn define(&mut self, kind: u8, mut format: Format) {
         let before = self.of_type.get(&kind).filter(|before| before.name == format.name);
         format.instance = before.and_then(|before| before.instance);
@@ -186,16 +193,16 @@ impl Formats {
         self.of_type.insert(kind, format);
     }
 
-    /// Sets the units of a type's columns, among which `#` marks the number of the instance.
+    /// Sets the units of a type's columns, a letter for each column. The letter `#` marks the instance column.
     pub(crate) fn units(&mut self, kind: u8, units: &str) {
         let Some(format) = self.of_type.get_mut(&kind) else { return };
         let count = format.columns.as_ref().map_or(0, Vec::len);
-        format.instance = units.find('#').filter(|place| *place < count);
+        format.instance = units.find('#').filter(|index| *index < count);
         format.topics.clear();
     }
 
-    /// Returns the index of the topic for an instance of a type; adds the topic if it is new. Names are `IMU`, then
-    /// `IMU:1` and so on.
+    /// Returns the index of the topic for messages of type `kind` from this instance; adds the topic if it is new. The
+    /// topic of instance 0 is `IMU`, that of instance 1 `IMU:1`. Returns `None` if the type is not defined.
     pub(crate) fn topic(&mut self, kind: u8, instance: i64, is_text: bool) -> Option<usize> {
         let format = self.of_type.get_mut(&kind)?;
         if let Some(&known) = format.topics.get(&instance) {
@@ -207,8 +214,8 @@ impl Formats {
         };
         let definition = format.definition(is_text);
         let topic = Topic { name, kind: String::new(), wire: Wire::Ros1, definition };
-        let place = topic.place_in(&mut self.topics);
-        format.topics.insert(instance, place);
-        Some(place)
+        let index = topic.index_in(&mut self.topics);
+        format.topics.insert(instance, index);
+        Some(index)
     }
 }

@@ -1,7 +1,8 @@
 //! Reads `ArduPilot`'s `DataFlash` logs: the binary form `.bin`, and the text form `.log`.
 //!
-//! Every type of message is a topic; later instances of a sensor are `IMU:1` and so on. Columns whose letters stand for
-//! multiples are divided, as in pymavlink. The multipliers in `MULT` belong to the units, and change no number.
+//! Every type of message is a topic; further instances of a sensor have topics such as `IMU:1`. Columns that are logged
+//! as fixed-point integers are divided by their factor, as pymavlink does. The multipliers of the message `MULT` refer
+//! to units, and are not applied to numbers.
 
 mod binary;
 mod format;
@@ -10,13 +11,13 @@ mod text;
 pub(crate) use binary::Binary;
 pub(crate) use text::Text;
 
-/// The definition of `FMT` itself, with which a log begins.
+/// First bytes of the `FMT` message that defines `FMT` itself, and begins every log.
 pub(crate) const START: &[u8] = b"\xa3\x95\x80\x80\x59FMT\0BBnNZ";
 
-/// Number of bytes within which a log must begin: some loggers write text before it.
+/// Number of bytes at the start of a file in which a log must begin. Some loggers write text before it.
 pub(crate) const LOOKED_AT: u64 = 8192;
 
-/// Returns whether a file is a text log, that is, whether one of its first lines defines `FMT` itself.
+/// Returns whether these are the first bytes of a text log: one of the lines must define `FMT` itself.
 pub(crate) fn is_text(start: &[u8]) -> bool {
     start.split(|&byte| byte == b'\n').any(|line| {
         let mut words = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);

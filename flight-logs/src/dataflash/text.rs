@@ -1,4 +1,5 @@
-//! Reads the text form of the log: each line is a message, which begins with its name. Numbers are already scaled.
+//! Reads `ArduPilot`'s text logs, `.log`: each line is a message, which begins with the name of its type. Numbers are
+//! written as values, not as fixed-point integers.
 
 use super::format::{Format, Formats, Letter};
 use crate::bytes::Bytes;
@@ -8,19 +9,19 @@ use crate::window::{AHEAD, Window};
 use crate::{Entry, Log, Result};
 use std::path::Path;
 
-/// A log that is being read.
+/// Reader of a text log.
 pub(crate) struct Text {
     window: Window,
     faults: Faults,
     formats: Formats,
-    /// Whether there was a definition yet: some loggers write text before the first.
+    /// Whether a definition has been read. Some loggers write other text before the first one.
     is_begun: bool,
     message: Vec<u8>,
-    /// Time of the last message that contained one, in ns.
+    /// Time of the last message that contained a time, in ns.
     time: i64,
 }
 
-/// Name of the message that defines the others.
+/// Name of the messages that define formats.
 const DEFINITION: &str = "FMT";
 
 impl Text {
@@ -35,7 +36,8 @@ impl Text {
         })
     }
 
-    /// Reads a line.
+    /// Processes a line of the log; `at` is its offset in the file. Returns the message's entry, or `None` if the line
+    /// is no message.
     fn line(&mut self, at: u64, line: &str) -> Result<Option<Entry>> {
         let (name, rest) = line.split_once(',').unwrap_or((line, ""));
         let name = name.trim();
@@ -70,18 +72,21 @@ impl Text {
         Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
     }
 
-    /// Reads the columns of a message; returns the number of its instance.
+    /// Parses the columns of a message into `self.message`; returns the number of the message's instance.
+    ///
+    /// # Errors
+    /// Returns the reason if columns are missing, or if one is not a number.
     fn read(&mut self, kind: u8, line: &str) -> std::result::Result<i64, String> {
         self.message.clear();
         let Some(format) = self.formats.get(kind) else { return Ok(0) };
         let Ok(columns) = &format.columns else { return Ok(0) };
         let mut instance = 0;
-        // The last column may hold commas.
+        // The last column, a text, may contain commas.
         let mut words = line.splitn(columns.len().max(1), ',').map(str::trim);
-        for (place, column) in columns.iter().enumerate() {
+        for (index, column) in columns.iter().enumerate() {
             let Some(word) = words.next() else {
                 return Err(format!(
-                    "a message of {place} columns where {} are defined",
+                    "a message of {index} columns where {} are defined",
                     columns.len()
                 ));
             };
@@ -93,24 +98,24 @@ impl Text {
             let number: f64 =
                 word.parse().map_err(|_| format!("column {} is no number", column.name))?;
             self.message.extend(number.to_le_bytes());
-            if format.instance == Some(place) {
+            if format.instance == Some(index) {
                 instance = number as i64;
             }
-            if let Some((_, unit)) = format.time.filter(|(time, _)| *time == place) {
+            if let Some((_, unit)) = format.time.filter(|(time, _)| *time == index) {
                 self.time = (number as i64).saturating_mul(unit);
             }
         }
         Ok(instance)
     }
 
-    /// Reads a definition; returns false if the line is not one.
+    /// Parses the columns of an `FMT` message, and stores the format; returns whether they are valid.
     fn define(&mut self, line: &str) -> bool {
         let mut words = line.splitn(5, ',').map(str::trim);
         let mut word = || words.next().unwrap_or_default();
         let (kind, length) = (word().parse(), word().parse());
         let (name, letters, columns) = (word(), word(), word());
         let (Ok(kind), Ok(length)) = (kind, length) else { return false };
-        // Logs of text leave out the name of the last column of `FMT`, which is defined already.
+        // The `FMT` line for `FMT` itself lacks the name of the last column. Its format is fixed.
         if name != DEFINITION {
             self.formats.define(kind, Format::new(name, length, letters, columns));
         }
@@ -127,12 +132,12 @@ impl Log for Text {
                 return Ok(None);
             }
             let end = left.iter().take(AHEAD).position(|&byte| byte == b'\n');
-            let (own, passed) = match end {
+            let (bytes, passed) = match end {
                 Some(end) => (&left[..end], end + 1),
                 None => (left, left.len().min(AHEAD)),
             };
-            let line = str::from_utf8(own).map(str::to_owned);
-            let at = self.window.place();
+            let line = str::from_utf8(bytes).map(str::to_owned);
+            let at = self.window.offset();
             let is_whole = end.is_some() || self.window.is_at_end();
             self.window.pass(passed);
             match line {

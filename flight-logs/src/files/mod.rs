@@ -1,7 +1,7 @@
-//! Access to files: those of the operating system or, in WebAssembly, those that the page provided.
+//! Access to files of the operating system or, in WebAssembly, to files that the web page provides.
 //!
-//! WebAssembly in a browser has no file system. The page provides what its user dropped, and all readers open it here
-//! by name.
+//! WebAssembly in a browser has no file system. The page provides the files that its user chose, and all readers open
+//! them here by name.
 
 #[cfg(target_family = "wasm")]
 mod lent;
@@ -16,12 +16,12 @@ pub use system::{File, is_dir, is_file, scratch};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Returns whether there is a file of this name that is not empty.
+/// Returns whether a file of this name exists and is not empty.
 pub fn has_bytes(path: &Path) -> bool {
     File::open(path).is_ok_and(|mut file| file.read(&mut [0]).is_ok_and(|read| read > 0))
 }
 
-/// Reads a whole file of text.
+/// Reads a whole file as text.
 ///
 /// # Errors
 /// Returns an error if the file is missing, cannot be read, or is not UTF-8.

@@ -4,17 +4,17 @@ pub use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// Returns whether there is a directory of this name.
+/// Returns whether a directory of this name exists.
 pub fn is_dir(path: &Path) -> bool {
     path.is_dir()
 }
 
-/// Returns whether there is a regular file of this name, which can be read more than once.
+/// Returns whether a regular file of this name exists. A pipe, which can be read only once, is none.
 pub fn is_file(path: &Path) -> bool {
     path.is_file()
 }
 
-/// Creates a nameless file for decompressed bytes, which is deleted when it is closed.
+/// Creates a temporary file without a name, for decompressed bytes. The operating system deletes it when it is closed.
 ///
 /// # Errors
 /// Returns an error if no temporary file can be created.

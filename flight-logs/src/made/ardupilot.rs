@@ -1,11 +1,11 @@
-//! Makes `ArduPilot`'s logs, in binary and in text form, and a telemetry log.
+//! Generates `ArduPilot` logs, binary and text, and a `MAVLink` telemetry log, for tests.
 
 use super::wave;
 
-/// Number of samples in a log; each has a message of each of two sensors.
+/// Number of samples in a log. Each sample is one message of each of two sensors.
 const SAMPLES: u32 = 100;
 
-/// The formats: type, name, letters, columns, and the units of the columns.
+/// Message formats: type, name, letters, column names, and unit letters of the columns.
 const FORMATS: [(u8, &str, &str, &str, &str); 5] = [
     (0x80, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns", ""),
     (0x81, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds", "s---"),
@@ -32,24 +32,24 @@ fn padded(text: &str, size: usize) -> Vec<u8> {
     bytes
 }
 
-/// Returns a message of this type.
+/// Returns a binary message of type `kind` with these columns.
 pub fn dataflash_message(kind: u8, columns: &[&[u8]]) -> Vec<u8> {
     [&[0xa3, 0x95, kind], &columns.concat()[..]].concat()
 }
 
-/// Returns the angular rate of a sensor at a sample.
+/// Returns the angular rate that sensor number `sensor` measures at sample number `sample`.
 pub fn dataflash_rate(sample: u32, sensor: u8) -> f32 {
     (wave(sample) * f64::from(sensor + 1)) as f32
 }
 
-/// Returns the messages of both sensors at a sample.
+/// Returns the binary messages of both sensors for sample number `sample`.
 pub fn dataflash_sample(sample: u32) -> Vec<u8> {
     let time = 1_000_000 + u64::from(sample) * 5000;
     let of = |sensor: u8| {
         let rate = dataflash_rate(sample, sensor).to_le_bytes();
         let hundredths = ((wave(sample) * 1000.0) as i16).to_le_bytes();
         let latitude = (-353_632_620 + sample as i32).to_le_bytes();
-        // 1.5 as a half.
+        // 1.5 as a half-precision float.
         let half = 0x3e00_u16.to_le_bytes();
         dataflash_message(
             0x82,
@@ -59,7 +59,7 @@ pub fn dataflash_sample(sample: u32) -> Vec<u8> {
     [of(0), of(1)].concat()
 }
 
-/// Returns a log of 100 samples of two sensors, an array and a text.
+/// Returns a binary log with 100 samples of two sensors, a message with an array, and one with a text.
 pub fn dataflash() -> Vec<u8> {
     let mut log = Vec::new();
     for (kind, name, letters, columns, _) in FORMATS {
@@ -71,13 +71,13 @@ pub fn dataflash() -> Vec<u8> {
         log.extend(dataflash_message(0x81, &[&[0; 8], &[kind], &both]));
     }
     log.extend(dataflash_message(0x84, &[&[0; 8], &padded("Copter, 4.5", 64)]));
-    let array: Vec<u8> = (0..32_i16).flat_map(|own| (own - 16).to_le_bytes()).collect();
+    let array: Vec<u8> = (0..32_i16).flat_map(|item| (item - 16).to_le_bytes()).collect();
     log.extend(dataflash_message(0x83, &[&[0; 8], &array]));
     log.extend((0..SAMPLES).flat_map(dataflash_sample));
     log
 }
 
-/// Returns the log as text, without the array, which text logs do not have.
+/// Returns the log of [`dataflash`] in text form, without the array, which text logs do not have.
 pub fn dataflash_text() -> String {
     let mut log = "\nArduCopter V4.5\n".to_owned();
     let mut line = |line: String| log.extend([&line, "\n"]);
@@ -100,7 +100,8 @@ pub fn dataflash_text() -> String {
     log
 }
 
-/// Returns a packet of version 1, with the time before it.
+/// Returns a `MAVLink` 1 packet after its time of arrival in µs, as in a `.tlog`. `extra` is the last byte of the
+/// checksum's input.
 pub fn packet(time: u64, system: u8, number: u8, payload: &[u8], extra: u8) -> Vec<u8> {
     let checked = [&[payload.len() as u8, 0, system, 1, number], payload].concat();
     let mut sum = 0xffff_u16;
@@ -113,7 +114,7 @@ pub fn packet(time: u64, system: u8, number: u8, payload: &[u8], extra: u8) -> V
     [&time.to_be_bytes()[..], &[0xfe], &checked, &sum.to_le_bytes()].concat()
 }
 
-/// Returns a telemetry log with 100 `RAW_IMU` from each of two systems, and 100 packets of an unknown message.
+/// Returns a telemetry log with 100 `RAW_IMU` messages from each of two systems, and 100 packets of an unknown message.
 pub fn tlog() -> Vec<u8> {
     const EXTRA: u8 = 144;
     let mut log = Vec::new();

@@ -1,21 +1,22 @@
-//! Layouts of common messages, with the fields in the order of their bytes.
+//! Layouts of common `MAVLink` messages, and the packets' checksum.
 
 use crate::definition::Definition;
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// A known message.
+/// Layout of a `MAVLink` message.
 pub(crate) struct Message {
     pub name: &'static str,
-    /// Last byte of the checksum's input. It depends on the layout, so the checksum fails if the other end has another
-    /// one.
+    /// The byte `CRC_EXTRA`, which the checksum covers after the packet. It depends on the layout, so that the checksum
+    /// fails if the sender's layout differs.
     pub extra: u8,
-    /// Length of all its fields, in bytes.
+    /// Length of all fields together, in bytes.
     pub length: usize,
     pub definition: Definition,
 }
 
-/// Number, name and fields of each message. Fields after `|` were added later and may be missing.
+/// Number, name and fields of each message, the fields in the order of their bytes. Fields after `|` are extensions:
+/// older senders leave them out.
 #[rustfmt::skip]
 const MESSAGES: &[(u32, &str, &str)] = &[
     (0, "HEARTBEAT", "uint32_t custom_mode; uint8_t type autopilot base_mode system_status mavlink_version"),
@@ -52,7 +53,7 @@ const MESSAGES: &[(u32, &str, &str)] = &[
 ];
 
 impl Message {
-    /// Returns the message with this number.
+    /// Returns the layout of the message with this number; `None` if the message is not listed.
     pub(crate) fn of(number: u32) -> Option<&'static Self> {
         static ALL: OnceLock<HashMap<u32, Message>> = OnceLock::new();
         let all = || {
@@ -85,7 +86,7 @@ impl Message {
     }
 }
 
-/// Parses fields from a text `type name name; type name`; returns name and type of each.
+/// Parses `type name name; type name`; returns type and name of each field.
 fn fields(text: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
     text.split(';').flat_map(|group| {
         let mut words = group.split_whitespace();
@@ -104,7 +105,7 @@ fn size(kind: &str) -> Option<usize> {
     })
 }
 
-/// Checksum of packets, CRC-16/MCRF4XX.
+/// Running checksum of a packet, CRC-16/MCRF4XX.
 #[derive(Clone, Copy)]
 pub(crate) struct Checksum(pub u16);
 
@@ -133,7 +134,7 @@ mod tests {
         let mut check = Checksum::default();
         check.take(b"123456789");
         assert_eq!(check.0, 0x6f91);
-        // As `common.xml` makes them.
+        // The values that the generator of MAVLink computes from `common.xml`.
         for (number, extra, length) in
             [(0, 50, 9), (26, 170, 24), (27, 144, 29), (30, 39, 28), (31, 246, 48), (105, 93, 63)]
         {

@@ -1,8 +1,8 @@
-//! Reads telemetry logs of a ground station, `.tlog`: packets of `MAVLink` 1 and 2, each after the time at which it
-//! arrived.
+//! Reads telemetry logs of a ground station, `.tlog`: packets of `MAVLink` 1 and 2, each preceded by its time of
+//! arrival.
 //!
-//! Every common message is a topic; those of a second sender are `ATTITUDE:1` and so on. Packets of other messages are
-//! skipped.
+//! Every common message is a topic; the same message from a second sender is on a topic of its own, such as
+//! `ATTITUDE:1`. Packets of other messages are skipped.
 
 mod messages;
 
@@ -16,47 +16,47 @@ use messages::{Checksum, Message};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Number of bytes in the time before a packet: µs since 1970, big-endian.
+/// Number of bytes of the time before a packet: µs since 1970, big-endian.
 const TIME: usize = 8;
 
-/// A log that is being read.
+/// Reader of a telemetry log.
 pub(crate) struct Mavlink {
     window: Window,
     faults: Faults,
     topics: Vec<Topic>,
-    /// Index of the topic for each message, system and component.
+    /// Index in `topics` for each message number, with system and component of its sender.
     senders: HashMap<(u32, [u8; 2]), usize>,
     message: Vec<u8>,
-    /// Number of packets of unknown messages.
+    /// Number of packets skipped because their messages are unknown.
     unknown: u64,
-    /// Offset at which the present damage began.
+    /// Offset of the first byte of the range that is being skipped as damaged.
     damaged: Option<u64>,
 }
 
-/// A packet, and the time before it.
+/// A packet, and the time of its arrival.
 struct Packet<'a> {
     microseconds: u64,
-    /// System and component that sent it.
+    /// System and component that sent the packet.
     sender: [u8; 2],
     number: u32,
     payload: &'a [u8],
-    /// The checksum's input except for the extra byte, and the checksum.
+    /// Bytes that the checksum covers, without the byte `CRC_EXTRA`.
     checked: &'a [u8],
     checksum: u16,
-    /// Total length in bytes, including the time and a signature.
+    /// Length of time, packet and signature, in bytes.
     length: usize,
 }
 
-/// What the next bytes are.
+/// Classification of the next bytes in the log.
 enum Ahead<'a> {
     Packet(Packet<'a>),
-    /// A packet that is cut off by the end of the file.
+    /// A packet that the end of the file cuts off.
     Cut,
-    /// Bytes that begin no packet.
+    /// Bytes that are no packet.
     Odd,
 }
 
-/// Examines the next bytes.
+/// Classifies the next bytes in the log, without regard to the checksum.
 fn look(left: &[u8]) -> Ahead<'_> {
     let Some((time, packet)) = left.split_first_chunk::<TIME>() else { return Ahead::Cut };
     let (head, signature) = match packet {
@@ -87,7 +87,8 @@ fn look(left: &[u8]) -> Ahead<'_> {
 }
 
 impl Packet<'_> {
-    /// Returns whether the checksum is right, if the message is known; otherwise whether another packet follows.
+    /// Returns whether the packet is valid, where `left` starts with the packet. If its message is known, the checksum
+    /// decides, otherwise whether another packet follows.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
             Some(message) => {
@@ -101,13 +102,13 @@ impl Packet<'_> {
     }
 }
 
-/// Returns whether these bytes begin like a packet, or the file ends.
+/// Returns whether these bytes begin like a packet, or are too few to tell.
 fn is_followed(next: &[u8]) -> bool {
     next.get(TIME).is_none_or(|start| matches!(start, 0xfd | 0xfe))
 }
 
-/// Returns whether a file is a log, that is, whether it begins with a packet from the years 2000 to 2100 and continues
-/// like one.
+/// Returns whether these are the first bytes of a telemetry log: a packet from the years 2000 to 2100, followed by
+/// another packet.
 pub(crate) fn is_log(start: &[u8]) -> bool {
     const YEARS: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
     match look(start) {
@@ -133,7 +134,8 @@ impl Mavlink {
         })
     }
 
-    /// Reads the next packet, if there is one. Returns its length, with its topic and time if the message is known.
+    /// Reads the packet at the current position; returns `None` if there is no valid one. The result is the packet's
+    /// length and, if its message is known, the index of its topic and its time in ns.
     fn packet(&mut self) -> Option<(usize, Option<(usize, i64)>)> {
         let left = self.window.left();
         let Ahead::Packet(packet) = look(left) else { return None };
@@ -143,11 +145,11 @@ impl Mavlink {
         let Some(message) = Message::of(packet.number) else { return Some((packet.length, None)) };
         self.message.clear();
         self.message.extend(packet.payload);
-        // Zeros at the end are not sent, nor what the sender did not know of.
+        // Senders leave out zeros at the end, and extensions that they do not know.
         self.message.resize(message.length.max(packet.payload.len()), 0);
-        let own = (packet.number, packet.sender);
+        let sender = (packet.number, packet.sender);
         let before = self.senders.keys().filter(|(number, _)| *number == packet.number).count();
-        let topic = *self.senders.entry(own).or_insert_with(|| {
+        let topic = *self.senders.entry(sender).or_insert_with(|| {
             let name = match before {
                 0 => message.name.to_owned(),
                 before => format!("{}:{before}", message.name),
@@ -167,13 +169,13 @@ impl Log for Mavlink {
     fn next(&mut self) -> Result<Option<Entry>> {
         loop {
             self.window.fill(&mut self.faults)?;
-            let place = self.window.place();
+            let offset = self.window.offset();
             let is_end = self.window.left().is_empty();
             let taken = if is_end { None } else { self.packet() };
             if (is_end || taken.is_some())
                 && let Some(damaged) = self.damaged.take()
             {
-                let what = format!("{} bytes are no packets", place - damaged);
+                let what = format!("{} bytes are no packets", offset - damaged);
                 self.faults.skip(damaged, what)?;
             }
             if is_end {
@@ -187,7 +189,7 @@ impl Log for Mavlink {
             match taken {
                 Some((length, Some((topic, time)))) => {
                     self.window.pass(length);
-                    return Ok(Some(Entry { topic, time, at: place, sequence: None }));
+                    return Ok(Some(Entry { topic, time, at: offset, sequence: None }));
                 }
                 Some((length, None)) => {
                     self.window.pass(length);
@@ -197,10 +199,10 @@ impl Log for Mavlink {
                     && matches!(look(self.window.left()), Ahead::Cut) =>
                 {
                     self.window.pass(usize::MAX);
-                    self.faults.end(place, "the log ends within a packet")?;
+                    self.faults.end(offset, "the log ends within a packet")?;
                 }
                 None => {
-                    self.damaged.get_or_insert(place);
+                    self.damaged.get_or_insert(offset);
                     self.window.pass(1);
                 }
             }

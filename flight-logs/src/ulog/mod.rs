@@ -1,4 +1,5 @@
-//! Reads PX4 flight logs, each as a whole. Each registered message is a topic; later instances are `topic:1` and so on.
+//! Reads PX4's `ULog` files, each as a whole. Each registered message is a topic; further instances of a sensor have
+//! topics such as `sensor_accel:1`.
 
 mod scan;
 
@@ -11,27 +12,30 @@ use scan::{DATA, HEADER, Scan, Series};
 use std::ops::Range;
 use std::path::Path;
 
-/// The first bytes of a log.
+/// First bytes of a `ULog` file.
 pub(crate) const START: &[u8] = b"ULog";
 
-/// Error text for a file that starts with other bytes.
+/// Error text for a file `.ulg` that starts with other bytes.
 pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` and 12 bytes more";
 
-/// A log in memory.
+/// Reader of a `ULog` file, which is held in memory.
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
     topics: Vec<Topic>,
-    /// Layout of the messages of each topic.
+    /// Layout of the messages of each topic, by its index in `topics`.
     series: Vec<Series>,
-    /// The valid data messages, in order: index of the topic, and offset in the file.
+    /// Valid data messages that are still to be read: index of the topic, and offset in the file.
     messages: std::vec::IntoIter<(usize, usize)>,
-    /// The content of the current message.
+    /// Range in `bytes` of the current message's content.
     present: Range<usize>,
     faults: Faults,
 }
 
 impl Ulog {
-    /// Reads a log, and counts its faults.
+    /// Reads a whole log, and notes its faults.
+    ///
+    /// # Errors
+    /// Returns an error if the file is not a `ULog` file, or if it is damaged and damage is refused.
     pub(crate) fn open(path: &Path, mut faults: Faults) -> Result<Self> {
         let refused = |kind| Err(Error::of(path, kind));
         let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! Finds the messages of a log, and decides which of them can be read.
+//! Finds the messages in a `ULog` file, and determines which of them can be read.
 
 use super::super::definition::{Definition, Path, declared};
 use super::super::topic::Topic;
@@ -7,12 +7,12 @@ use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 
-/// Length of the file's header, in bytes.
+/// Length of the file header, in bytes.
 pub(crate) const HEADER: usize = 16;
-/// Number of bytes before the content of a data message: length, kind and id.
+/// Number of bytes before the content of a data message: length, kind and topic id.
 pub(crate) const DATA: usize = 5;
 
-/// What was found in a log besides its data.
+/// Faults and dropouts found in a log.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     unregistered: Found,
@@ -20,20 +20,20 @@ pub(crate) struct Findings {
     lengths: Found,
     damaged: Found,
     dropouts: Dropouts,
-    /// Offset of the last message, if the file ends within it.
+    /// Offset of the last message if the file ends within it.
     pub(crate) cut: Option<usize>,
-    /// Range of the first damage: from its first byte to the next message.
+    /// Range of the first damage: from its first byte to the next valid message.
     pub(crate) damage: Option<Range<usize>>,
 }
 
-/// Count of messages that were skipped, and offset of the first.
+/// Number of messages skipped for one reason, and the offset of the first.
 #[derive(Debug, Default)]
 struct Found {
     count: u64,
     first: usize,
 }
 
-/// Dropouts: times in which the logger could not write.
+/// Number and length of the logger's dropouts, times in which it could not write.
 #[derive(Debug, Default)]
 struct Dropouts {
     count: u64,
@@ -42,15 +42,15 @@ struct Dropouts {
 }
 
 impl Found {
-    fn at(&mut self, place: usize) {
+    fn at(&mut self, offset: usize) {
         if self.count == 0 {
-            self.first = place;
+            self.first = offset;
         }
         self.count += 1;
     }
 }
 
-/// Writes a line for each finding.
+/// Writes one line for each kind of fault that was found.
 impl fmt::Display for Findings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Dropouts { count, milliseconds, longest } = self.dropouts;
@@ -75,39 +75,40 @@ impl fmt::Display for Findings {
     }
 }
 
-/// A message: its offset, its kind, and the range of its content.
+/// A message in the file: its offset, its kind, and the range of its content.
 struct Message {
     at: usize,
     kind: u8,
     content: Range<usize>,
 }
 
-/// A pass over a log.
+/// State of a pass over a log, and its results.
 pub(crate) struct Scan<'a> {
     bytes: &'a [u8],
-    /// The definitions by name, with a line for each field.
+    /// Format definitions by name, with a line for each field.
     formats: HashMap<String, String>,
-    /// Index in `topics` of each registered id; ids may be registered anew.
+    /// Index in `topics` of each registered id. A log may register an id again.
     registered: HashMap<u16, usize>,
-    /// The registered topics, in order.
+    /// Topics in the order in which they were registered.
     pub topics: Vec<Topic>,
-    /// Layout of the messages of each topic.
+    /// Layout of the messages of each topic, by its index in `topics`.
     pub series: Vec<Series>,
-    /// The valid data messages, in order: index of the topic, and offset in the file.
+    /// Valid data messages, in the order of the file: index of the topic, and offset in the file.
     pub messages: Vec<(usize, usize)>,
     pub findings: Findings,
 }
 
-/// The layout of a topic's messages.
+/// Layout of a topic's data messages.
 pub(crate) struct Series {
-    /// Path to the time at which a message was logged.
+    /// Path to the field with the time at which a message was logged.
     pub time: Path,
-    /// Length of a message without the padding at its end, and with it; the logger usually leaves the padding out.
+    /// Length of a message without and with the padding at its end, in bytes. The logger usually leaves the padding
+    /// out.
     pub lengths: (usize, usize),
 }
 
 impl<'a> Scan<'a> {
-    /// Reads all messages of a log, which must be at least as long as its header.
+    /// Finds all messages in a log, which must be at least as long as its header.
     pub(crate) fn run(bytes: &'a [u8]) -> Self {
         let mut scan = Self {
             bytes,
@@ -127,14 +128,15 @@ impl<'a> Scan<'a> {
         scan
     }
 
-    /// Returns the offset at which data was appended later, such as after a crash.
+    /// Returns the offset from which data was appended to the finished log, as PX4 does after a crash; `None` if there
+    /// is none.
     fn appended(&self) -> Option<usize> {
         let first = self.header(HEADER, self.bytes.len()).filter(|first| first.kind == b'B')?;
         let content = &self.bytes[first.content];
         let is_appended = content.get(8)? & 1 == 1;
-        let place = u64::from_le_bytes(content.get(16..24)?.try_into().ok()?);
-        let place = usize::try_from(place).ok()?;
-        (is_appended && (HEADER..self.bytes.len()).contains(&place)).then_some(place)
+        let offset = u64::from_le_bytes(content.get(16..24)?.try_into().ok()?);
+        let offset = usize::try_from(offset).ok()?;
+        (is_appended && (HEADER..self.bytes.len()).contains(&offset)).then_some(offset)
     }
 
     fn part(&mut self, part: Range<usize>, may_be_cut: bool) {
@@ -165,8 +167,8 @@ impl<'a> Scan<'a> {
         (content.end <= end).then_some(Message { at, kind, content })
     }
 
-    /// Returns the message at this offset: a valid one, or one that can be skipped as another message or the end
-    /// follows it.
+    /// Returns the message at this offset, if it is valid, or if another message or the end follows it, so that it can
+    /// be skipped.
     fn accepted(&self, at: usize, end: usize) -> Option<Message> {
         let message = self.header(at, end)?;
         if self.is_good(&message) {
@@ -178,7 +180,7 @@ impl<'a> Scan<'a> {
         (is_one && is_led).then_some(message)
     }
 
-    /// Returns whether valid messages follow each other from this offset on.
+    /// Returns whether three valid messages follow one another from this offset on.
     fn goes_on(&self, at: usize, end: usize) -> bool {
         const ENOUGH: usize = 3;
         let mut next = at;
@@ -200,7 +202,7 @@ impl<'a> Scan<'a> {
         is_known(message) && (message.kind != b'D' || fits().is_some())
     }
 
-    /// Returns the id of a data message, and the number of bytes after it.
+    /// Returns the topic id of a data message, and the number of bytes after the id.
     fn data_of(&self, message: &Message) -> Option<(u16, usize)> {
         let id = self.bytes[message.content.clone()].first_chunk()?;
         Some((u16::from_le_bytes(*id), message.content.len() - 2))
@@ -230,16 +232,16 @@ impl<'a> Scan<'a> {
                     dropouts.longest = dropouts.longest.max(milliseconds);
                 }
             }
-            // Parameters, messages in words and the like are not asked for.
+            // Parameters, logged text and other kinds of messages are ignored.
             _ => {}
         }
     }
 
-    /// Stores a definition, `name:type field;type[8] field;`.
+    /// Stores a format definition, `name:type field;type[8] field;`. An invalid one is counted as a fault.
     fn define(&mut self, at: usize, content: &[u8]) {
         let defined = str::from_utf8(content).ok().and_then(|text| text.split_once(':'));
         let fields = |fields: &str| fields.replace(';', "\n");
-        let defined = defined.map(|(name, own)| (name.to_owned(), fields(own)));
+        let defined = defined.map(|(name, text)| (name.to_owned(), fields(text)));
         let are_fields = |fields: &str| {
             fields.lines().all(|field| field.trim().is_empty() || declared(field).is_some())
         };
@@ -250,7 +252,8 @@ impl<'a> Scan<'a> {
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
-        /// Zeros, more bytes than the longest message has.
+        /// Zeros in place of a message, to measure how long its definition says it is. A message has at most 65 535
+        /// bytes.
         const NOTHING: &[u8] = &[0; 1 << 16];
         let registered = || {
             let (&[instance, low, high], name) = content.split_first_chunk()?;
@@ -273,15 +276,15 @@ impl<'a> Scan<'a> {
             self.findings.formats.at(at);
             return;
         };
-        let place = topic.place_in(&mut self.topics);
-        if place == self.series.len() {
+        let index = topic.index_in(&mut self.topics);
+        if index == self.series.len() {
             self.series.push(series);
         }
-        self.registered.insert(id, place);
+        self.registered.insert(id, index);
     }
 }
 
-/// Returns whether a message's kind is known, and its length fits the kind.
+/// Returns whether the message's kind exists in `ULog`, with this length.
 fn is_known(message: &Message) -> bool {
     let length = message.content.len();
     match message.kind {

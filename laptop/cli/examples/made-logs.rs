@@ -1,4 +1,5 @@
-//! Writes one hand-made log of each kind, for checks in other languages.
+//! Writes one small generated log of each format into the directory given as the argument, for the check of the web
+//! page.
 
 use flight_logs::made as logs;
 use std::{env, fs, io, path::Path};

@@ -1,4 +1,4 @@
-//! Options for the source of samples, and for converting events between formats.
+//! Options that choose the recording and its channels, and options for converting events between formats.
 
 use anyhow::Result;
 use clap::Args;
@@ -10,13 +10,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use tempfile::NamedTempFile;
 
-/// Options for events that are converted from one format to another.
+/// Options for converting events from one format to another.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct StreamOptions {
-    /// Subtract the first tick from all: some formats count from 0
+    /// Subtract the first event's tick from all ticks, because some formats count from 0
     #[arg(long)]
     pub from_zero: bool,
-    /// Leave out, and count, events that the output format cannot express
+    /// Drop and count events that the output format cannot express, instead of stopping
     #[arg(long)]
     pub drop: bool,
 }
@@ -37,7 +37,7 @@ pub(crate) struct ChannelOptions {
     /// Column of a CSV table, by name or by number from 1; `encode` takes several
     #[arg(long, help_heading = "Input")]
     column: Vec<String>,
-    /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; of a log `TOPIC.FIELD`
+    /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; in a log, names have the form `TOPIC.FIELD`
     #[arg(
         long,
         visible_alias = "channel",
@@ -46,48 +46,49 @@ pub(crate) struct ChannelOptions {
         help_heading = "Input"
     )]
     columns: Vec<String>,
-    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: found by
-    /// the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use; in a ROS log: the time at which a message was
-    /// recorded
+    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: the column
+    /// with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas gives to times; in a ROS log: the time at which a
+    /// message was recorded
     #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     time: Option<String>,
-    /// Unit of the time column; default: taken from its name, such as `time (us)` or `stamp_ns`, or from its values
+    /// Unit of the time column; default: the unit in its name, such as `time (us)` or `stamp_ns`, or else a guess from
+    /// its values
     #[arg(long, value_name = "UNIT", value_parser = units(), help_heading = "Input")]
     time_unit: Option<TimeUnit>,
-    /// Separator of columns: `,` `;` `|` `tab` `space`; default: found in the header
+    /// Separator of columns: `,` `;` `|` `tab` `space`; default: the one that the header uses
     #[arg(long, help_heading = "Input")]
     delimiter: Option<Delimiter>,
-    /// Topic of a log; `:1` after it means the second instance of a sensor
+    /// Topic of a log; `:1` after it selects the second instance of a sensor
     #[arg(long, help_heading = "Input")]
     topic: Option<String>,
-    /// Field of that topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several
+    /// Field of the topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several
     #[arg(long, help_heading = "Input")]
     field: Vec<String>,
-    /// Several fields at once: `gyro_rad[0],gyro_rad[1]`
+    /// Several fields of the topic at once: `gyro_rad[0],gyro_rad[1]`
     #[arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")]
     fields: Vec<String>,
-    /// Samples a second, for a recording without times
+    /// Sample rate in Hz, for a recording without times
     #[arg(long, value_parser = above_zero, help_heading = "Input")]
     rate: Option<f64>,
-    /// Report time steps that are longer than this many usual steps
+    /// Report time steps longer than this multiple of the usual step
     #[arg(long, default_value_t = 1.5, value_parser = above_zero, help_heading = "Input")]
     gap: f64,
-    /// Skip and count rows in which a value is missing (empty, `NA`) or not finite, instead of stopping; they emit
-    /// nothing
+    /// Skip and count rows in which a value is missing (empty, `NA`) or not finite, instead of stopping; no spikes are
+    /// emitted for skipped rows
     #[arg(long, help_heading = "Input")]
     skip_non_finite: bool,
-    /// Read what is whole of a log that is cut short or damaged, and a table up to its last whole line
+    /// Read the undamaged part of a log that is cut short or damaged, and a table up to its last whole line
     #[arg(long, help_heading = "Input")]
     accept_cut: bool,
 }
 
-/// Parses the short name of a unit of time.
+/// Returns a parser of a unit of time: `s`, `ms`, `us` or `ns`.
 fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
     PossibleValuesParser::new(["s", "ms", "us", "ns"]).map(|name| match name.as_str() {
         "ms" => TimeUnit::Ms,
         "us" => TimeUnit::Us,
         "ns" => TimeUnit::Ns,
-        // The parser lets no other name pass.
+        // `PossibleValuesParser` accepts no other name.
         _ => TimeUnit::S,
     })
 }
@@ -103,22 +104,22 @@ impl InputOptions {
 }
 
 impl ChannelOptions {
-    /// Converts the options to the library's form, for the recording at `input`.
+    /// Converts the options to the type that the library `lab` takes, for the recording at `input`.
     pub(crate) fn of(&self, input: &Path) -> input::InputOptions {
-        let own = self.clone();
+        let options = self.clone();
         let channel = input::ChannelOptions {
-            column: own.column,
-            columns: own.columns,
-            time: own.time,
-            time_unit: own.time_unit,
-            delimiter: own.delimiter,
-            topic: own.topic,
-            field: own.field,
-            fields: own.fields,
-            rate: own.rate,
-            gap: own.gap,
-            skip_non_finite: own.skip_non_finite,
-            accept_cut: own.accept_cut,
+            column: options.column,
+            columns: options.columns,
+            time: options.time,
+            time_unit: options.time_unit,
+            delimiter: options.delimiter,
+            topic: options.topic,
+            field: options.field,
+            fields: options.fields,
+            rate: options.rate,
+            gap: options.gap,
+            skip_non_finite: options.skip_non_finite,
+            accept_cut: options.accept_cut,
         };
         input::InputOptions { input: input.to_owned(), channel }
     }

@@ -1,4 +1,5 @@
-//! The command line of the laptop program: reads arguments and prints text. The work itself is done in `lab`.
+//! The command line of the program `spikewire`: parses arguments and prints text. The work itself is done by the
+//! library `lab`.
 
 mod commands;
 mod inputs;
@@ -11,7 +12,7 @@ use clap::{Parser, Subcommand};
 use commands::{capture, convert, decode, encode, info, listen, score, signal};
 use std::process::ExitCode;
 
-/// Spikes from recordings and back, with the code that flies.
+/// Encode recordings as spikes and decode them, with the code that runs on the flight controller.
 #[derive(Parser)]
 #[command(name = "spikewire", version)]
 struct Program {
@@ -39,10 +40,11 @@ enum Command {
     Emit(commands::emit::Emit),
 }
 
-/// Exit status of a command that fails, the same as for wrong options.
+/// Exit status of a failed command; clap exits with the same status if options are wrong.
 const FAILURE: u8 = 2;
 
-/// Runs the program with the arguments of the process.
+/// Parses the process's arguments, runs the command, and returns the exit status: 0 on success, 2 after an error, which
+/// is printed on standard error.
 pub fn run() -> ExitCode {
     let command = Program::parse().command;
     let done = stop::handle().and_then(|()| match command {
@@ -66,7 +68,7 @@ pub fn run() -> ExitCode {
     inputs::delete_copy();
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        // Whoever reads has read enough.
+        // A reader that closes the pipe early, such as `head`, is no error.
         Err(error) if words::is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {}", words::of(&error));

@@ -1,4 +1,4 @@
-//! A status line on the terminal whose counts grow while events arrive.
+//! A status line on the terminal, which shows counts and rates of events while they arrive.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::events::Stream;
@@ -6,13 +6,12 @@ use std::fmt::Write;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
-/// Time between two updates of the line.
+/// Time between two updates of the status line.
 const PERIOD: Duration = Duration::from_millis(500);
-/// Maximum number of addresses whose rates are shown.
+/// Maximum number of addresses whose event rates are shown.
 const ADDRESSES: usize = 6;
 
-/// A status line on standard error. It shows nothing if standard error is no terminal, or if the output goes to the
-/// same terminal.
+/// A status line on standard error, shown only if standard error is a terminal and the command's output goes elsewhere.
 pub(crate) struct Live {
     line: Option<ProgressBar>,
     shown: Instant,
@@ -22,7 +21,7 @@ pub(crate) struct Live {
 }
 
 impl Live {
-    /// Makes an empty line; `is_output_shown` says that the output goes to standard output.
+    /// Creates a status line without text. Set `is_output_shown` if the command's output goes to standard output.
     pub(crate) fn new(is_output_shown: bool) -> Self {
         let is_wanted =
             io::stderr().is_terminal() && !(is_output_shown && io::stdout().is_terminal());
@@ -34,7 +33,7 @@ impl Live {
         Self { line, shown: Instant::now(), counts: Vec::new(), bytes: 0 }
     }
 
-    /// Shows the counts, if the last update is long enough ago.
+    /// Updates the counts on the terminal if at least [`PERIOD`] has passed since the last update.
     pub(crate) fn update(&mut self, stream: &Stream) {
         let elapsed = self.shown.elapsed();
         if let Some(line) = self.line.as_ref().filter(|_| elapsed >= PERIOD) {

@@ -1,4 +1,4 @@
-//! The program `spikewire`: encodes recordings as spikes, decodes them, and repeats the paper's benchmark.
+//! The program `spikewire`: encodes recordings as spikes, decodes them, tunes the encoders, and listens to boards.
 
 use std::process::ExitCode;
 

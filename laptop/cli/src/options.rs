@@ -1,4 +1,4 @@
-//! Command-line options made from the catalogue's descriptions of parameters.
+//! Command-line options generated from the catalogue, which describes each scheme's parameters.
 
 use crate::words;
 use anyhow::{Result as Checked, bail};
@@ -13,40 +13,45 @@ use std::fmt::{Display, Write as _};
 use std::io::Write as _;
 use std::str::FromStr;
 
-/// The scheme to run and its settings, from the command line; a file completes what is not given there.
+/// Options that choose the scheme, its sample type and its parameters. Values that are not on the command line are
+/// taken from the file of `--params`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Coding {
-    /// Scheme; may be left out if --params names it
+    /// Encoding scheme; may be left out if --params names it
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8; default: f32
     #[arg(long)]
     sample: Option<SampleType>,
-    /// File of parameters (TOML), as `tune --emit toml` writes it; options on the command line override it
+    /// File of parameters (TOML), as written by `tune --emit toml`; options on the command line override it
     #[arg(long, value_name = "FILE", value_parser = read)]
     params: Option<File>,
     #[command(flatten)]
     parameters: SchemeOptions,
 }
 
-/// Parses a whole number, 0 or more.
+/// Parses an unsigned integer.
+///
+/// # Errors
+/// Returns a message if the text is not an integer, is negative, or is too large for `T`.
 pub(crate) fn whole<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| "must be a whole number, 0 or more".to_owned())
 }
 
-/// Parses the value of `--params`: reads the file at this path.
+/// Reads the file of parameters at `path`, the value of `--params`.
 pub(crate) fn read(path: &str) -> Result<File, String> {
     File::read(path).map_err(|error| words::of_lab(&error))
 }
 
-/// The scheme if one was named, the sample type, and the parameters given.
+/// The scheme if one was named, the sample type, and the parameters that were given.
 pub(crate) type Chosen = (Option<Scheme>, SampleType, Asked);
 
 impl Coding {
-    /// Returns the scheme if one is named, the sample type and the parameters.
+    /// Returns the scheme if one is named, the sample type and the parameters, from the command line and the file of
+    /// `--params`.
     ///
     /// # Errors
-    /// Returns an error if the file is for another scheme than the one named.
+    /// Returns an error if `--scheme` and the file name different schemes.
     pub(crate) fn chosen(&self) -> Checked<Chosen> {
         let Self { scheme, sample, params, parameters } = self;
         let mut chosen = (*scheme, sample.unwrap_or_default(), parameters.0.clone());
@@ -58,10 +63,10 @@ impl Coding {
         Ok(chosen)
     }
 
-    /// Returns the scheme, the sample type and the parameters.
+    /// Returns the scheme, the sample type and the parameters, from the command line and the file of `--params`.
     ///
     /// # Errors
-    /// Returns an error if no scheme is named, or if the file is for another one.
+    /// Returns an error if neither names a scheme, or if the two name different ones.
     pub(crate) fn one(&self) -> Checked<(Scheme, SampleType, Asked)> {
         let (scheme, sample, parameters) = self.chosen()?;
         let Some(scheme) = scheme else {
@@ -71,16 +76,16 @@ impl Coding {
         Ok((scheme, sample, parameters))
     }
 
-    /// Returns whether a scheme is named.
+    /// Returns whether `--scheme` or `--params` is given.
     pub(crate) fn is_named(&self) -> bool {
         self.scheme.is_some() || self.params.is_some()
     }
 }
 
-/// Returns the scheme of a file.
+/// Returns the scheme of a file of parameters.
 ///
 /// # Errors
-/// Returns an error if `named` is another scheme.
+/// Returns an error if `--scheme` is given (`named`) and differs.
 pub(crate) fn agreed(file: &File, named: Option<Scheme>) -> Checked<Scheme> {
     match named {
         Some(named) if named != file.scheme => {
@@ -90,16 +95,17 @@ pub(crate) fn agreed(file: &File, named: Option<Scheme>) -> Checked<Scheme> {
     }
 }
 
-/// Parses the name of a scheme.
+/// Returns a parser of a scheme's name, whose help lists all schemes.
 pub(crate) fn schemes() -> MapValueParser<PossibleValuesParser, fn(String) -> Scheme> {
     let values = catalogue::INFO.iter().map(|info| PossibleValue::new(info.name).help(info.words));
     PossibleValuesParser::new(values.collect::<Vec<_>>()).map(|name| {
-        // The parser lets no other name pass.
+        // `PossibleValuesParser` accepts no other name.
         Scheme::named(&name).unwrap_or_default()
     })
 }
 
-/// Turns a type that holds [`Asked`] into a group of clap options: declares them, and reads them.
+/// Implements clap's traits for a newtype around [`Asked`], so that it can be flattened into a command's options.
+/// `$declare` adds the options to a command; `$read` makes the [`Asked`] from the parsed arguments.
 macro_rules! option_group {
     ($name:ident, $declare:expr, $read:expr) => {
         impl clap::Args for $name {
@@ -129,7 +135,7 @@ macro_rules! option_group {
 }
 pub(crate) use option_group;
 
-/// The parameters that a user gave, for any scheme.
+/// Options for the parameters of all schemes.
 #[derive(Clone, Debug)]
 pub(crate) struct SchemeOptions(pub Asked);
 
@@ -150,7 +156,8 @@ option_group!(
 const PARAMETERS: &str = "Parameters";
 const CALIBRATION: &str = "Instead of calibration";
 
-/// Adds an option for each parameter that `is_taken` accepts; schemes that share a parameter's name share the option.
+/// Adds an option to `command` for each parameter of any scheme that `is_taken` accepts. Schemes with a parameter of
+/// the same name share one option.
 pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) -> Command {
     for (name, owners) in parameters(is_taken) {
         let Some(&(_, parameter)) = owners.first() else { continue };
@@ -175,7 +182,7 @@ pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) ->
     command
 }
 
-/// Returns the parameters that were given, of those that `is_taken` accepts.
+/// Returns the parameters that `is_taken` accepts and that were given on the command line.
 pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> Asked {
     let mut asked = Asked::default();
     for (name, owners) in parameters(is_taken) {
@@ -190,7 +197,11 @@ pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> A
     asked
 }
 
-/// Parses the value of an option. `tune` also accepts [`FREE`] for a filter.
+/// Parses the value of a parameter's option. For a filter, [`FREE`] is accepted too: `tune` then searches the taps
+/// themselves.
+///
+/// # Errors
+/// Returns a message if the text is not a value of the parameter's kind.
 fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     if parameter.kind == Kind::Filter && text == FREE {
         return Ok(FREE.into());
@@ -198,10 +209,10 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     parameter.read(text).map_err(|error| error.without_subject().spelled(words::option).to_string())
 }
 
-/// The word for a filter whose taps themselves are searched.
+/// The value of `--filter` with which `tune` searches the taps themselves.
 pub(crate) const FREE: &str = "free";
 
-/// The name of an option, and each scheme that has a parameter of this name, with that parameter.
+/// An option's name, and the schemes with a parameter of this name, each with its parameter.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
 
 fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
@@ -217,7 +228,8 @@ fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
     all
 }
 
-/// Returns the help of an option: `sf, mw: its meaning, in the signal's unit, such as 0.1. tbr: its meaning there`.
+/// Returns the help of the option that these schemes share; schemes with the same meaning are listed together: `sf, mw:
+/// MEANING, in the signal's unit, such as 0.1. tbr: OTHER MEANING`.
 fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
     let mut meanings: Vec<(Vec<&str>, String)> = Vec::new();
     for (info, parameter) in owners {
@@ -252,7 +264,7 @@ fn meaning(parameter: &Parameter) -> String {
     text
 }
 
-/// Writes an answer to standard output.
+/// Writes a command's result to standard output.
 ///
 /// # Errors
 /// Returns an error if standard output cannot be written.

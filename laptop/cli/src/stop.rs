@@ -1,5 +1,5 @@
-//! Handles Ctrl-C: a command that runs until it is stopped ends in order and keeps its output; any other is ended at
-//! once, and leaves no half-written file.
+//! Handles Ctrl-C. A command that runs until it is stopped finishes normally and keeps its output; any other command is
+//! ended at once, and its unfinished output file is removed.
 
 use crate::inputs::delete_copy;
 use anyhow::{Context, Result};
@@ -10,16 +10,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 static IS_WANTED: AtomicBool = AtomicBool::new(false);
-/// Whether the running command has a [`Stop`], so that it ends by itself after Ctrl-C.
+/// Whether the running command has a [`Stop`], and therefore ends by itself after Ctrl-C.
 static IS_AWAITED: AtomicBool = AtomicBool::new(false);
 
-/// Installs the handler for Ctrl-C. A command that has a [`Stop`] ends by itself; any other is ended at once, and so is
-/// any command at the second Ctrl-C.
+/// Installs the handler for Ctrl-C. A command that has a [`Stop`] ends by itself; any other command is ended at once,
+/// and so is every command at the second Ctrl-C.
 ///
 /// # Errors
-/// Returns an error if the system refuses the handler.
+/// Returns an error if the operating system refuses the handler.
 pub(crate) fn handle() -> Result<()> {
-    /// Exit status that shells give a program that Ctrl-C ended.
+    /// Exit status that a shell reports for a program ended by Ctrl-C: 128 + SIGINT.
     const INTERRUPTED: i32 = 130;
     ctrlc::set_handler(|| {
         if IS_WANTED.swap(true, Ordering::Relaxed) || !IS_AWAITED.load(Ordering::Relaxed) {
@@ -31,30 +31,31 @@ pub(crate) fn handle() -> Result<()> {
     Ok(())
 }
 
-/// Tells a command that would run for ever when to stop.
+/// End condition of a command that has no end of its own: a time limit or Ctrl-C.
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,
 }
 
 impl Stop {
-    /// Arranges to stop on Ctrl-C, or after `seconds` if they are given. A second Ctrl-C ends the program at once.
+    /// Creates the end condition: Ctrl-C or, if `seconds` is given, the time in that many seconds. A second Ctrl-C ends
+    /// the program at once.
     ///
     /// # Errors
-    /// Returns an error unless `seconds` is above 0.
+    /// Returns an error if `seconds` is not above 0.
     pub(crate) fn new(seconds: Option<f64>) -> Result<Self> {
         let after = seconds.map(duration).transpose()?;
         IS_AWAITED.store(true, Ordering::Relaxed);
         Ok(Self { start: Instant::now(), after })
     }
 
-    /// Returns whether it is time to stop.
+    /// Returns whether the command should end now.
     pub(crate) fn is_due(&self) -> bool {
         IS_WANTED.load(Ordering::Relaxed)
             || self.after.is_some_and(|after| self.start.elapsed() >= after)
     }
 
-    /// Returns the time since the start as a tick, in µs.
+    /// Returns the time since this value was created, as a tick in µs.
     pub(crate) fn tick(&self) -> Tick {
         Tick::from_micros(self.start.elapsed().as_micros() as u64)
     }

@@ -1,4 +1,5 @@
-//! Words the library's errors and notes for the command line, where a setting is called by its option.
+//! Formats the library's errors and notes for the command line, where a setting is called by its option, such as
+//! `--max-rmse`.
 
 use anyhow::Error;
 use catalogue::run::Worded;
@@ -6,21 +7,21 @@ use lab::ErrorKind;
 use lab::input::LogKind;
 use std::io;
 
-/// Returns the option that sets a setting.
+/// Returns the command-line option of a setting: `--max-rmse` for `max_rmse`.
 pub(crate) fn option(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
-/// Words an error, followed by its causes.
+/// Formats an error and its causes, separated by colons.
 pub(crate) fn of(error: &Error) -> String {
     let mut words = Vec::new();
     for cause in error.chain() {
-        if let Some(own) = cause.downcast_ref::<lab::Error>() {
-            words.push(of_lab(own));
+        if let Some(error) = cause.downcast_ref::<lab::Error>() {
+            words.push(of_lab(error));
             break;
         }
-        if let Some(own) = cause.downcast_ref::<catalogue::run::Error>() {
-            words.push(own.spelled(option).to_string());
+        if let Some(error) = cause.downcast_ref::<catalogue::run::Error>() {
+            words.push(error.spelled(option).to_string());
             break;
         }
         words.push(cause.to_string());
@@ -28,7 +29,7 @@ pub(crate) fn of(error: &Error) -> String {
     words.join(": ")
 }
 
-/// Words an error of the library, followed by the option or command that helps.
+/// Formats an error of the library `lab`. If an option or a command can help, the text ends with it.
 pub(crate) fn of_lab(error: &lab::Error) -> String {
     let help = match *error.kind {
         ErrorKind::Log(LogKind::NeedsChannel) => "; `spikewire info` lists them",
@@ -40,14 +41,14 @@ pub(crate) fn of_lab(error: &lab::Error) -> String {
     error.spelled(option).to_string() + help
 }
 
-/// Returns whether the error is that the reader of the output closed it.
+/// Returns whether the error means that the reader of our output closed the pipe.
 pub(crate) fn is_closed_pipe(error: &Error) -> bool {
     let is_pipe = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
     error.downcast_ref::<lab::Error>().is_some_and(lab::Error::is_closed_pipe)
         || error.downcast_ref::<io::Error>().is_some_and(is_pipe)
 }
 
-/// Writes notes of the library to standard error, a line each.
+/// Prints notes of the library on standard error, one on each line.
 pub(crate) fn tell<'a, W: Worded + 'a>(notes: impl IntoIterator<Item = &'a W>) {
     notes.into_iter().for_each(|note| eprintln!("{}", note.spelled(option)));
 }

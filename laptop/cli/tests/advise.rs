@@ -1,19 +1,19 @@
-//! `advise`: describes a log and names the scheme that suits it, or says why none does.
+//! `advise` describes a log and names the scheme that suits it, or gives the reason if no scheme does.
 
 mod common;
 
 use common::{file, flight, good, ran, refused, spikewire, table};
 use serde_json::Value;
 
-/// A budget small enough for a debug build to finish in a few seconds.
+/// Options for a search that is short enough for a debug build to finish in a few seconds.
 const SHORT: &str = "--evaluations 60";
 
 #[test]
 fn a_scheme_within_the_error_is_advised_with_its_figures() {
     let (_directory, log) = file("signal.csv", good("signal --seconds 6", "").output);
     let arguments = format!("advise {log} --channel signal --max-rmse 0.4 {SHORT}");
-    let told: Value = ran!("{arguments} --json").json();
-    let advice = &told["channels"][0];
+    let report: Value = ran!("{arguments} --json").json();
+    let advice = &report["channels"][0];
     assert_eq!(advice["look"]["verdict"], "good");
     assert!((advice["look"]["rate"].as_f64().unwrap() - 100.0).abs() < 0.1);
     let reaching = advice["reaching"].as_array().unwrap();
@@ -35,25 +35,25 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg "));
 }
 
-/// At 5 Hz and 100 samples a second, a phase of 20° is about one sample. The signal jumps every 25 samples, further
-/// than step forward follows once it is tuned for few spikes.
+/// With a loop bandwidth of 5 Hz at 100 samples a second, no code is advised whose latency exceeds one sample, about
+/// 20° of phase. Nor is step forward, which cannot follow this signal's jumps when it is tuned for few spikes.
 #[test]
 fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
-    let sample = |place: u32| {
-        let wave = (f64::from(place) / 240.0 * std::f64::consts::TAU).sin();
-        wave + if (place / 25).is_multiple_of(2) { 0.3 } else { -0.3 }
+    let sample = |sample: u32| {
+        let wave = (f64::from(sample) / 240.0 * std::f64::consts::TAU).sin();
+        wave + if (sample / 25).is_multiple_of(2) { 0.3 } else { -0.3 }
     };
     let (_directory, log) = file("log.csv", table(&(0..1200).map(sample).collect::<Vec<_>>()));
     let ask = |more: &str| {
         let asked = format!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 16");
         let ran = ran!("{asked} --json {more}");
-        let told: Value = ran.json();
-        let reaching = told["channels"][0]["reaching"].as_array().unwrap().iter();
+        let report: Value = ran.json();
+        let reaching = report["channels"][0]["reaching"].as_array().unwrap().iter();
         let latencies = reaching.map(|one| {
             let latency = one["costs"]["latency"].as_f64().unwrap();
             (one["scheme"].as_str().unwrap().to_owned(), latency)
         });
-        (latencies.collect::<Vec<_>>(), told["channels"][0].clone())
+        (latencies.collect::<Vec<_>>(), report["channels"][0].clone())
     };
     let (any, advice) = ask("");
     assert!(any.iter().any(|(_, latency)| *latency > 1.0), "{any:?}");
@@ -74,52 +74,57 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     {
         assert!(others.contains(words), "{words}: {others}");
     }
-    // A quarter of the rate is the most that a loop can act on, and Nyquist's frequency is twice that.
+    // The bandwidth may be at most a quarter of the sample rate.
     ran!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 1 --loop-bandwidth 25");
     refused(
         &format!("advise {log} --column x --rate 100 --loop-bandwidth 25.1"),
         "",
         &["--loop-bandwidth 25.1 must be 25 or less: x has 100 samples a second"],
     );
-    // Without a rate nobody knows what a sample is in the loop's time.
+    // Without a sample rate, latency in samples cannot be converted to time.
     let unknown = format!("advise {log} --column x --loop-bandwidth 5");
     refused(&unknown, "", &["--loop-bandwidth needs the rate of x"]);
 }
 
-/// The two channels move apart: tuned alone, one would get another number of spikes a sample, or another scheme.
+/// One scheme is advised for both channels, although tuning them separately would give different schemes or different
+/// numbers of spikes a sample. The flight file written by `advise` is accepted by `encode` and `emit`.
 #[test]
 fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
-    let row = |place: u32| {
-        let at = f64::from(place);
+    let row = |sample: u32| {
+        let at = f64::from(sample);
         let (slow, fast) = ((at * 0.02).sin() * 3.0, (at * 0.11).sin() + (at * 0.013).cos() * 4.0);
-        format!("{},{slow},{fast}\n", place * 2000)
+        format!("{},{slow},{fast}\n", sample * 2000)
     };
     let rows: String = (0..1500).map(row).collect();
     let (_directory, log) = file("log.csv", format!("time_us,gyro_x,accel_z\n{rows}"));
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("flight.toml");
     let asked = format!("advise {log} --loop-bandwidth 5 --evaluations 16 -o {}", path.display());
-    let told: Value = ran!("{asked} --json").json();
-    let banks = told["bank"]["banks"].as_array().unwrap();
+    let report: Value = ran!("{asked} --json").json();
+    let banks = report["bank"]["banks"].as_array().unwrap();
     let bytes: Vec<f64> =
-        banks.iter().map(|own| own["bytes_per_second"].as_f64().unwrap()).collect();
+        banks.iter().map(|bank| bank["bytes_per_second"].as_f64().unwrap()).collect();
     assert!(bytes.is_sorted() && !bytes.is_empty(), "{banks:#?}");
     let flown = std::fs::read_to_string("../loop/verdicts.json").unwrap();
     let flown: Value = serde_json::from_str(&flown).unwrap();
     for bank in banks {
         let scheme = bank["scheme"].as_str().unwrap();
-        let own = &flown["banks"][scheme];
-        let cells = own["everywhere"].as_object().unwrap().values().chain([&own["here"]]);
+        let flights = &flown["banks"][scheme];
+        let cells = flights["everywhere"].as_object().unwrap().values().chain([&flights["here"]]);
         assert!(cells.clone().all(|cell| cell["lost"].as_array().unwrap().is_empty()), "{scheme}");
-        // The keyframes of that bank, at 500 samples a second.
-        assert_eq!(bank["keyframe_every"], own["keyframe_ms"].as_u64().unwrap() / 2, "{scheme}");
+        // The interval of keyframes is that of the simulated flights, at 500 samples a second.
+        assert_eq!(
+            bank["keyframe_every"],
+            flights["keyframe_ms"].as_u64().unwrap() / 2,
+            "{scheme}"
+        );
     }
-    // What did not fly is said once, however many channels there are.
+    // The schemes that failed in flight are listed once, not for each channel.
     let page = ran!("{asked}").output;
     for words in ["tbr lost ", "bernoulli was not flown"] {
         assert_eq!(page.matches(words).count(), 1, "{words}: {page}");
     }
-    let unknown = told["bank"]["unknown"].to_string();
+    let unknown = report["bank"]["unknown"].to_string();
     assert!(unknown.contains("in a simulator"), "{unknown}");
 
     let written = std::fs::read_to_string(&path).unwrap();
@@ -144,18 +149,18 @@ fn more_lost_frames_than_were_flown_are_refused() {
     refused(&format!("advise {log} --rate 100 --frame-loss 11"), "", refusal);
 }
 
-/// Motors shake the sensor so much that the flight itself moves little more than the noise (deviation 0.206, noise
-/// 0.124); the log must not be mistaken for noise.
+/// The vibration of the motors is nearly as large as the motion of the flight (noise 0.124, whole signal 0.206), yet
+/// the log is not mistaken for noise.
 #[test]
 fn a_shaken_flight_is_advised_on() {
     let text = std::fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let column = |line: &str| line.split(',').nth(1).unwrap().parse::<f64>().unwrap();
     let flown: Vec<f64> = text.lines().skip(1 + 900).map(column).collect();
-    let wave = |turns: f64, place: usize| (std::f64::consts::TAU * turns * place as f64).sin();
-    // In turns a sample, as the speed of four motors varies.
-    let shaken = |(place, own): (usize, &f64)| {
-        let speed = 0.01 * wave(0.0005, place);
-        0.3 * own + 0.13 * wave(0.25 + speed, place) + 0.13 * wave(0.31 - speed, place)
+    let wave = |turns: f64, sample: usize| (std::f64::consts::TAU * turns * sample as f64).sin();
+    // Frequencies in cycles per sample, which vary like the speed of motors.
+    let shaken = |(sample, value): (usize, &f64)| {
+        let speed = 0.01 * wave(0.0005, sample);
+        0.3 * value + 0.13 * wave(0.25 + speed, sample) + 0.13 * wave(0.31 - speed, sample)
     };
     let values: Vec<f64> = flown.iter().enumerate().map(shaken).collect();
     let (_directory, log) = file("log.csv", table(&values));
@@ -163,18 +168,19 @@ fn a_shaken_flight_is_advised_on() {
         &format!("advise {log} --column x --rate 197 --max-rmse 0.12 --json {SHORT}"),
         "",
     );
-    let told: Value = ran.json();
-    let look = &told["channels"][0]["look"];
+    let report: Value = ran.json();
+    let look = &report["channels"][0]["look"];
     let (deviation, noise) = (look["deviation"].as_f64().unwrap(), look["noise"].as_f64().unwrap());
     assert!(
         (deviation - 0.206).abs() < 0.02 && (noise - 0.124).abs() < 0.02,
         "{deviation} {noise}"
     );
     assert_eq!(look["verdict"], "good");
-    assert!(!told["channels"][0]["reaching"].as_array().unwrap().is_empty());
+    assert!(!report["channels"][0]["reaching"].as_array().unwrap().is_empty());
 }
 
-/// Such a log gets a verdict and no scheme.
+/// A log recorded on the ground, with only 10 samples, or with a constant value gets a verdict, and no scheme is
+/// advised for it.
 #[test]
 fn a_log_on_the_ground_or_too_short_has_a_verdict() {
     let rest = spikewire(&format!("advise {} {SHORT}", flight("vtol_at_rest.csv")), "");

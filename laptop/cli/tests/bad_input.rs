@@ -1,4 +1,4 @@
-//! Bad input is refused with words that name the fault, and leaves no half-written file.
+//! Bad input is refused with a message that names the fault, and no unfinished output file is left.
 
 mod common;
 
@@ -56,6 +56,6 @@ fn bytes_that_are_no_text_are_shown_as_escapes() {
     let words = r"line 10, column x: value `\u{1}\xff\u{1b}[31mµ` is not a number";
     assert!(ran.status == 2 && ran.stderr.contains(words), "{}", ran.stderr);
     let long = format!("x\n1\n{}\n", "y".repeat(5000));
-    let told = spikewire_bytes("encode --scheme sf --threshold 1 -", long.as_bytes()).stderr;
-    assert!(told.len() < 200, "{}", told.len());
+    let report = spikewire_bytes("encode --scheme sf --threshold 1 -", long.as_bytes()).stderr;
+    assert!(report.len() < 200, "{}", report.len());
 }

@@ -1,4 +1,5 @@
-//! A smaller run of the paper's benchmark agrees with the paper, and repeats figures recorded earlier.
+//! `bench` with fewer signals agrees with the tables of Dupeyroux et al. (2022), and with figures recorded from earlier
+//! versions.
 
 #![expect(clippy::unreadable_literal, reason = "figures as they are printed")]
 
@@ -13,21 +14,21 @@ fn bench() -> Value {
 
 #[test]
 fn a_smaller_run_agrees_with_the_paper() {
-    let told = bench();
-    assert_eq!(told["cells"], 36);
-    assert_eq!(told["means_within_sampling_error"], 36, "{told:#}");
-    // All but the one that the paper misprints.
-    assert_eq!(told["deviations_within_15_percent"], 35, "{told:#}");
+    let report = bench();
+    assert_eq!(report["cells"], 36);
+    assert_eq!(report["means_within_sampling_error"], 36, "{report:#}");
+    // One deviation is misprinted in the paper.
+    assert_eq!(report["deviations_within_15_percent"], 35, "{report:#}");
 }
 
 #[test]
 fn the_last_line_says_how_many_means_agree() {
-    let told = good("bench --tests 40 --cases 2 --seed 7", "").output;
-    assert_eq!(told.lines().last(), Some("24 of 24 means within sampling error"));
+    let report = good("bench --tests 40 --cases 2 --seed 7", "").output;
+    assert_eq!(report.lines().last(), Some("24 of 24 means within sampling error"));
 }
 
-/// Recorded means of the schemes in the order of [`SCHEMES`], by table and seconds. The paper's statistics would not
-/// reveal a rule that is slightly wrong; these figures change with a single spike.
+/// Recorded means: table, seconds of signal, and one mean for each of [`SCHEMES`]. A single changed spike changes them,
+/// so they reveal a slightly wrong rule, which a comparison with the paper's statistics would not.
 #[rustfmt::skip]
 const BEFORE: [(&str, u64, [f64; 8]); 6] = [
     ("efficiency", 1, [37.900000, 29.975000, 75.100000, 45.800000, 73.675000, 62.275000, 0.000000, -223.700000]),
@@ -42,9 +43,9 @@ const SCHEMES: [&str; 8] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA", "GRF", "GR
 
 #[test]
 fn every_spike_is_where_it_was() {
-    let told = bench();
+    let report = bench();
     for (table, seconds, means) in BEFORE {
-        let cases = told[table].as_array().unwrap();
+        let cases = report[table].as_array().unwrap();
         let case = cases.iter().find(|case| case["seconds"] == seconds).unwrap();
         for (scheme, mean) in SCHEMES.iter().zip(means) {
             let ours = case["schemes"][scheme]["ours"]["mean"].as_f64().unwrap();
@@ -56,7 +57,7 @@ fn every_spike_is_where_it_was() {
     }
 }
 
-/// With two signals a case, there is a seed whose mean lies too far off.
+/// With only two signals a case, some seeds give means too far from the paper's, for which `bench` fails.
 #[test]
 fn a_benchmark_that_differs_is_an_error() {
     let differing = (1..200).find_map(|seed| {

@@ -1,4 +1,4 @@
-//! `capture` as far as it can be tested without a probe.
+//! The part of `capture` that can be tested without a debug probe: its errors.
 
 mod common;
 

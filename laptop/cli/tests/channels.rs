@@ -1,4 +1,4 @@
-//! Several channels in one file of spikes.
+//! Files of spikes with several channels.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{events, flight, flight_logs, good, ran, refused};
 
 const COLUMNS: [&str; 6] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"];
 
-/// The schemes with parameters that do not depend on a column, and how many neurons they have.
+/// Schemes, with parameters that are the same for every column, and the number of neurons of each scheme.
 const SCHEMES: [(&str, usize); 6] = [
     ("sf --threshold 0.1", 1),
     ("tbr --factor 0.5", 1),
@@ -28,13 +28,13 @@ fn each_channel_is_as_if_alone_at_addresses_by_column() {
         let mut count = 0;
         for (channel, column) in COLUMNS.iter().enumerate() {
             let alone = ran!("encode --scheme {scheme} --column {column} {hexarotor}").output;
-            let own: Vec<_> = together
+            let channel_events: Vec<_> = together
                 .iter()
                 .filter(|event| event.1 / neurons == channel)
                 .map(|&(index, address, polarity)| (index, address % neurons, polarity))
                 .collect();
-            assert_eq!(own, events(&alone), "{scheme} {column}");
-            count += own.len();
+            assert_eq!(channel_events, events(&alone), "{scheme} {column}");
+            count += channel_events.len();
             let values = good("decode", &alone).output;
             let values = values.lines().skip(1).map(|line| line.split(',').nth(1));
             let column = decoded.lines().skip(1).map(|line| line.split(',').nth(1 + channel));

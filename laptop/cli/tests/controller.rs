@@ -1,4 +1,5 @@
-//! Networks on the controller, held against files and spikes of other programs, by each program's rule.
+//! `network --on controller`: the converted networks fire as in the frameworks that trained them, for the update rule
+//! of each.
 //!
 //! In `peers/nir`, `lif`, `braille` and their spikes are from the repository of NIR (BSD 3-Clause, 2023, NIR Team);
 //! `peers/frameworks.py` wrote the others.
@@ -34,15 +35,14 @@ fn by(framework: Framework) -> Asked {
     Asked { framework: Some(framework), ..Asked::default() }
 }
 
-/// Counts the pairs of step and neuron in which two trains differ.
+/// Returns the number of spikes that only one of the two spike trains has.
 fn differing(one: &Trains, other: &Trains) -> usize {
     let only = |a: &[u16], b: &[u16]| a.iter().filter(|neuron| !b.contains(neuron)).count();
     assert_eq!(one.len(), other.len());
     one.iter().zip(other).map(|(one, other)| only(one, other) + only(other, one)).sum()
 }
 
-/// Two recurrent networks that read Braille are compared with the spikes of their hidden layer that the authors
-/// published.
+/// The spikes of two recurrent networks that read Braille equal the published spikes of their hidden layer.
 #[test]
 fn networks_that_snntorch_trained_fire_as_was_published() {
     let inputs = trains("braille.txt");
@@ -60,12 +60,12 @@ fn networks_that_snntorch_trained_fire_as_was_published() {
         let (flown, double) = run(reset);
         assert_eq!(differing(&flown[0], &expected), 0, "{name}");
         assert_eq!(differing(&double[0], &expected), 0, "{name}");
-        // Another rule moves spikes.
+        // With a wrong reset mode, spikes differ.
         assert!(differing(&run(other).0[0], &expected) > 40, "{name}");
     }
 }
 
-/// One neuron, stepped 1000 times by each program, is compared with the potentials that the program wrote.
+/// Over 1000 steps, one neuron has the potentials that each framework recorded, to the bit or, for Norse, within 1e-7.
 #[test]
 fn one_neuron_has_the_potentials_that_were_published() {
     let table = text("lif.csv");
@@ -75,7 +75,7 @@ fn one_neuron_has_the_potentials_that_were_published() {
     let exponential =
         |framework| Asked { fires: Some(Fires::Above), dt: Some(1e-4), ..by(framework) };
     for (column, asked, spikes, least) in [
-        // Norse adds in another order: v + dt / tau * (x + v_leak - v).
+        // Norse adds in a different order, v + dt / tau * (x + v_leak - v), and rounds differently.
         (1, Asked { dt: Some(1e-4), ..by(Framework::Norse) }, [460, 510, 710, 760], 0),
         (
             2,
@@ -90,20 +90,20 @@ fn one_neuron_has_the_potentials_that_were_published() {
         let fired: Vec<usize> = (0..1000).filter(|&at| !fired[0][at].is_empty()).collect();
         assert_eq!(fired, spikes, "{asked:?}");
         let published = rows.iter().map(|row| row[column].parse::<f32>().unwrap());
-        let pairs: Vec<_> = published.zip(&potentials).map(|(v, own)| (v, own[0])).collect();
-        let exact = pairs.iter().filter(|(v, own)| v.to_bits() == own.to_bits()).count();
+        let pairs: Vec<_> = published.zip(&potentials).map(|(v, found)| (v, found[0])).collect();
+        let exact = pairs.iter().filter(|(v, found)| v.to_bits() == found.to_bits()).count();
         assert!(exact >= least, "{asked:?}: {exact}");
-        assert!(pairs.iter().all(|(v, own)| (v - own).abs() < 1e-7), "{asked:?}");
+        assert!(pairs.iter().all(|(v, found)| (v - found).abs() < 1e-7), "{asked:?}");
     }
 }
 
-/// Networks that three frameworks wrote are compared with 200 steps in those frameworks: every spike, and the
-/// potentials of the outputs.
+/// Over 200 steps, networks fire exactly as in the framework that wrote their file, and the potentials of the outputs
+/// are within 2e-5.
 #[test]
 fn networks_fire_as_their_frameworks_do() {
     use Reset::{SubtractLate, SubtractNoDelay, ToValue, ToValueLate};
     let torch = |reset| Asked { resets: vec![reset], ..by(Framework::SnnTorch) };
-    // RSynaptic of snnTorch 1.0.0 resets late, whatever it is told.
+    // In snnTorch 1.0.0, RSynaptic resets late whatever its argument `reset_delay`.
     let mixed = |first, last| Asked { resets: vec![first, last], ..by(Framework::SnnTorch) };
     let norse = Asked { dt: Some(1e-3), current: Some(Current::Whole), ..by(Framework::Norse) };
     for (name, reset, asked) in [
@@ -127,11 +127,11 @@ fn networks_fire_as_their_frameworks_do() {
         assert!(steps.len() == 200 && column(1).iter().flatten().count() > 100, "{name}");
         assert_eq!(differing(&fired[0], &column(1)), 0, "{name} {reset}");
         assert_eq!(differing(&fired[1], &column(2)), 0, "{name} {reset}");
-        // SpikingJelly begins at its reset value, from which potentials are told.
+        // SpikingJelly starts at its reset value, -0.25, relative to which potentials are kept here.
         let start = if name == "spikingjelly_cuba" { -0.25 } else { 0.0 };
-        for (step, own) in steps.iter().zip(&potentials) {
+        for (step, found) in steps.iter().zip(&potentials) {
             let expected = step[3].split(' ').map(|v| v.parse::<f32>().unwrap() - start);
-            let off = expected.zip(own).map(|(v, own)| (v - own).abs()).fold(0.0, f32::max);
+            let off = expected.zip(found).map(|(v, found)| (v - found).abs()).fold(0.0, f32::max);
             assert!(off < 2e-5, "{name} {reset}: {off}");
         }
     }
@@ -161,7 +161,7 @@ fn a_file_that_does_not_say_the_rule_is_refused_with_the_choices() {
             "--as nir --dt 1e-4",
             &["--reset to-value (NIR's definition) or subtract"],
         ),
-        // Written with a dt of 1, and not of 0.01.
+        // A step of 0.1 s is longer than the time constants in the file.
         (
             "norse.nir",
             "--as norse --dt 0.1",
@@ -171,24 +171,25 @@ fn a_file_that_does_not_say_the_rule_is_refused_with_the_choices() {
     ] {
         refused(&network(name, options), "", words);
     }
-    // What the choice named leaves open is all that is asked for.
-    let told = common::spikewire(&network("braille_subtract.nir", "--as snntorch"), "").stderr;
-    assert!(!told.contains("--fires") && !told.contains("--dt"), "{told}");
+    // The message names only options that `--as` leaves open.
+    let report = common::spikewire(&network("braille_subtract.nir", "--as snntorch"), "").stderr;
+    assert!(!report.contains("--fires") && !report.contains("--dt"), "{report}");
     let chip = network("braille_subtract.nir", "--as snntorch --reset zero")
         .replace("controller", "tinyodin");
     refused(&format!("{chip} --numbers i8"), "", &["--on controller"]);
 }
 
 #[test]
-fn what_a_reader_would_do_with_a_file_is_told() {
-    // Norse's file, whose gain is none of snnTorch's.
+fn a_file_that_the_framework_would_not_write_is_reported() {
+    // A file for Norse, with a gain that snnTorch never writes.
     let (_one, one) = file("one.txt", "0\n\n0\n");
     let lif = nir("lif.nir").display().to_string();
-    let told = ran!("network {lif} --on controller --as snntorch --reset to-value {one}").stderr;
-    assert!(told.contains("a gain of 0.040000, where snnTorch writes 1"), "{told}");
+    let report = ran!("network {lif} --on controller --as snntorch --reset to-value {one}").stderr;
+    assert!(report.contains("a gain of 0.040000, where snnTorch writes 1"), "{report}");
 }
 
-/// The firmware `trained` compiles this module for every core: `cargo verify network`.
+/// The Rust module equals the one in the firmware `examples/trained`, which `cargo verify network` compiles for every
+/// core.
 #[test]
 fn a_network_becomes_the_module_of_the_firmware() {
     let options = "--as snntorch --reset subtract-no-delay";
@@ -204,24 +205,25 @@ fn a_network_becomes_the_module_of_the_firmware() {
     ] {
         assert!(ran.stderr.contains(words), "{}", ran.stderr);
     }
-    // In integers a quarter of the weights' bytes, and almost the same spikes; on other spikes too.
+    // Weights of 8 bits take a quarter of the flash, and fire almost the same.
     let held_out = format!("--held-out {}", nir("braille.txt").display());
     let ran =
         good(&network("braille_subtract.nir", &format!("{options} --numbers i8 {held_out}")), "");
     assert!(ran.output.contains("Weights::packed(") && ran.output.contains("pub const UNITS"));
-    let told = ran.stderr.split_once("held out:\n").unwrap().1;
-    let share = told.split("outputs agree in ").nth(1).unwrap().split(' ').next().unwrap();
+    let report = ran.stderr.split_once("held out:\n").unwrap().1;
+    let share = report.split("outputs agree in ").nth(1).unwrap().split(' ').next().unwrap();
     assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.stderr);
 }
 
-/// JSON contains its rule; the potentials of outputs that never fire are compared too.
+/// A network in JSON needs no options for its update rule, and the potentials of outputs that never fire are compared
+/// too.
 #[test]
 fn json_goes_onto_the_controller_and_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 5.5}], "readout": {"weights": [[1, -2]]}}"#;
     let (_network, network) = file("two.json", json);
     let (_steps, steps) = file("steps.txt", "0 1\n1\n0\n0\n1\n");
     let ran = good(&format!("network {network} --on controller {steps} --live"), "1\n1\n0 0\n");
-    // Weights added: each input onto two neurons, and each spike onto the output.
+    // Each line is the number of weights added: two for each input, one for each spike.
     assert_eq!(ran.output, "2\n3\n5\n");
     for (numbers, off) in [("f32", "0.0000"), ("i8", "0.0005")] {
         let ran = ran!("network {network} --on controller --numbers {numbers} {steps}");

@@ -1,11 +1,11 @@
-//! Events in every format, converted there and back, and the limits of each format.
+//! `convert`: round trips through every event format, and the limits of each format.
 
 mod common;
 
 use common::{file, good_bytes, ran, refused, spikewire_bytes};
 use std::fmt::Write;
 
-/// Formats that can hold any event with an address of 14 bits, if time rises in small steps.
+/// Formats that can express any event with a 14-bit address, provided that time rises in small steps.
 const FORMATS: [&str; 12] = [
     "link",
     "link,period=5000,channels=6,jitter=5",
@@ -21,7 +21,7 @@ const FORMATS: [&str; 12] = [
     "csv",
 ];
 
-/// Returns a table of events.
+/// Returns a CSV table of events, given as (tick, address, polarity).
 fn table(events: impl IntoIterator<Item = (u32, u16, i8)>) -> String {
     let mut table = "tick,address,polarity\n".to_owned();
     for (tick, address, polarity) in events {
@@ -30,7 +30,7 @@ fn table(events: impl IntoIterator<Item = (u32, u16, i8)>) -> String {
     table
 }
 
-/// Returns 1499 events, several at each tick, with addresses up to 16 383.
+/// Returns a CSV table of 1499 events, with three at each tick, and addresses up to 16 383.
 fn events() -> String {
     table((1..1500_u32).map(|i| {
         let address = (i * 7919 % 16_384) as u16;
@@ -42,7 +42,7 @@ fn convert(from: &str, to: &str, input: &[u8]) -> common::RanBytes {
     good_bytes(&format!("convert --from {from} --to {to}"), input)
 }
 
-/// Returns the table without its comments.
+/// Returns the lines of a CSV table, without comments.
 fn rows(table: &[u8]) -> String {
     let text = str::from_utf8(table).unwrap();
     text.lines()
@@ -100,7 +100,7 @@ fn datagrams_hold_a_time_step_of_up_to_255_keys() {
     let both = table([(0, 3, -1), (0, 3, 1)]);
     let there = convert("csv", "eieio,signed=1", both.as_bytes());
     assert_eq!(there.output, [2, 0x38, 0, 0, 0, 0, 6, 0, 0, 0, 7, 0, 0, 0]);
-    // Keys without a time stamp take the time of the last one; those below the base are no address.
+    // Keys without a time stamp take the last one; keys below the base are skipped.
     let bytes = [1, 0x38, 9, 0, 0, 0, 1, 0, 0, 0, 2, 8, 0, 0, 0, 0, 3, 0, 0, 0];
     let read = convert("eieio,base=1,step=1", "csv", &bytes);
     assert_eq!(rows(&read.output), table([(9, 0, 1), (9, 2, 1)]));
@@ -111,7 +111,7 @@ fn datagrams_hold_a_time_step_of_up_to_255_keys() {
 }
 
 #[test]
-fn a_long_silence_takes_its_bytes_and_no_memory() {
+fn a_long_silence_takes_bytes_but_no_memory() {
     let events = table([(5, 0, 1), (100_000_000, 1, -1)]);
     let there = convert("csv", "es", events.as_bytes());
     assert_eq!(there.output.len(), 16 + 5 + 99_999_995 / 254 + 5);
@@ -122,7 +122,7 @@ fn a_long_silence_takes_its_bytes_and_no_memory() {
 
 #[test]
 fn rows_that_no_address_has_are_skipped() {
-    // Two words of EVT2, the second in row 32.
+    // An address has 16 bits, 5 of them for the row: row 31 fits, row 32 does not.
     let words = [8_u32 << 28, 1 << 28 | 3 << 11 | 31, 1 << 28 | 3 << 11 | 32];
     let read = convert("evt2", "csv", &words.map(u32::to_le_bytes).concat());
     assert_eq!(rows(&read.output), table([(0, 31 << 11 | 3, 1)]));
@@ -143,7 +143,7 @@ fn a_file_of_spikes_that_is_cut_is_refused() {
 fn a_file_that_is_cut_anywhere_gives_the_events_before_the_cut() {
     let events = table((0..9).map(|i| (i * 400, i as u16, 1)));
     let whole = rows(events.as_bytes());
-    // Before the first event or frame it may be of any format.
+    // A cut before the first event or frame leaves too little to recognise the format.
     let cut = |format: &str, bytes: &[u8]| {
         let read = spikewire_bytes(&format!("convert --from {format} --to csv"), bytes);
         assert!(read.status == 0 || read.stderr.contains("another format"), "{}", read.stderr);
@@ -167,8 +167,8 @@ fn damage_in_a_link_costs_frames_that_are_counted() {
     let events = events();
     let bytes = convert("csv", "link", events.as_bytes()).output;
     let frames = {
-        let told = convert("link", "csv", &bytes).stderr;
-        let line = told.lines().nth(1).unwrap();
+        let report = convert("link", "csv", &bytes).stderr;
+        let line = report.lines().nth(1).unwrap();
         line.split(' ').next().unwrap().parse::<usize>().unwrap()
     };
     assert!(frames > 10);

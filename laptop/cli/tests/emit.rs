@@ -1,4 +1,4 @@
-//! `emit c` writes a crate with exactly the codecs that fly.
+//! `emit c` writes a crate whose codecs have the names and the parameters of the given files.
 
 mod common;
 
@@ -21,12 +21,12 @@ fn a_codec_has_its_files_name_and_its_parameters_are_a_constant() {
         "        constant spikewire::temporal::StepForward::new(fixed::types::I8F8::from_bits(90));",
         "    yaw: spikewire::rate::Hough<f32, 3> {",
     ] {
-        assert!(codecs.lines().any(|own| own == line), "{line}\n{codecs}");
+        assert!(codecs.lines().any(|found| found == line), "{line}\n{codecs}");
     }
     let manifest: toml::Table = read("Cargo.toml").parse().unwrap();
     assert_eq!(manifest["package"]["name"].as_str(), Some("flown"));
     assert_eq!(manifest["dependencies"]["spikewire-c"]["default-features"].as_bool(), Some(false));
 
-    // What is there is not written over.
+    // An existing directory is not overwritten.
     refused(&format!("emit c {roll} -o {}", output.display()), "", &["cannot be written"]);
 }

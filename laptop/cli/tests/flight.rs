@@ -1,4 +1,5 @@
-//! One flight's file describes both ends: what its module sends is decoded in the channels' units, by that file alone.
+//! One flight file (`flight.toml`) describes sender and receiver: `listen` needs only this file to decode what the
+//! generated module sends, in the units of the channels.
 
 mod common;
 
@@ -20,22 +21,27 @@ impl Put for Items<'_> {
     }
 }
 
-/// Returns a sensor's count: a wave of amplitude 1.5 units.
-fn count(channel: usize, place: usize) -> i16 {
-    let value = 1.5 * (place as f64 * 0.02 * (channel as f64 + 1.0)).sin();
+/// Returns a sample of a sine wave with an amplitude of 1.5 units, in a sensor's counts.
+fn count(channel: usize, sample: usize) -> i16 {
+    let value = 1.5 * (sample as f64 * 0.02 * (channel as f64 + 1.0)).sin();
     (value * flight::COUNTS[channel]).round() as i16
 }
 
-/// Returns the frames of a vehicle, and the values that its receiver holds after the last of them.
+/// Runs sender and receiver of a flight; returns the frames sent, and the value of each channel that the receiver holds
+/// at the end.
 fn flown() -> (Vec<u8>, Vec<f64>) {
     let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(3)));
     let (mut bytes, mut items, mut buffer) = (Vec::new(), Vec::new(), [0; MAX_FRAME]);
     let (mut reader, mut receiver) =
         (spikewire::link::Reader::<MAX_FRAME>::new(), flight::receiver());
-    for place in 0..SAMPLES {
-        let tick = Tick::from_micros(place as u64 * u64::from(flight::PERIOD));
-        bank.encode_into(tick, std::array::from_fn(|own| count(own, place)), Items(&mut items));
-        if place % flight::KEYFRAME_EVERY as usize == 0 {
+    for sample in 0..SAMPLES {
+        let tick = Tick::from_micros(sample as u64 * u64::from(flight::PERIOD));
+        bank.encode_into(
+            tick,
+            std::array::from_fn(|channel| count(channel, sample)),
+            Items(&mut items),
+        );
+        if sample % flight::KEYFRAME_EVERY as usize == 0 {
             bank.keyframe_into(tick, Items(&mut items));
         }
         let mut source = FromItems(items.drain(..));
@@ -48,8 +54,9 @@ fn flown() -> (Vec<u8>, Vec<f64>) {
         receiver.apply(&received, |_, _, _| ());
     }
     receiver.advance(Tick::from_micros(SAMPLES as u64 * u64::from(flight::PERIOD)), |_, _, _| ());
-    let value =
-        |own: u16| f64::from(receiver.exact(own).unwrap()) / flight::COUNTS[usize::from(own)];
+    let value = |channel: u16| {
+        f64::from(receiver.exact(channel).unwrap()) / flight::COUNTS[usize::from(channel)]
+    };
     (bytes, (0..flight::CHANNELS as u16).map(value).collect())
 }
 
@@ -65,9 +72,9 @@ fn what_a_flight_sends_is_heard_by_its_file() {
     assert!(rows.len() > (SAMPLES - 2) * flight::CHANNELS, "{} rows", rows.len());
     for (channel, held) in held.iter().enumerate() {
         let address = (channel * 9).to_string(); // neurons of a channel
-        let own = rows.iter().rev().find(|row| row.contains(&address.as_str())).unwrap();
-        let value = own.iter().filter_map(|word| word.parse::<f64>().ok());
-        assert!(value.clone().any(|own| (own - held).abs() < 1e-9), "{held}: {own:?}");
+        let row = rows.iter().rev().find(|row| row.contains(&address.as_str())).unwrap();
+        let value = row.iter().filter_map(|word| word.parse::<f64>().ok());
+        assert!(value.clone().any(|value| (value - held).abs() < 1e-9), "{held}: {row:?}");
         assert!(held.abs() < 2.0, "{held} is in counts");
     }
     refused(
@@ -82,22 +89,22 @@ fn what_a_flight_sends_is_heard_by_its_file() {
     );
 }
 
-/// A flight with a filter, which both ends must have in common.
-mod shaken {
+/// A generated flight whose channels are filtered before they are encoded.
+mod filtered {
     include!("../../flight/tests/flights/sf.rs");
 }
 
 #[test]
 fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
+    use filtered::flight;
     use fixed::types::I8F8;
-    use shaken::flight;
     let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(3)));
     let (mut bytes, mut items, mut buffer) = (Vec::new(), Vec::new(), [0; MAX_FRAME]);
-    for place in 0..SAMPLES {
-        let tick = Tick::from_micros(place as u64 * u64::from(flight::PERIOD));
-        let sample = I8F8::from_num((place as f64 * 0.02).sin());
-        bank.encode_into(tick, [sample; flight::CHANNELS], Items(&mut items));
-        if place % flight::KEYFRAME_EVERY as usize == 0 {
+    for sample in 0..SAMPLES {
+        let tick = Tick::from_micros(sample as u64 * u64::from(flight::PERIOD));
+        let value = I8F8::from_num((sample as f64 * 0.02).sin());
+        bank.encode_into(tick, [value; flight::CHANNELS], Items(&mut items));
+        if sample % flight::KEYFRAME_EVERY as usize == 0 {
             bank.keyframe_into(tick, Items(&mut items));
         }
         let mut source = FromItems(items.drain(..));
@@ -112,9 +119,9 @@ fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
         let heard = spikewire(&format!("listen {} --flight {file}", path.display()), "");
         heard.output.lines().filter(|line| line.ends_with(",exact")).count()
     };
-    let own = "../flight/tests/flights/sf.toml";
-    assert!(exact(own) > 100, "{}", exact(own));
-    let text = fs::read_to_string(own).unwrap();
+    let sender = "../flight/tests/flights/sf.toml";
+    assert!(exact(sender) > 100, "{}", exact(sender));
+    let text = fs::read_to_string(sender).unwrap();
     for (from, to) in [("80.0", "70.0"), ("0.1 }", "0.2 }"), ("q8.8", "q7.9")] {
         let other = directory.path().join("other.toml");
         fs::write(&other, text.replace(from, to)).unwrap();
@@ -122,34 +129,35 @@ fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
     }
 }
 
-/// A table in the channels' units is encoded in counts, as on the vehicle.
+/// `encode --flight` converts a table in physical units to counts, and gives the same events as the bank on the
+/// vehicle.
 #[test]
 fn a_recording_is_coded_as_the_vehicle_does() {
     let names = flight::NAMES.join(",");
-    let row = |place: usize| {
-        let values =
-            (0..flight::CHANNELS).map(|own| f64::from(count(own, place)) / flight::COUNTS[own]);
+    let row = |sample: usize| {
+        let values = (0..flight::CHANNELS)
+            .map(|channel| f64::from(count(channel, sample)) / flight::COUNTS[channel]);
         let values: Vec<String> = values.map(|value| value.to_string()).collect();
-        format!("{},{}\n", place * usize::from(flight::PERIOD), values.join(","))
+        format!("{},{}\n", sample * usize::from(flight::PERIOD), values.join(","))
     };
     let rows: String = (0..SAMPLES).map(row).collect();
     let (_directory, log) = file("log.csv", format!("time_us,{names}\n{rows}"));
     let spikes = ran!("encode --flight {FILE} {log}").output;
     let (mut bank, mut expected) = (flight::BANK, Vec::new());
-    for place in 0..SAMPLES {
-        let tick = Tick::from_micros(place as u64 * u64::from(flight::PERIOD));
-        bank.encode(tick, std::array::from_fn(|own| count(own, place)), |event| {
-            expected.push((place as u64, event.address));
+    for sample in 0..SAMPLES {
+        let tick = Tick::from_micros(sample as u64 * u64::from(flight::PERIOD));
+        bank.encode(tick, std::array::from_fn(|channel| count(channel, sample)), |event| {
+            expected.push((sample as u64, event.address));
         });
     }
-    let rows = spikes.lines().filter(|line| line.starts_with(|own: char| own.is_ascii_digit()));
+    let rows = spikes.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit()));
     let mut coded: Vec<(u64, u16)> = rows
         .map(|line| {
             let mut words = line.split(',');
             (words.next().unwrap().parse().unwrap(), words.next().unwrap().parse().unwrap())
         })
         .collect();
-    // A row's index counts sub-timesteps.
+    // The index of a row counts sub-timesteps, of which a sample has 8.
     for (index, _) in &mut coded {
         *index /= 8;
     }
@@ -175,11 +183,11 @@ fn tuned_channels_make_a_flight() {
     assert!(text.contains("scheme = \"sod\"") && text.contains("spikes = 8"), "{text}");
     let spikes = ran!("encode --flight {} {log}", path.display()).output;
     assert!(spikes.lines().count() > 40, "{spikes}");
-    // What is wrong is told with file and line.
+    // An error in the flight file is reported with file and line.
     fs::write(&path, text.replace("spikes = 8", "spike = 8")).unwrap();
     let line = 1 + text.lines().position(|line| line.contains("spikes = 8")).unwrap();
-    let place = format!("{}:{line}: parameters `spike` is unknown", path.display());
-    refused(&format!("encode --flight {} {log}", path.display()), "", &[&place]);
+    let message = format!("{}:{line}: parameters `spike` is unknown", path.display());
+    refused(&format!("encode --flight {} {log}", path.display()), "", &[&message]);
 }
 
 #[test]

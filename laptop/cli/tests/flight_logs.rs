@@ -1,4 +1,4 @@
-//! Flight logs with faults, written byte by byte.
+//! PX4 logs with faults, built message by message.
 
 mod common;
 
@@ -10,13 +10,13 @@ use yule_log::builder::ULogParserBuilder;
 use yule_log::model::inst::{FieldValue, Format};
 use yule_log::model::msg::UlogMessage;
 
-/// A log to which messages are appended.
+/// Bytes of a PX4 log, to which messages are appended.
 struct Log(Vec<u8>);
 
 const SCHEME: &str = "encode --scheme sf --threshold 0.5 --topic armed";
 
 impl Log {
-    /// Begins a log with a topic `armed` of 9 bytes and padding, and a topic that holds text.
+    /// Starts a log with two topics: `armed`, whose samples are 9 bytes and padding, and `gps`, which has a text field.
     fn new() -> Self {
         let mut log = Self([b"ULog\x01\x12\x35\x01".as_slice(), &[0; 8]].concat());
         log.add(b'F', b"armed:uint64_t timestamp;bool on;uint8_t[7] _padding0;");
@@ -27,18 +27,18 @@ impl Log {
     }
 
     fn add(&mut self, kind: u8, content: &[u8]) -> usize {
-        let place = self.0.len();
+        let offset = self.0.len();
         self.0.extend((content.len() as u16).to_le_bytes());
         self.0.push(kind);
         self.0.extend(content);
-        place
+        offset
     }
 
     fn armed(&mut self, time: u64, on: u8) -> usize {
         self.add(b'D', &[&[1, 0], &time.to_le_bytes()[..], &[on]].concat())
     }
 
-    /// Appends ten samples that alternate between 0 and 1.
+    /// Appends ten samples of `armed` that alternate between 0 and 1, 5 ms apart, the first at `start` times 5 ms.
     fn armed_ten(&mut self, start: u64) {
         for sample in start..start + 10 {
             self.armed(sample * 5000, (sample % 2) as u8);
@@ -47,20 +47,20 @@ impl Log {
 }
 
 #[test]
-fn messages_that_are_not_as_their_format_says_are_skipped_and_told() {
+fn messages_that_contradict_their_format_are_skipped_and_reported() {
     let mut log = Log::new();
     log.armed_ten(0);
-    let place = log.add(b'D', &[&[1, 0], &50_000_u64.to_le_bytes()[..], &[1; 20]].concat());
+    let offset = log.add(b'D', &[&[1, 0], &50_000_u64.to_le_bytes()[..], &[1; 20]].concat());
     log.armed_ten(10);
     log.add(b'D', &[1, 0, 1]);
     log.armed_ten(20);
     let (_directory, path) = file("long.ulg", &log.0);
-    let told = ran!("info {path}").output;
-    assert!(told.contains("armed: 30 samples"), "{told}");
+    let report = ran!("info {path}").output;
+    assert!(report.contains("armed: 30 samples"), "{report}");
     let words = format!(
-        "2 messages longer or shorter than their format were skipped, the first at byte {place}\n"
+        "2 messages longer or shorter than their format were skipped, the first at byte {offset}\n"
     );
-    assert!(told.contains(&words), "{told}");
+    assert!(report.contains(&words), "{report}");
     let ran = ran!("{SCHEME} --field on {path}");
     assert!(ran.stderr.contains(&words) && ran.output.contains("# samples=30\n"), "{}", ran.stderr);
 }
@@ -71,12 +71,12 @@ fn padding_at_the_end_may_be_logged_or_not() {
     log.armed_ten(0);
     log.add(b'D', &[&[1, 0], &50_000_u64.to_le_bytes()[..], &[1; 8]].concat());
     let (_directory, path) = file("padded.ulg", &log.0);
-    let told = ran!("info {path}").output;
-    assert!(told.contains("armed: 11 samples") && !told.contains("skipped"), "{told}");
+    let report = ran!("info {path}").output;
+    assert!(report.contains("armed: 11 samples") && !report.contains("skipped"), "{report}");
 }
 
 #[test]
-fn unregistered_ids_and_formats_that_are_no_text_are_skipped_and_told() {
+fn unregistered_ids_and_formats_that_are_no_text_are_skipped_and_reported() {
     let mut log = Log::new();
     log.armed_ten(0);
     let format = log.add(b'F', b"odd:uint64_t timestamp;float \xff\xfe;");
@@ -85,24 +85,24 @@ fn unregistered_ids_and_formats_that_are_no_text_are_skipped_and_told() {
     log.add(b'D', &[&[9, 0], &[0; 12][..]].concat());
     log.armed_ten(10);
     let (_directory, path) = file("odd.ulg", &log.0);
-    let told = ran!("info {path}").output;
-    assert!(told.contains("armed: 20 samples"), "{told}");
+    let report = ran!("info {path}").output;
+    assert!(report.contains("armed: 20 samples"), "{report}");
     let ids = format!(
         "2 messages with an id that is not registered were skipped, the first at byte {data}\n"
     );
     let formats =
         format!("2 definitions that cannot be read were skipped, the first at byte {format}\n");
-    assert!(told.contains(&ids) && told.contains(&formats), "{told}");
+    assert!(report.contains(&ids) && report.contains(&formats), "{report}");
 }
 
 #[test]
-fn damage_is_told_apart_from_a_cut_and_got_past() {
+fn damage_is_distinguished_from_a_cut_and_skipped() {
     let mut log = Log::new();
     log.armed_ten(0);
     let damaged = log.armed(50_000, 1);
     log.armed_ten(11);
     let mut bytes = log.0;
-    // A length that leads nowhere.
+    // A length beyond the end of the file.
     bytes[damaged..damaged + 3].copy_from_slice(&[0xff, 0xff, 0xff]);
     let (_directory, path) = file("damaged.ulg", &bytes);
     let next = damaged + 3 + 11;
@@ -121,8 +121,8 @@ fn damage_is_told_apart_from_a_cut_and_got_past() {
         "",
         &["cut short within the message at byte", "takes what is before"],
     );
-    let told = ran!("info --accept-cut {path}").output;
-    assert!(told.contains("armed: 9 samples"), "{told}");
+    let report = ran!("info --accept-cut {path}").output;
+    assert!(report.contains("armed: 9 samples"), "{report}");
 }
 
 #[test]
@@ -139,19 +139,19 @@ fn booleans_keep_their_value() {
 }
 
 #[test]
-fn text_is_named_as_such_and_dropouts_are_told() {
+fn text_is_named_as_such_and_dropouts_are_reported() {
     let mut log = Log::new();
     log.armed_ten(0);
     log.add(b'D', &[&[2, 0], &[0; 8][..], b"ublx", &1.5_f32.to_le_bytes()].concat());
     log.add(b'O', &20_u16.to_le_bytes());
     log.add(b'O', &300_u16.to_le_bytes());
     let (_directory, path) = file("text.ulg", &log.0);
-    let told = ran!("info {path}").output;
+    let report = ran!("info {path}").output;
     assert!(
-        told.contains("2 dropouts of the logger, 320 ms in all, 300 ms the longest\n"),
-        "{told}"
+        report.contains("2 dropouts of the logger, 320 ms in all, 300 ms the longest\n"),
+        "{report}"
     );
-    assert!(told.contains("\n  lat\n  text: device\n"), "{told}");
+    assert!(report.contains("\n  lat\n  text: device\n"), "{report}");
     let scheme = "encode --scheme sf --threshold 0.5 --topic gps";
     for field in ["device", "device[0]"] {
         refused(&format!("{scheme} --field {field} {path}"), "", &["is text, not a signal"]);
@@ -167,17 +167,17 @@ fn data_appended_after_a_crash_is_read() {
     let flags = log.add(b'B', &[0; 40]);
     log.0.extend(body);
     log.armed_ten(0);
-    let place = log.0.len();
-    // What the crash cut.
+    let offset = log.0.len();
+    // The start of a message that the crash cut.
     log.0.extend([11, 0]);
     let appended = log.0.len();
     log.armed_ten(10);
     log.0[flags + 3 + 8] = 1;
     log.0[flags + 3 + 16..flags + 3 + 24].copy_from_slice(&(appended as u64).to_le_bytes());
-    assert_eq!(appended, place + 2);
+    assert_eq!(appended, offset + 2);
     let (_directory, path) = file("crash.ulg", &log.0);
-    let told = ran!("info {path}").output;
-    assert!(told.contains("armed: 20 samples"), "{told}");
+    let report = ran!("info {path}").output;
+    assert!(report.contains("armed: 20 samples"), "{report}");
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn a_compressed_log_is_read() {
     ran!("{SCHEME} --field on {path}");
 }
 
-/// The content of a log as another reader gives it: by topic and field, a number for each sample.
+/// A log's values as the crate `yule_log` reads them: topic, field, and one number for each sample.
 type Columns = BTreeMap<String, BTreeMap<String, Vec<f64>>>;
 
 #[test]

@@ -1,18 +1,19 @@
-//! Videos: equal brightness gives equal events, in every file format.
+//! `frames`: the same brightness gives the same events in every format of video.
 
 mod common;
 
 use common::{file, ran};
 
-/// Makes frames of grey levels that the limited range can hold too, so that videos of both ranges show the same
-/// pictures.
+/// Returns frames in which `level` maps a step of 0 to 219 to a grey level. Both ranges of video, full and limited, can
+/// express 220 levels, and can therefore show the same pictures.
 fn frames(level: impl Fn(u32) -> u8) -> Vec<Vec<u8>> {
     let frame =
         |frame: u32| (0..64 * 48).map(|pixel| level((pixel * 7 + frame * 61) % 220)).collect();
     (0..8).map(frame).collect()
 }
 
-/// Returns the events of a video with this header; each frame is followed by `chroma` bytes of colour.
+/// Converts a YUV4MPEG2 video with the given header parameters to events, as CSV. Each frame is followed by `chroma`
+/// bytes of grey chroma.
 fn events(header: &str, chroma: usize, frames: &[Vec<u8>]) -> String {
     let mut video = format!("YUV4MPEG2 W64 H48 F25:1 {header}\n").into_bytes();
     for frame in frames {

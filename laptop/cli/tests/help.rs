@@ -1,4 +1,4 @@
-//! Help: each command has an example, and lists only options that it accepts.
+//! `--help`: each command has an example whose options it accepts, and a text for each option.
 
 mod common;
 
@@ -50,7 +50,7 @@ fn listen_offers_what_it_takes() {
     {
         assert!(help.contains(taken), "{taken}");
     }
-    // Only an encoder uses these.
+    // Options that only an encoder uses.
     for other in ["--factor", "--magnitudes", "--paper"] {
         assert!(!help.contains(other), "{other}");
     }

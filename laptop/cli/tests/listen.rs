@@ -1,4 +1,4 @@
-//! `listen` decodes what a board sends to the values that the board holds: from files, pipes and serial ports.
+//! `listen` decodes a board's frames to exactly the values that the board holds, from files, pipes and serial ports.
 
 mod common;
 
@@ -19,13 +19,13 @@ use std::time::Duration;
 
 const CHANNELS: usize = 3;
 
-/// The frames of a board, and the values of its own decoders after each event.
+/// Frames sent by a simulated board, and the values (tick, address, value) of its own decoders after each event.
 struct Board<S> {
     frames: Vec<Vec<u8>>,
     values: Vec<(u32, u16, S)>,
 }
 
-/// A transmitter, and the frames that it has sent.
+/// A link transmitter, and the frames that it has sent so far.
 struct Sender(Transmitter, Vec<Vec<u8>>);
 
 impl Sender {
@@ -42,12 +42,12 @@ impl Sender {
     }
 }
 
-/// Returns a sample of each of three channels, which are waves.
+/// Returns sample number `sample` of three sine waves with an amplitude of 100.
 fn waves<S: Sample>(sample: u32) -> [S; CHANNELS] {
     [0.05, 0.07, 0.11].map(|pace: f64| S::from_f64((f64::from(sample) * pace).sin() * 100.0))
 }
 
-/// A list that collects a bank's items.
+/// Collects the items that a bank puts.
 #[derive(Default)]
 struct Items(Vec<Item>);
 
@@ -57,7 +57,7 @@ impl Put for &mut Items {
     }
 }
 
-/// Runs a board that encodes waves, with a keyframe every 100 samples.
+/// Simulates a board with a temporal code that encodes [`waves`] for 400 samples, with a keyframe every 100 samples.
 fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     let mut bank = Bank::<_, CHANNELS>::per_channel(schemes.each_ref());
     let mut decoders = schemes.each_ref().map(P::decoder);
@@ -66,7 +66,7 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
         let tick = Tick::from(sample * 1000);
         let mut items = Items::default();
         bank.encode_into(tick, waves(sample), &mut items);
-        // At 3 the moving window has filled.
+        // The moving window of the test has filled at sample 3.
         if sample == 3 || sample % 100 == 0 {
             bank.keyframe_into(tick, &mut items);
         }
@@ -77,7 +77,7 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
                     let value = decoder.decode(event.polarity.into());
                     values.push((event.tick.micros(), event.address, value));
                 }
-                // What the board's decoders start from.
+                // The board's own decoders start from the keyframe's value too.
                 Item::Keyframe(keyframe) => {
                     decoders[usize::from(keyframe.address)].resync(keyframe.value().unwrap());
                 }
@@ -90,13 +90,15 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     Board { frames: sender.1, values }
 }
 
-/// Runs a board whose code decodes to a value for each sample; the values have the first address of their channel.
+/// Simulates a board with a rate or population code, whose decoder gives a value for each sample. Each value has the
+/// first address of its channel.
 fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
-    // Sub-timesteps take heartbeats by which the pace of samples can be measured.
+    // With sub-timesteps, the receiver measures the sample period from heartbeats.
     board_since_boot(scheme, slot_ticks, 0, if slot_ticks > 0 { 20 } else { 100 })
 }
 
-/// Runs such a board, which booted `uptime` µs ago and sends a heartbeat every `beat` samples.
+/// Simulates a board with a rate or population code that booted `uptime` µs ago and sends a heartbeat every `beat`
+/// samples.
 fn board_since_boot<P: Start>(
     scheme: &P,
     slot_ticks: u32,
@@ -123,16 +125,16 @@ fn board_since_boot<P: Start>(
     Board { frames: sender.1, values }
 }
 
-/// Asserts that all exact values are the board's; returns the lines.
+/// Decodes `frames` with `listen`, checks that each value marked `exact` equals the board's, and returns all lines.
 fn assert_sampled<S: Sample>(board: &Board<S>, frames: &[Vec<u8>], options: &str) -> Vec<Line> {
     let heard = good_bytes(&format!("listen {options}"), &frames.concat());
     let lines = values(&heard.output);
     let exact = lines.iter().filter(|line| line.known == "exact");
     assert!(exact.clone().count() > 500, "{options}: {}", heard.stderr);
     for line in exact {
-        let place =
+        let is_same =
             |&(tick, address, _): &(u32, u16, S)| (tick, address) == (line.tick, line.address);
-        let (.., value) = board.values.iter().copied().find(place).unwrap();
+        let (.., value) = board.values.iter().copied().find(is_same).unwrap();
         assert_eq!(S::from_f64(line.value), value, "{options}: {line:?}");
     }
     lines
@@ -144,7 +146,7 @@ fn three_floats() -> Board<f32> {
 
 const THREE: &str = "--scheme sf --thresholds 7.5,3.1,12.7";
 
-/// A line of output with a value.
+/// A line that `listen` prints for a value.
 #[derive(Debug, PartialEq)]
 struct Line {
     tick: u32,
@@ -172,8 +174,8 @@ fn values(table: &[u8]) -> Vec<Line> {
         .collect()
 }
 
-/// Asserts that the values of all events are exactly the board's.
-fn assert_exact<S: Sample>(board: &Board<S>, one: f64, options: &str) {
+/// Decodes the board's frames with `listen`, and checks that each event's value is marked `exact` and equals the board's.
+fn assert_exact<S: Sample>(board: &Board<S>, options: &str) {
     let heard = good_bytes(&format!("listen {options}"), &board.frames.concat());
     let heard: Vec<Line> =
         values(&heard.output).into_iter().filter(|value| value.known != "keyframe").collect();
@@ -184,7 +186,7 @@ fn assert_exact<S: Sample>(board: &Board<S>, one: f64, options: &str) {
             (tick, address, "exact"),
             "{options}"
         );
-        assert_eq!(S::from_f64(heard.value * one), value, "{options}");
+        assert_eq!(S::from_f64(heard.value), value, "{options}");
     }
 }
 
@@ -201,13 +203,13 @@ fn values_are_those_of_the_board_bit_for_bit() {
     assert!(bits.iter().copied().eq(board_f32.values.iter().map(|(_, _, value)| value.to_bits())));
 
     let counts = board(&[7, 3, 12].map(StepForward::<i16>::new));
-    assert_exact(&counts, 1.0, "--sample i16 --scheme sf --thresholds 7,3,12");
+    assert_exact(&counts, "--sample i16 --scheme sf --thresholds 7,3,12");
     let q8_8 = board(&[StepForward::<I8F8>::new(I8F8::from_bits(7)); 3]);
-    assert_exact(&q8_8, 1.0, "--sample q8.8 --scheme sf --threshold 0.02734375");
+    assert_exact(&q8_8, "--sample q8.8 --scheme sf --threshold 0.02734375");
     let contrast = board(&[TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
-    assert_exact(&contrast, 1.0, "--scheme tbr --threshold 1.5 --step 2x");
+    assert_exact(&contrast, "--scheme tbr --threshold 1.5 --step 2x");
     let window = board(&[MovingWindow::<f32, 4>::new(2.5); 3]);
-    assert_exact(&window, 1.0, "--scheme mw --threshold 2.5 --window 3");
+    assert_exact(&window, "--scheme mw --threshold 2.5 --window 3");
 }
 
 #[test]
@@ -228,7 +230,7 @@ fn values_of_rate_and_population_codes_are_those_of_the_board() {
     let bsa = sampled_board(&bsa, 0);
     assert_sampled(&bsa, &bsa.frames, &format!("--scheme bsa {rate}"));
 
-    // Codes of up to 64 neurons and of more have types of their own.
+    // The decoder has one type for up to 64 neurons, and one for more.
     let few = sampled_board(&Position::<f32, 20>::linear(-100.0..=100.0), 0);
     let lines = assert_sampled(&few, &few.frames, &format!("--scheme grf --neurons 20 {range}"));
     assert_eq!(lines.len(), 3 * 400);
@@ -292,7 +294,7 @@ fn after_a_lost_frame_values_are_estimates_until_the_next_keyframe() {
     let (stale, fresh) = after.split_once(",keyframe\n").unwrap();
     assert!(stale.contains("estimate") && !stale.contains("exact"), "{stale}");
     assert!(fresh.contains("exact") && !fresh.contains("estimate"), "{fresh}");
-    // And then they are the board's again.
+    // After the keyframe, the values are the board's again.
     let end = values(fresh.as_bytes()).pop().unwrap();
     let &(tick, address, value) = board.values.last().unwrap();
     assert_eq!((end.tick, end.address, end.value as f32), (tick, address, value));
@@ -315,7 +317,7 @@ fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
             changed(&|frames| frames[10][7] ^= 1),
             [format!("{} frames: 1 lost in 1 gaps, ", count - 1), skipped(10, 0)],
         ),
-        // A damaged length asks for more bytes than follow: the frames after it are not held back.
+        // A damaged length that exceeds the rest of the input does not hide the frames after it.
         (
             changed(&|frames| frames[count - 3][17] = 0xFF),
             [format!("{} frames: 1 lost in 1 gaps, ", count - 1), " bad checksums".into()],
@@ -334,31 +336,31 @@ fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
         ),
         (Vec::new(), ["0 frames: 0 lost".into(), "0 restarts".into()]),
     ] {
-        let told = good_bytes(&format!("listen {THREE}"), &bytes).stderr;
-        assert!(words.iter().all(|own| told.contains(own)), "{words:?}: {told}");
+        let report = good_bytes(&format!("listen {THREE}"), &bytes).stderr;
+        assert!(words.iter().all(|word| report.contains(word)), "{words:?}: {report}");
     }
 }
 
 #[test]
-fn what_no_decoder_is_there_for_is_counted() {
+fn events_without_a_decoder_are_counted() {
     let board = three_floats();
     let two = good_bytes("listen --scheme sf --thresholds 7.5,3.1", &board.frames.concat());
     let outside = board.values.iter().filter(|(_, address, _)| *address == 2).count() + 5;
-    let told = format!("\n{outside} events and keyframes at addresses without a decoder\n");
-    assert!(two.stderr.contains(&told) && !two.stderr.contains("contradict"), "{}", two.stderr);
+    let report = format!("\n{outside} events and keyframes at addresses without a decoder\n");
+    assert!(two.stderr.contains(&report) && !two.stderr.contains("contradict"), "{}", two.stderr);
     assert!(values(&two.output).iter().all(|value| value.address < 2));
 
     let narrow =
         good_bytes("listen --sample i16 --scheme sf --threshold 7", &board.frames.concat());
-    let told = "\n15 keyframes of another sample type\n";
-    assert!(narrow.stderr.contains(told), "{}", narrow.stderr);
+    let report = "\n15 keyframes of another sample type\n";
+    assert!(narrow.stderr.contains(report), "{}", narrow.stderr);
     assert!(values(&narrow.output).iter().all(|value| value.known == "estimate"));
 
     let other =
         good_bytes("listen --scheme hsa --filter triang:3 --shift 0", &board.frames.concat());
-    let told = "\n15 keyframes, which this scheme does not have: is --scheme the sender's?\n";
+    let report = "\n15 keyframes, which this scheme does not have: is --scheme the sender's?\n";
     assert!(
-        other.stderr.contains(told) && !other.stderr.contains("sample type"),
+        other.stderr.contains(report) && !other.stderr.contains("sample type"),
         "{}",
         other.stderr
     );
@@ -367,25 +369,25 @@ fn what_no_decoder_is_there_for_is_counted() {
 #[test]
 fn keyframes_of_step_forward_tell_wrong_parameters() {
     let bytes = three_floats().frames.concat();
-    let told = |options: &str| good_bytes(&format!("listen {options}"), &bytes).stderr;
-    assert!(!told(THREE).contains("contradict"));
-    // Those after the first of each of 3 channels.
+    let report = |options: &str| good_bytes(&format!("listen {options}"), &bytes).stderr;
+    assert!(!report(THREE).contains("contradict"));
+    // All keyframes but the first of each of the 3 channels.
     let all = "12 of 12 keyframes contradict the values before them: are --scheme, --threshold and";
     for wrong in ["--scheme sf --thresholds 7.5,6.2,12.7", "--scheme sf --threshold 1"] {
-        assert!(told(wrong).contains(" of 12 keyframes contradict"), "{}", told(wrong));
+        assert!(report(wrong).contains(" of 12 keyframes contradict"), "{}", report(wrong));
     }
-    assert!(told("--scheme sf --threshold 90").contains(all));
-    let other = told("--scheme sf --threshold 9 --sample q16.16");
+    assert!(report("--scheme sf --threshold 90").contains(all));
+    let other = report("--scheme sf --threshold 9 --sample q16.16");
     assert!(other.contains("\n15 keyframes of another sample type\n"), "{other}");
-    // Theirs are samples.
+    // Keyframes of temporal contrast hold the sample, which no decoded value must equal.
     let contrast = board(&[TemporalContrast::<f32>::new(1.5).with_step(3.0); 3]);
-    let told = good_bytes("listen --scheme tbr --threshold 9", &contrast.frames.concat()).stderr;
-    assert!(!told.contains("contradict"), "{told}");
+    let report = good_bytes("listen --scheme tbr --threshold 9", &contrast.frames.concat()).stderr;
+    assert!(!report.contains("contradict"), "{report}");
 }
 
-/// After any uptime of the board its sub-timesteps are decoded, or the output says why not.
+/// Events with sub-timesteps are decoded whatever the board's uptime; if they cannot be, the output gives the reason.
 #[test]
-fn slots_are_heard_after_any_uptime() {
+fn slots_are_decoded_after_any_uptime() {
     let scheme = Slots::<f32, 15, 10>::new(-100.0..=100.0, 1.5);
     let options = "--scheme grf-slots --neurons 15 --slots 10 --min=-100 --max 100 --slot-ticks";
     for minutes in [0_u64, 36, 37, 71, 72, 83, 5_256_000] {
@@ -394,7 +396,7 @@ fn slots_are_heard_after_any_uptime() {
         assert_sampled(&board, &board.frames, &format!("{options} 50"));
     }
     let silent = board_since_boot(&scheme, 50, 83 * 60_000_000, u32::MAX);
-    // Without the first sample, and the only heartbeat.
+    // The first two frames hold the first sample and the only heartbeat.
     let heard = good_bytes(&format!("listen {options} 50"), &silent.frames[2..].concat());
     assert_eq!(values(&heard.output).len(), 0);
     assert!(heard.stderr.contains("\nno value is exact: no heartbeat since"), "{}", heard.stderr);
@@ -405,7 +407,7 @@ fn slots_are_heard_after_any_uptime() {
 }
 
 #[test]
-fn a_loss_at_the_sender_is_told() {
+fn a_loss_at_the_sender_is_reported() {
     let mut framer = Framer::new(Coding::for_channels(1, 1000), Session::counted(7));
     let mut buffer = [0; 64];
     let mut bytes = framer.start(Tick::from(0), &mut buffer).unwrap().finish().to_vec();
@@ -421,7 +423,7 @@ fn a_loss_at_the_sender_is_told() {
 }
 
 #[test]
-fn what_no_link_holds_is_refused() {
+fn settings_that_no_link_can_carry_are_refused() {
     let many = vec!["1"; 257].join(",");
     refused(&format!("listen --scheme sf --thresholds {many}"), "", &["1 to 256 channels"]);
     let foreign = spikewire_bytes("listen --from es", b"Event Stream\x02\0\0\x01");
@@ -429,8 +431,8 @@ fn what_no_link_holds_is_refused() {
     assert!(foreign.stderr.contains("generic events"), "{}", foreign.stderr);
 }
 
-/// Opens a serial line: returns the board's end, and the name of the laptop's end, which stays open while the last file
-/// does.
+/// Opens a pseudo-terminal in raw mode, as a serial line. Returns the board's end, the path of the laptop's end, and a
+/// handle that keeps the laptop's end open.
 fn serial_line() -> (File, String, File) {
     let board = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
     grantpt(&board).unwrap();
@@ -443,35 +445,35 @@ fn serial_line() -> (File, String, File) {
     (board.into(), name, open)
 }
 
-/// Waits for a program to end well, and returns its messages.
-fn said(child: Child) -> String {
+/// Waits until the program ends, checks that it succeeded, and returns its standard error.
+fn finish(child: Child) -> String {
     let done = child.wait_with_output().unwrap();
-    let told = String::from_utf8(done.stderr).unwrap();
-    assert!(done.status.success(), "{told}");
-    told
+    let report = String::from_utf8(done.stderr).unwrap();
+    assert!(done.status.success(), "{report}");
+    report
 }
 
-fn spawn(arguments: &str, told: impl Into<Stdio>) -> Child {
+fn spawn(arguments: &str, report: impl Into<Stdio>) -> Child {
     Command::new(env!("CARGO_BIN_EXE_spikewire"))
         .args(arguments.split_whitespace())
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
-        .stderr(told)
+        .stderr(report)
         .spawn()
         .unwrap()
 }
 
-/// Waits until the program has written `count` lines.
+/// Waits until the program has written `count` lines to standard output, and returns them.
 fn lines(child: &mut Child, count: usize) -> String {
-    let (mut said, mut byte) = (Vec::new(), [0]);
+    let (mut lines, mut byte) = (Vec::new(), [0]);
     for _ in 0..count {
         while byte != *b"\n" {
             child.stdout.as_mut().unwrap().read_exact(&mut byte).unwrap();
-            said.extend(byte);
+            lines.extend(byte);
         }
         byte = [0];
     }
-    String::from_utf8(said).unwrap()
+    String::from_utf8(lines).unwrap()
 }
 
 #[test]
@@ -480,16 +482,16 @@ fn a_serial_port_is_heard_until_its_time_is_over() {
     let bytes = three_floats().frames.concat();
     let mut child =
         spawn(&format!("listen {THREE} --baud 115200 --seconds 2 {name}"), Stdio::piped());
-    // The line takes 4095 bytes until they are heard.
+    // A pseudo-terminal buffers at most 4095 bytes that are not read yet.
     for piece in bytes.chunks(bytes.len() / 3 + 1) {
         line.write_all(piece).unwrap();
         std::thread::sleep(Duration::from_millis(100));
     }
     let mut output = Vec::new();
     child.stdout.take().unwrap().read_to_end(&mut output).unwrap();
-    let told = said(child);
-    assert_eq!(output, good_bytes(&format!("listen {THREE}"), &bytes).output, "{told}");
-    assert!(told.contains("\n0 bytes skipped\n"), "{told}");
+    let report = finish(child);
+    assert_eq!(output, good_bytes(&format!("listen {THREE}"), &bytes).output, "{report}");
+    assert!(report.contains("\n0 bytes skipped\n"), "{report}");
 }
 
 #[test]
@@ -497,8 +499,8 @@ fn a_port_may_say_nothing_that_is_understood() {
     let (mut line, name, _open) = serial_line();
     let child = spawn(&format!("listen --baud 115200 --seconds 1 {name}"), Stdio::piped());
     line.write_all(b"hello").unwrap();
-    let told = said(child);
-    assert!(told.contains("no link frame in the 5 bytes"), "{told}");
+    let report = finish(child);
+    assert!(report.contains("no link frame in the 5 bytes"), "{report}");
 }
 
 #[test]
@@ -532,12 +534,13 @@ fn ctrl_c_keeps_what_was_heard() {
     let child = spawn(&format!("{options} -o {}", path.display()), Stdio::piped());
     wait_for_file(directory.path());
     line.write_all(&[0x81, 0x82, 0, 0, 0, 9, 0x81]).unwrap();
-    let told = interrupt(child);
-    assert!(told.contains("7 bytes, 1 events") && told.contains("the end is cut"), "{told}");
+    let report = interrupt(child);
+    assert!(report.contains("7 bytes, 1 events") && report.contains("the end is cut"), "{report}");
     assert_eq!(fs::read(&path).unwrap(), b"tick,address,polarity\n9,130,1\n");
 }
 
-/// Waits until the program listens: it creates its temporary output file last.
+/// Waits until the directory holds a file: `listen` creates its output file when it is ready to receive. Panics after
+/// 10 s.
 fn wait_for_file(directory: &Path) {
     for _ in 0..1000 {
         if fs::read_dir(directory).unwrap().count() > 0 {
@@ -548,11 +551,11 @@ fn wait_for_file(directory: &Path) {
     panic!("no file in 10 s");
 }
 
-/// Sends Ctrl-C, and returns the messages that follow.
+/// Sends Ctrl-C (SIGINT) to the program, waits until it ends, and returns its standard error.
 fn interrupt(child: Child) -> String {
     let id = child.id().to_string();
     assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    said(child)
+    finish(child)
 }
 
 #[test]
@@ -566,16 +569,16 @@ fn a_port_that_goes_away_is_an_error_and_what_came_is_kept() {
     wait_for_file(directory.path());
     drop(open);
     line.write_all(&[0x81, 0x82, 0, 0, 0, 9]).unwrap();
-    // Until it is read: what waits in a line that hangs up is gone.
+    // Time for the program to read: a pseudo-terminal that hangs up discards unread bytes.
     std::thread::sleep(Duration::from_secs(1));
     drop(line);
     let done = child.wait_with_output().unwrap();
-    let told = String::from_utf8(done.stderr).unwrap();
-    assert_eq!(done.status.code(), Some(2), "{told}");
+    let report = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(2), "{report}");
     assert!(
-        told.contains("6 bytes, 1 events")
-            && told.contains(&format!("error: {name}: the port is gone")),
-        "{told}"
+        report.contains("6 bytes, 1 events")
+            && report.contains(&format!("error: {name}: the port is gone")),
+        "{report}"
     );
     assert_eq!(fs::read(&path).unwrap(), b"tick,address,polarity\n9,130,1\n");
 }

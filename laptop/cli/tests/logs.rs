@@ -1,4 +1,4 @@
-//! ROS bags and MCAP files, read and written, whole and with faults.
+//! Logs of ROS, Betaflight, `ArduPilot` and `MAVLink`: read whole, cut and damaged, and ROS logs written by `encode`.
 
 mod common;
 
@@ -10,13 +10,14 @@ use flight_logs::made::{
 use serde_json::Value;
 use std::io::Write;
 
-/// Returns what `info` prints for a log, with these options.
+/// Writes `log` to a file called `name`, and returns the output of `info` with `options`.
 fn info(name: &str, log: impl AsRef<[u8]>, options: &str) -> String {
     let (_directory, path) = file(name, log);
     ran!("info {options} {path}").output
 }
 
-/// Asserts that `info` refuses a log with these words; returns what it prints if damage is accepted.
+/// Checks that `info` refuses the log with a message that contains each of `words`; returns the output of `info
+/// --accept-cut`.
 fn damaged(name: &str, log: &[u8], words: &[&str]) -> String {
     let (_directory, path) = file(name, log);
     refused(&format!("info {path}"), "", words);
@@ -30,17 +31,17 @@ fn every_packing_reads_the_same() {
     for kind in KINDS {
         let mut all = kind.packings().iter().map(|how| {
             let (_directory, path) = file(kind.name(), kind.log(how));
-            let told = ran!("info {path}").output;
-            assert!(told.contains("/imu: 100 samples of t/"), "{told}");
-            assert!(told.contains("0.495 s, 200.00 Hz\n  0 gaps above 7.500 ms"), "{told}");
-            assert!(told.contains("rate, few[]\n  text: header.frame_id\n"), "{told}");
+            let report = ran!("info {path}").output;
+            assert!(report.contains("/imu: 100 samples of t/"), "{report}");
+            assert!(report.contains("0.495 s, 200.00 Hz\n  0 gaps above 7.500 ms"), "{report}");
+            assert!(report.contains("rate, few[]\n  text: header.frame_id\n"), "{report}");
             let spikes = ran!("{SCHEME} {path}").output;
             assert!(spikes.contains("# time=99,1700000000495000\n# samples=100\n"), "{spikes}");
             spikes
         });
         let first = all.next().unwrap();
         assert!(all.all(|other| other == first), "{kind:?}");
-        // The values came through: decoded, they are within two steps.
+        // Decoded values are within two steps of the values in the log.
         let decoded = values(&good("decode", &first).output);
         for (sample, value) in (0..).zip(decoded) {
             assert!((value - wave(sample)).abs() < 0.2, "{kind:?}: sample {sample}: {value}");
@@ -114,15 +115,15 @@ fn a_log_that_is_cut_gives_what_is_before_where_that_is_accepted() {
     for kind in CHUNKED {
         for how in kind.packings() {
             let log = kind.log(how);
-            // Within the third chunk from the end, and not at its start.
+            // Cuts the log in the middle of the third chunk from the end.
             let chunk = (log.len() - kind.start().len()) / 10;
             let log = &log[..log.len() - 2 * chunk - chunk / 2];
             let words = ["byte", "ends within the record; --accept-cut"];
-            let told = damaged(kind.name(), log, &words);
-            let count = told.split("/imu: ").nth(1).unwrap().split(' ').next().unwrap();
+            let report = damaged(kind.name(), log, &words);
+            let count = report.split("/imu: ").nth(1).unwrap().split(' ').next().unwrap();
             let count: u32 = count.parse().unwrap();
-            assert!((69..80).contains(&count), "{kind:?} {how}: {told}");
-            assert!(told.starts_with("nothing is read from byte"), "{told}");
+            assert!((69..80).contains(&count), "{kind:?} {how}: {report}");
+            assert!(report.starts_with("nothing is read from byte"), "{report}");
         }
     }
 }
@@ -136,11 +137,11 @@ fn a_damaged_chunk_is_refused_or_passed_over() {
             let mut odd = chunk.clone();
             let middle = odd.len() - 40;
             odd[middle..middle + 20].fill(0x55);
-            let place = start.len() + chunk.len();
+            let offset = start.len() + chunk.len();
             let log = [&start, &chunk, &odd, &chunk, &kind.end()].map(Vec::as_slice).concat();
-            let told = damaged(kind.name(), &log, &[&format!("byte {place}: ")]);
-            let skipped = format!("skipped at byte {place}: ");
-            assert!(told.starts_with(&skipped), "{kind:?} {how}: {told}");
+            let report = damaged(kind.name(), &log, &[&format!("byte {offset}: ")]);
+            let skipped = format!("skipped at byte {offset}: ");
+            assert!(report.starts_with(&skipped), "{kind:?} {how}: {report}");
         }
     }
 }
@@ -148,15 +149,18 @@ fn a_damaged_chunk_is_refused_or_passed_over() {
 #[test]
 fn a_database_that_is_cut_or_damaged_gives_the_pages_that_are_whole() {
     let log = Kind::Db3.log("none");
-    let place = log.len() - PAGE;
-    let words = format!("byte {place}: the file ends within its page {}", log.len() / PAGE);
-    let told = damaged("log.db3", &log[..log.len() - PAGE / 2], &[&words, "--accept-cut"]);
-    assert!(told.contains("/imu: 90 samples of t/msg/Imu"), "{told}");
+    let offset = log.len() - PAGE;
+    let words = format!("byte {offset}: the file ends within its page {}", log.len() / PAGE);
+    let report = damaged("log.db3", &log[..log.len() - PAGE / 2], &[&words, "--accept-cut"]);
+    assert!(report.contains("/imu: 90 samples of t/msg/Imu"), "{report}");
     let mut other = log.clone();
     other[log.len() - 3 * PAGE] = 10;
     let words = "it is no page of a table; --accept-cut goes on behind it";
-    let told = damaged("log.db3", &other, &[words]);
-    assert!(told.contains("/imu: 90 samples of t/msg/Imu") && told.contains("1 gaps"), "{told}");
+    let report = damaged("log.db3", &other, &[words]);
+    assert!(
+        report.contains("/imu: 90 samples of t/msg/Imu") && report.contains("1 gaps"),
+        "{report}"
+    );
     let (directory, path) = file("log.db3", &log);
     std::fs::write(directory.path().join("log.db3-wal"), b"more").unwrap();
     let words = "log.db3-wal holds messages that are not in the file yet";
@@ -176,10 +180,10 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     write("a.mcap", &Kind::Mcap.log("none"));
     let path = directory.path().display();
     for path in [path.to_string(), format!("{path}/metadata.yaml")] {
-        let told = ran!("info {path}").output;
-        assert!(told.contains("/imu: 200 samples of t/msg/Imu"), "{told}");
+        let report = ran!("info {path}").output;
+        assert!(report.contains("/imu: 200 samples of t/msg/Imu"), "{report}");
         let anew = "starts anew 1 times, each a segment of its own: -495.000 ms after sample 99";
-        assert!(told.contains(anew), "{told}");
+        assert!(report.contains(anew), "{report}");
     }
     std::fs::remove_file(directory.path().join("b.db3")).unwrap();
     refused(&format!("info {path}"), "", &["b.db3: cannot be opened"]);
@@ -187,7 +191,8 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {}", empty.path().display()), "", &["which has a file metadata.yaml"]);
 }
 
-/// Steps of 101 follow the rate, which changes by less than that from frame to frame.
+/// With a threshold of 101, larger than any change between frames, every decoded sample is within 101 of the rate in
+/// the log.
 #[test]
 fn a_blackbox_log_is_read_frame_by_frame() {
     let (_directory, path) = file("log.bbl", blackbox());
@@ -202,12 +207,12 @@ fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     let log = blackbox();
     let end = log.len() - b"E\xffEnd of log\0".len();
     let words = "the log ends within a frame; --accept-cut";
-    let told = damaged("cut.bbl", &log[..end - 3], &[words]);
-    assert!(told.contains("main: 199 samples"), "{told}");
-    // Without its end it is whole.
-    let told = info("unended.bbl", &log[..end], "");
-    assert!(told.starts_with("the log has no end") && told.contains("200 samples"), "{told}");
-    // A damaged frame: the one before it is doubted, and those up to the next of all numbers mean nothing.
+    let report = damaged("cut.bbl", &log[..end - 3], &[words]);
+    assert!(report.contains("main: 199 samples"), "{report}");
+    // A log without the event that marks its end is complete.
+    let report = info("unended.bbl", &log[..end], "");
+    assert!(report.starts_with("the log has no end") && report.contains("200 samples"), "{report}");
+    // After a damaged frame, the frame before it and all up to the next I-frame are dropped.
     let before: usize = (0..69).map(|sample| frame(sample).len()).sum();
     let head = end - (0..200).map(|sample| frame(sample).len()).sum::<usize>();
     let mut other = log.clone();
@@ -218,13 +223,16 @@ fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     assert!(told.contains("main: 173 samples") && told.contains("1 gaps"), "{told}");
     // Two logs in one file.
     let (_directory, path) = file("two.bbl", [blackbox(), blackbox()].concat());
-    let told = ran!("info {path}").output;
-    assert!(told.contains("main: 200 samples") && told.contains("main:1: 200 samples"), "{told}");
+    let report = ran!("info {path}").output;
+    assert!(
+        report.contains("main: 200 samples") && report.contains("main:1: 200 samples"),
+        "{report}"
+    );
     let ran = ran!("encode --scheme sf --threshold 101 --topic main:1 --field time {path}");
     assert!(ran.output.contains("# samples=200\n"), "{}", ran.output);
 }
 
-/// The log and its text form have the same values, with a topic for each sensor.
+/// The binary and the text form of a log decode to the same angular rates, with one topic for each of two sensors.
 #[test]
 fn an_ardupilot_log_is_read_sensor_by_sensor() {
     for (name, log) in [("log.bin", dataflash()), ("log.log", dataflash_text().into_bytes())] {
@@ -247,56 +255,70 @@ fn an_ardupilot_log_is_read_sensor_by_sensor() {
 fn an_ardupilot_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     let log = dataflash();
     let size = dataflash_sample(0).len();
-    let told = damaged("cut.bin", &log[..log.len() - 3], &["the log ends within a message"]);
-    assert!(told.contains("IMU: 100 samples") && told.contains("IMU:1: 99 samples"), "{told}");
-    // A byte that is missing: the message that lacks it is doubted, and all others are read.
+    let report = damaged("cut.bin", &log[..log.len() - 3], &["the log ends within a message"]);
+    assert!(
+        report.contains("IMU: 100 samples") && report.contains("IMU:1: 99 samples"),
+        "{report}"
+    );
+    // With one byte missing, only the message that lacks it is dropped.
     let mut other = log.clone();
-    let place = log.len() - 10 * size;
-    other.remove(place + 20);
-    let words = format!("byte {place}: {} bytes are no messages; --accept-cut", size / 2 - 1);
-    let told = damaged("damaged.bin", &other, &[&words]);
-    assert!(told.contains("IMU: 99 samples") && told.contains("IMU:1: 100 samples"), "{told}");
-    // Before its start, as some loggers begin.
-    let told = info("late.bin", [b"garbage", &log[..]].concat(), "--accept-cut");
-    assert!(told.starts_with("skipped at byte 0: 7 bytes") && told.contains("IMU: 100"), "{told}");
+    let offset = log.len() - 10 * size;
+    other.remove(offset + 20);
+    let words = format!("byte {offset}: {} bytes are no messages; --accept-cut", size / 2 - 1);
+    let report = damaged("damaged.bin", &other, &[&words]);
+    assert!(
+        report.contains("IMU: 99 samples") && report.contains("IMU:1: 100 samples"),
+        "{report}"
+    );
+    // Some loggers write garbage before the first message.
+    let report = info("late.bin", [b"garbage", &log[..]].concat(), "--accept-cut");
+    assert!(
+        report.starts_with("skipped at byte 0: 7 bytes") && report.contains("IMU: 100"),
+        "{report}"
+    );
     let text = dataflash_text();
-    let told = damaged("cut.log", &text.as_bytes()[..text.len() - 20], &["a message of 4 columns"]);
-    assert!(told.contains("IMU:1: 99 samples"), "{told}");
+    let report =
+        damaged("cut.log", &text.as_bytes()[..text.len() - 20], &["a message of 4 columns"]);
+    assert!(report.contains("IMU:1: 99 samples"), "{report}");
 }
 
 #[test]
 fn a_telemetry_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     let log = tlog();
-    let told = damaged("cut.tlog", &log[..log.len() - 3], &["the log ends within a packet"]);
-    assert!(told.contains("RAW_IMU: 100 samples"), "{told}");
-    // A bit of a value, which the checksum tells.
+    let report = damaged("cut.tlog", &log[..log.len() - 3], &["the log ends within a packet"]);
+    assert!(report.contains("RAW_IMU: 100 samples"), "{report}");
+    // A flipped bit in a value, which the checksum reveals.
     let mut other = log.clone();
     other[20] ^= 1;
-    let told = damaged("damaged.tlog", &other, &["byte 0: 42 bytes are no packets; --accept-cut"]);
-    assert!(told.contains("RAW_IMU: 100 samples") && told.contains("RAW_IMU:1: 99"), "{told}");
+    let report =
+        damaged("damaged.tlog", &other, &["byte 0: 42 bytes are no packets; --accept-cut"]);
+    assert!(
+        report.contains("RAW_IMU: 100 samples") && report.contains("RAW_IMU:1: 99"),
+        "{report}"
+    );
 }
 
 #[test]
 fn logs_without_an_end_or_an_index_are_read() {
     let mut bag = Kind::Bag.log("none");
-    let place = bag.windows(10).position(|window| window == b"index_pos=").unwrap() + 10;
-    bag[place..place + 8].fill(0);
+    let offset = bag.windows(10).position(|window| window == b"index_pos=").unwrap() + 10;
+    bag[offset..offset + 8].fill(0);
     let mut mcap = Kind::Mcap.log("none");
     mcap.truncate(mcap.len() - Kind::Mcap.end().len());
-    for (kind, log, said) in [(Kind::Bag, bag, "has no index"), (Kind::Mcap, mcap, "has no end")] {
-        let told = info(kind.name(), log, "");
-        assert!(told.contains(said) && told.contains("/imu: 100 samples"), "{told}");
+    for (kind, log, words) in [(Kind::Bag, bag, "has no index"), (Kind::Mcap, mcap, "has no end")] {
+        let report = info(kind.name(), log, "");
+        assert!(report.contains(words) && report.contains("/imu: 100 samples"), "{report}");
     }
 }
 
 #[test]
 fn encodings_that_are_not_known_are_named() {
     let mut log = Kind::Mcap.log("none");
-    let place = log.windows(3).position(|window| window == b"cdr").unwrap();
-    log[place..place + 3].copy_from_slice(b"foo");
+    let offset = log.windows(3).position(|window| window == b"cdr").unwrap();
+    log[offset..offset + 3].copy_from_slice(b"foo");
     let (_directory, path) = file("log.mcap", &log);
-    let told = ran!("info {path}").output;
-    assert!(told.contains("not read: encoding `foo` with a schema of `ros2msg`"), "{told}");
+    let report = ran!("info {path}").output;
+    assert!(report.contains("not read: encoding `foo` with a schema of `ros2msg`"), "{report}");
     refused(&format!("{SCHEME} {path}"), "", &["encoding `foo` with a schema of `ros2msg`"]);
     let chunk = record(&[("op", &[5]), ("compression", b"zip"), ("size", &[0; 4])], &[]);
     let (_directory, path) = file("log.bag", [Kind::Bag.start(), chunk].concat());
@@ -306,18 +328,18 @@ fn encodings_that_are_not_known_are_named() {
 }
 
 #[test]
-fn gaps_missing_messages_and_rates_that_jump_are_told() {
-    let told = info("log.bag", Kind::Bag.of((0..50).chain(60..100)), "");
+fn gaps_missing_messages_and_rates_that_jump_are_reported() {
+    let report = info("log.bag", Kind::Bag.of((0..50).chain(60..100)), "");
     for words in [
         "1 gaps above 7.500 ms where 5.000 ms are usual: 55.000 ms after sample 49",
         "  10 messages are missing, by the numbers of those there\n",
     ] {
-        assert!(told.contains(words), "{told}");
+        assert!(report.contains(words), "{report}");
     }
     let (_directory, path) = file("log.mcap", Kind::Mcap.of((0..400).step_by(2).chain(400..500)));
-    let said = "the rate jumps 1 times: 200.00 Hz from about sample 192\n";
+    let words = "the rate jumps 1 times: 200.00 Hz from about sample 192\n";
     for ran in [ran!("info {path}"), ran!("{SCHEME} {path}")] {
-        assert!((ran.output + &ran.stderr).contains(said));
+        assert!((ran.output + &ran.stderr).contains(words));
     }
 }
 
@@ -338,8 +360,8 @@ fn bags_are_tuned_and_advised_on() {
     }
 }
 
-/// A log decodes to the same values as a table of the same spikes: for one neuron and several, with a sign and without,
-/// with sub-timesteps, with several spikes a sample, for one channel and two.
+/// Spikes decode to the same values from a ROS log as from a CSV file: for codes with one neuron and several, with and
+/// without polarity, with sub-timesteps, with several spikes a sample, and for one and two channels.
 #[test]
 fn spikes_as_messages_decode_as_those_of_a_table() {
     let flight = flight("hexarotor.csv");
@@ -367,11 +389,12 @@ fn spikes_as_messages_decode_as_those_of_a_table() {
             }
         }
     }
-    let told = ran!("info {}", path("spikes.mcap")).output;
-    assert!(told.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{told}");
+    let report = ran!("info {}", path("spikes.mcap")).output;
+    assert!(report.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{report}");
 }
 
-/// The toolbox's script uses the mean of the thresholds, and ignores the spike of the first message.
+/// A bag written by the toolbox of Dupeyroux et al. (2022) decodes as the toolbox's own script does: with the mean of
+/// the thresholds, and without the first message's spike.
 #[test]
 fn the_toolboxs_own_bag_decodes_as_its_script_does() {
     let numbers =
@@ -403,7 +426,7 @@ fn the_toolboxs_own_bag_decodes_as_its_script_does() {
 }
 
 #[test]
-fn messages_longer_than_their_definition_are_told() {
+fn messages_longer_than_their_definition_are_reported() {
     let long = |sample: u32| {
         let stamp = seconds(time(sample)).concat();
         let message = [Kind::Bag.message(sample), vec![0; (sample / 10) as usize]].concat();
@@ -415,6 +438,6 @@ fn messages_longer_than_their_definition_are_told() {
     let info = ran!("info {path}").output;
     assert!(info.contains(words), "{info}");
     let score = format!("score --scheme sf --threshold 0.1 --topic imu --field rate {path}");
-    let told = good(&score, "").stderr;
-    assert!(told.contains(words), "{told}");
+    let report = good(&score, "").stderr;
+    assert!(report.contains(words), "{report}");
 }

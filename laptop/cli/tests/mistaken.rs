@@ -1,4 +1,5 @@
-//! `listen` with another flight's file than the sender's: no value is exact, whatever the difference.
+//! `listen` with a different flight file than the sender's marks no value as exact, whatever the difference between the
+//! two files.
 
 use catalogue::run::Known;
 use lab::flight::Flight;
@@ -10,7 +11,7 @@ use std::fmt::Write;
 const SAMPLES: usize = 60;
 const NAMES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
 
-/// A flight's file but for its parts.
+/// The fields of a flight file, to be varied one at a time.
 struct File<'a> {
     scheme: &'a str,
     parameters: String,
@@ -52,7 +53,7 @@ impl File<'_> {
     }
 }
 
-/// Every code.
+/// Returns a flight file for each scheme in the catalogue.
 fn codes() -> Vec<String> {
     let codes = catalogue::INFO.iter().map(|info| File {
         scheme: info.name,
@@ -62,10 +63,10 @@ fn codes() -> Vec<String> {
     codes.map(|file| file.text()).collect()
 }
 
-/// For each kind of difference, files that differ in nothing else.
+/// Returns, for each field of a flight file, files that differ in this field only.
 fn kinds() -> BTreeMap<&'static str, Vec<String>> {
     let seven =
-        |file: &dyn Fn(usize) -> File<'static>| (0..7).map(|own| file(own).text()).collect();
+        |file: &dyn Fn(usize) -> File<'static>| (0..7).map(|step| file(step).text()).collect();
     let file = File::default;
     let swapped = |one: usize, other: usize| {
         let mut names = NAMES.map(str::to_owned);
@@ -77,39 +78,45 @@ fn kinds() -> BTreeMap<&'static str, Vec<String>> {
     let units = ["", "rad/s", "deg/s", "m/s", "m/s²", "g", "V"];
     BTreeMap::from([
         ("code", codes()),
-        ("sample type", seven(&|own| File { sample: samples[own], ..file() })),
-        ("threshold", seven(&|own| File { parameters: format!("threshold = 0.1{own}"), ..file() })),
+        ("sample type", seven(&|step| File { sample: samples[step], ..file() })),
+        (
+            "threshold",
+            seven(&|step| File { parameters: format!("threshold = 0.1{step}"), ..file() }),
+        ),
         ("order of equal channels", swaps.map(|(one, other)| swapped(one, other)).collect()),
-        ("names", seven(&|own| File { names: NAMES.map(|name| format!("{name}{own}")), ..file() })),
-        ("period", seven(&|own| File { period: 2000 + own, ..file() })),
-        ("unit", seven(&|own| File { unit: units[own], ..file() })),
-        ("counts", seven(&|own| File { counts: 1.0 + own as f64 / 8.0, ..file() })),
+        (
+            "names",
+            seven(&|step| File { names: NAMES.map(|name| format!("{name}{step}")), ..file() }),
+        ),
+        ("period", seven(&|step| File { period: 2000 + step, ..file() })),
+        ("unit", seven(&|step| File { unit: units[step], ..file() })),
+        ("counts", seven(&|step| File { counts: 1.0 + step as f64 / 8.0, ..file() })),
         (
             "filter",
-            seven(&|own| File {
-                filter: format!("filter = {{ kind = \"low-pass\", corner = {} }}", 40 + own),
+            seven(&|step| File {
+                filter: format!("filter = {{ kind = \"low-pass\", corner = {} }}", 40 + step),
                 ..file()
             }),
         ),
     ])
 }
 
-/// The frames of a vehicle with this flight, whose fingerprint they carry.
+/// Simulates the sender of a flight; returns its frames, which carry the flight's fingerprint.
 fn sent(flight: &Flight) -> Vec<u8> {
     let mut filters = flight.filters().unwrap();
     let mut items: Vec<Vec<Item>> = vec![Vec::new(); SAMPLES];
     let neurons = flight.neurons() as u16;
     let tick = |sample: usize| Tick::from_micros(sample as u64 * u64::from(flight.period.get()));
-    for (place, (channel, settings)) in flight.channels.iter().zip(flight.settings()).enumerate() {
+    for (index, (channel, settings)) in flight.channels.iter().zip(flight.settings()).enumerate() {
         let mut values: Vec<f64> = (0..SAMPLES)
-            .map(|at| (at as f64 * 0.03 * (place as f64 + 1.0)).sin() * 1.2 * channel.counts)
+            .map(|at| (at as f64 * 0.03 * (index as f64 + 1.0)).sin() * 1.2 * channel.counts)
             .collect();
-        if let Some(filter) = filters.get_mut(place) {
+        if let Some(filter) = filters.get_mut(index) {
             for value in &mut values {
                 *value = filter(*value);
             }
         }
-        // A code of steps starts from the first sample.
+        // Codes of steps start from the first sample.
         let known = Known { calibrated: None, first: &values, can_calibrate: false };
         let asked = flight.asked(channel);
         let started = flight.run_time().resolve(flight.sample, &asked, &known).unwrap();
@@ -119,14 +126,14 @@ fn sent(flight: &Flight) -> Vec<u8> {
         codec.encode(&values, &mut events);
         codec.finish(&mut events);
         codec.decode(SAMPLES, &events, &mut decoded).unwrap();
-        let first = place as u16 * neurons;
-        for own in events {
-            let at = own.sample as usize;
-            let tick = tick(at) + u32::from(own.slot) * flight.slot_ticks();
+        let first = index as u16 * neurons;
+        for event in events {
+            let at = event.sample as usize;
+            let tick = tick(at) + u32::from(event.slot) * flight.slot_ticks();
             items[at].push(Item::Event(Event {
                 tick,
-                address: first + own.neuron,
-                polarity: own.polarity,
+                address: first + event.neuron,
+                polarity: event.polarity,
             }));
         }
         for at in (0..SAMPLES).step_by(flight.keyframe_every as usize) {
@@ -139,7 +146,7 @@ fn sent(flight: &Flight) -> Vec<u8> {
                     kind,
                     bits,
                 }));
-            } else if place == 0 {
+            } else if index == 0 {
                 items[at].push(Item::Heartbeat { tick: tick(at), address: 0 });
             }
         }
@@ -148,7 +155,7 @@ fn sent(flight: &Flight) -> Vec<u8> {
         .with_fingerprint(flight.fingerprint());
     let (mut bytes, mut buffer) = (Vec::new(), [0; MAX_FRAME]);
     for mut items in items {
-        // Events by time and address, then keyframes.
+        // The transmitter takes events by time and address, then keyframes.
         items.sort_by_key(|item| match item {
             Item::Event(event) => (false, event.tick.micros(), event.address),
             other => (true, other.tick().micros(), 0),
@@ -161,7 +168,7 @@ fn sent(flight: &Flight) -> Vec<u8> {
     bytes
 }
 
-/// A sample as a keyframe has it.
+/// Returns the bits by which a keyframe expresses a sample.
 fn bits(flight: &Flight, value: f64) -> u32 {
     use catalogue::run::SampleType;
     match flight.sample {
@@ -175,7 +182,7 @@ fn bits(flight: &Flight, value: f64) -> u32 {
     }
 }
 
-/// How many values the receiver of `listen` calls exact.
+/// Returns the number of values that `listen` would mark as exact, for these bytes and the receiver of this flight.
 fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     use lab::events::{LinkReader, Stream, values_writer};
     let mut heard = Vec::new();
@@ -201,12 +208,12 @@ fn no_mistaken_pair_has_an_exact_value() {
     let flights: Vec<_> = found
         .iter()
         .map(|(text, kinds)| {
-            let flight = Flight::parse(text).unwrap_or_else(|told| panic!("{told}: {text}"));
+            let flight = Flight::parse(text).unwrap_or_else(|error| panic!("{error}: {text}"));
             let frames = sent(&flight);
             (text, kinds, flight, frames)
         })
         .collect();
-    let (mut own, mut same) = (0, 0);
+    let (mut heard_own, mut same) = (0, 0);
     let mut pairs: BTreeMap<&str, usize> = BTreeMap::new();
     for (near, near_kinds, sender, frames) in &flights {
         for (far, far_kinds, flight, _) in &flights {
@@ -215,10 +222,10 @@ fn no_mistaken_pair_has_an_exact_value() {
             }
             let exact = exact(flight, frames);
             if near == far {
-                own += usize::from(exact > 20);
+                heard_own += usize::from(exact > 20);
                 continue;
             }
-            // Fields of one width code as the cells between their centres.
+            // Receptive fields of one width are the same code as the cells between their centres.
             if sender.fingerprint() == flight.fingerprint() {
                 same += 1;
                 continue;
@@ -228,9 +235,9 @@ fn no_mistaken_pair_has_an_exact_value() {
             common.for_each(|kind| *pairs.entry(kind).or_default() += 1);
         }
     }
-    println!("{pairs:?}; {own} of {} hear their own", flights.len());
+    println!("{pairs:?}; {heard_own} of {} hear their own", flights.len());
     assert!(kinds.keys().all(|kind| pairs[kind] >= 30), "{pairs:?}");
     assert_eq!(same, 2, "grf and position");
-    // Means are never exact, and some rate codes need more samples.
-    assert!(own + 8 > flights.len(), "{own} of {}", flights.len());
+    // Codes that decode to means are never exact, and some rate codes need more samples.
+    assert!(heard_own + 8 > flights.len(), "{heard_own} of {}", flights.len());
 }

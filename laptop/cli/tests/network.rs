@@ -1,4 +1,4 @@
-//! Networks from NIR and JSON become constants for chips; tests of the constants, of the reported cost, and of what is
+//! `network` for chips: the constants written for networks in NIR and JSON, the reported costs, and the networks
 //! refused.
 
 mod common;
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The code for which `roll.nir` would have been trained; its weights were computed, not trained.
+/// Options of the code that drives `roll.nir`, a network whose weights were computed rather than trained.
 const CODE: &str = "--scheme position --neurons 20 --min -2 --max 2 --column gyro_x";
 
 fn peers(name: &str) -> PathBuf {
@@ -20,17 +20,17 @@ fn network(file: &str) -> String {
     format!("network {file} {CODE} {AS_THE_CHIP} --reset zero {}", flight("hexarotor.csv"))
 }
 
-/// Neurons compare after each spike, as the chip does by itself, and the whole recording is tuned on.
+/// Options with which neurons compare after each spike, the chip's own way, and the whole recording is used for tuning.
 const AS_THE_CHIP: &str = "--compare spike --no-held-out";
 
-/// Returns the numbers in the line of the report that begins with `start`.
-fn figures(told: &str, start: &str) -> Vec<f64> {
-    let line = told.lines().find_map(|line| line.strip_prefix(start)).expect(start);
+/// Returns the numbers in the line of a report that begins with `start`.
+fn figures(report: &str, start: &str) -> Vec<f64> {
+    let line = report.lines().find_map(|line| line.strip_prefix(start)).expect(start);
     let numbers = line.split([' ', ',', ';', '%', ':']);
     numbers.filter_map(|number| number.parse().ok()).collect()
 }
 
-/// The firmware `rate-loop` compiles this constant for every core, and flies it in QEMU.
+/// The constant equals the one in the firmware `examples/rate-loop`, which is built for every core and runs in QEMU.
 #[test]
 fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     let ran = good(&network(&peers("roll.nir").display().to_string()), "");
@@ -47,23 +47,25 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     assert!(winners[0] > 80.0, "{}", ran.stderr);
 }
 
-/// Writes a network in JSON that step forward drives; returns the file and the command that brings it onto the chip.
+/// Writes a network to a JSON file; returns the file's directory, and the arguments that convert the network with the
+/// spikes of step forward as its inputs.
 fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
     let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
     let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
     (directory, format!("network {path} {options} {sf} {}", flight("hexarotor.csv")))
 }
 
-/// The weights fit the chips, and thresholds lie between the sums that weights can reach: nothing is rounded. One spike
-/// a sample reaches one neuron at a time, so the order and the sums within a step do not matter.
+/// Networks whose weights the chip can hold unrounded give the same spikes on the chip as in double precision. No sum
+/// of weights equals a threshold, and at most one spike a sample reaches a neuron, so that the order of spikes does not
+/// matter.
 #[test]
-fn networks_that_a_chip_can_hold_cost_nothing() {
+fn networks_that_a_chip_can_hold_lose_nothing() {
     let three = r#"{"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
         {"name": "two", "weights": [[7, -4]], "threshold": [12.5]}, {"weights": [[2]], "threshold": 3.5}]"#;
-    // The second neuron follows the first; its own spikes hold it back.
+    // The second neuron is excited by the spikes of the first, and inhibited by its own.
     let recurrent = r#"{"name": "one", "weights": [[3, 3], [2, 1]], "recurrent": [[0, 0], [-2, 0]],
         "threshold": [8.5, 30.5]}]"#;
-    // Of ReckOn the first layer's third neuron has a pair of its own.
+    // ReckOn stores neurons in pairs: the third neuron of the first layer is alone in its pair.
     let reckon = r#"{"name": "one", "weights": [[3, 0], [0, 5], [2, 2]], "threshold": 11.5, "bias": [0, 1, 0],
         "recurrent": [[0, 2, 0], [0, 0, -4], [0, 0, 0]]},
         {"name": "two", "weights": [[7, 4, -4], [1, 6, 5]], "threshold": [12.5, 6.5]}]"#;
@@ -130,7 +132,7 @@ fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
         ("", one("[[1, 1]]", r#""threshold": 1, "keep": 1.5"#), &["keeps 1.5"]),
         ("", one("[[1, 1]]", r#""threshold": 1, "leek": 1"#), &["unknown field `leek`"]),
         ("", one("[]", r#""threshold": 1"#), &["layer 1: no weights"]),
-        // tinyODIN has no outputs that never fire, and those of ReckOn are read after a leak.
+        // tinyODIN cannot hold outputs that never fire; ReckOn's are read after their leak.
         ("", format!("{{\"weights\": {leaky}}}"), &["readout: tinyODIN has no outputs"]),
         ("--chip reckon", format!("{{\"weights\": {leaky}}}"), &["read after they have leaked"]),
         ("--chip reckon", of(&[(257, 2)]), &["256 neurons"]),
@@ -151,13 +153,13 @@ fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
 }
 
 #[test]
-fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
-    // Neurons of ReckOn keep 0.875 at least.
+fn changes_by_a_chip_are_reported_and_a_recording_is_held_out() {
+    // A step leaves at least 0.875 of the potential of a neuron in ReckOn.
     let half = r#"{"weights": [[0.4, -0.3]], "keep": 0.6, "threshold": 0.5}]"#;
     let (_directory, command) = driven(half, 0.05, "--chip reckon");
-    let told = good(&command, "").stderr;
+    let report = good(&command, "").stderr;
     let leaks = "warning: 1 neurons or outputs leak otherwise than trained, by up to 0.2750";
-    assert!(told.contains(leaks), "{told}");
+    assert!(report.contains(leaks), "{report}");
 
     let silent = r#"{"weights": [[1, 1]], "threshold": 1e9}]"#;
     let (_directory, command) = driven(silent, 0.1, "--no-held-out");
@@ -165,7 +167,7 @@ fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
     assert!(silent.contains("warning: no output fires") && !silent.contains("100.0 %"), "{silent}");
     assert!(silent.contains("--held-out shows another"), "{silent}");
 
-    // Fires above 0.5 after a leak by halves: what the chip has not.
+    // A leak that halves the potential in each step, which tinyODIN cannot do.
     let low = r#"{"weights": [[0.31, -0.29], [0.27, 0.33]], "keep": 0.5, "threshold": 0.5},
         {"weights": [[0.61, -0.59]], "keep": 0.3, "threshold": 0.55}]"#;
     let (_directory, command) = driven(low, 0.1, "--compare spike");
@@ -179,21 +181,21 @@ fn what_a_chip_changes_is_told_and_a_recording_is_held_out() {
     assert!(held_out.starts_with("layer 1: 2, ") && !low.contains("--held-out"), "{low}");
 }
 
-/// Each line of spikes is a step: its weights are added, and the neuron fires at 12. Later lines are answered by the
-/// chip's model, which keeps its potentials between steps.
+/// A file of spikes, one line for each step, can take the place of a recording. With `--live`, steps from standard
+/// input are answered by the chip's model, which keeps its potentials between steps.
 #[test]
-fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
+fn a_file_of_spikes_drives_a_network_that_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 11.5}]}"#;
     let (_network, network) = file("two.json", json);
     let (_steps, steps) = file("steps.txt", "0 1\n\n1\n0\n1\n0\n0\n");
     let ran = good(&format!("network {network} {steps} {AS_THE_CHIP} --live"), "1\n0 1\n\n1\n1\n");
     let outputs = ran.output.lines().map(|line| line.split(' ').skip(1).collect::<Vec<_>>());
     assert_eq!(outputs.collect::<Vec<_>>(), [vec![], vec![], vec![], vec!["1"], vec![]]);
-    // Nothing leaks, so that nothing is done in a step without a spike.
+    // Without leaks, the chip takes no clock cycles for a step without spikes.
     let idle = ran.output.lines().map(|line| line.starts_with('0')).collect::<Vec<_>>();
     assert_eq!(idle, [false, false, true, false, false], "{}", ran.output);
     assert!(ran.stderr.contains("outputs agree in 100.0 % of 7 steps"), "{}", ran.stderr);
-    // Without --live there is the constant, as from a recording.
+    // Without --live, the Rust constant is written to standard output.
     let ran = ran!("network {network} {steps} {AS_THE_CHIP}");
     assert!(ran.output.contains("TinyOdinNetwork<2, 2, 2>"), "{}", ran.output);
 
@@ -206,10 +208,10 @@ fn spikes_as_they_are_drive_a_network_that_answers_step_by_step() {
     refused(&reckon, "0\n", &["only tinyODIN"]);
 }
 
-/// Within a step a rise and a fall cancel, but the chip's neurons see one after the other. Extra rows and rungs make
-/// neurons compare only once a step; then nothing is lost, and this variant is chosen.
+/// A rise and a fall in the same step cancel out in the trained network, but not on a chip that compares after each
+/// spike. Comparing once a step takes more events, but loses nothing here, and is therefore chosen.
 #[test]
-fn neurons_compare_once_a_step_where_that_holds_better() {
+fn neurons_compare_once_a_step_if_that_agrees_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},
         {"name": "two", "weights": [[7, -1]], "threshold": 5.5}]}"#;
     let (_network, network) = file("two.json", json);
@@ -231,13 +233,17 @@ fn neurons_compare_once_a_step_where_that_holds_better() {
     assert_eq!(ran.output.lines().count(), 3, "{}", ran.output);
 }
 
-/// snnTorch writes the same file for every reset; only its spikes show which reset it used.
+/// snnTorch writes the same file for every reset mode. With the right `--reset`, the spikes equal those recorded in
+/// snnTorch; with a different one, the report warns.
 #[test]
-fn resets_are_asked_for_and_compared_with_the_frameworks_own_spikes() {
+fn reset_modes_are_required_and_compared_with_the_frameworks_spikes() {
     let at = |name: &str| peers("nir").join(name).display().to_string();
-    let own = fs::read_to_string(at("snntorch.to-value.txt")).unwrap();
+    let recorded = fs::read_to_string(at("snntorch.to-value.txt")).unwrap();
     let column = |number: usize| -> String {
-        own.lines().map(|line| line.split(';').nth(number).unwrap().to_owned() + "\n").collect()
+        recorded
+            .lines()
+            .map(|line| line.split(';').nth(number).unwrap().to_owned() + "\n")
+            .collect()
     };
     let (_inputs, inputs) = file("inputs.txt", column(0));
     let (_outputs, outputs) = file("outputs.txt", column(2));
@@ -263,10 +269,10 @@ fn resets_are_asked_for_and_compared_with_the_frameworks_own_spikes() {
     refused(&short, "", &["1 steps", "200"]);
 }
 
-/// `ReckOn` subtracts a threshold after the leak, the network before it. Weights from each neuron to itself make up the
-/// difference.
+/// `ReckOn` subtracts the threshold after the leak, the trained network before it. Weights from each neuron to itself
+/// compensate for the difference.
 #[test]
-fn reckon_subtracts_where_the_network_does() {
+fn a_reset_by_subtraction_is_corrected_for_reckon() {
     let json = r#"{"layers": [{"name": "one", "weights": [[127, -20], [60, 50]], "keep": 0.9,
         "threshold": 127.5}]}"#;
     let (_network, network) = file("one.json", json);
@@ -281,8 +287,8 @@ fn reckon_subtracts_where_the_network_does() {
     }
 }
 
-/// `on_chip.py`, an example of the Python package, trained this network in tinyODIN's arithmetic, with one comparison a
-/// step, on the first half of the flight. The double-precision run has no floor at -2048, unlike the chip.
+/// A network that the Python example `on_chip.py` trained in tinyODIN's arithmetic agrees with the chip in 99 % of the
+/// active steps, although its double-precision run has no lower bound at -2048.
 #[test]
 fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let network = peers("on_chip.json").display().to_string();
@@ -296,7 +302,8 @@ fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     assert!(share >= 99.0 && active > 50.0, "{}", ran.stderr);
 }
 
-/// Returns the roll rates that `turns.py` trains on, or holds out: every third stretch of 250 samples is held out.
+/// Returns a CSV table of the roll rates on which `turns.py` trained its network or, with `is_held_out`, of every third
+/// stretch of 250 samples, which it held out.
 fn stretches(is_held_out: bool) -> String {
     let flight = fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let rows: Vec<&str> = flight.lines().skip(1).collect();
@@ -309,8 +316,8 @@ fn stretches(is_held_out: bool) -> String {
     table
 }
 
-/// `turns.py` prints how often its neurons fire; the double-precision run fires as often, and the chip nearly so. The
-/// firmware `rate-loop` has this constant.
+/// A recurrent network that `turns.py` trained fires as often as that script reports, in double precision exactly and
+/// on the chip within 3 %. The constant equals the one in the firmware `examples/rate-loop`.
 #[test]
 fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     let (_trained, trained) = file("trained.csv", stretches(false));
@@ -321,7 +328,7 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
         "network {turns} --chip reckon --scheme position --neurons 25 --min=-1.2 --max 1.2 --dt 0.005 --reset \
              zero --column gyro_x {trained} --held-out {held_out} --bytes {bytes}"
     );
-    // A header, pairs, and 25 inputs, 32 neurons and 3 outputs for each neuron.
+    // A header; the pairs of neurons; for each neuron its 25 inputs, 32 neurons and 3 outputs.
     assert_eq!(fs::read(bytes).unwrap().len(), 16 + 16 * 4 + 32 * (25 + 32 + 3));
     assert!(
         ran.stderr.contains("32 of the chip's 256 neurons, 25 of its 256 inputs"),
@@ -329,19 +336,19 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
         ran.stderr
     );
     let (tuned, held_out) = ran.stderr.split_once("held out:\n").unwrap();
-    for (told, expected) in [(tuned, 2147.0), (held_out, 1365.0)] {
-        let of_spikes = told.rsplit_once("\nlayer: neurons").map_or(told, |(_, told)| told);
+    for (report, expected) in [(tuned, 2147.0), (held_out, 1365.0)] {
+        let of_spikes = report.rsplit_once("\nlayer: neurons").map_or(report, |(_, report)| report);
         let [neurons, clipped, spikes, on_chip, _] = figures(of_spikes, "node `neurons`: ")[..]
         else {
             panic!("{}", ran.stderr)
         };
         assert_eq!((neurons, clipped, spikes), (32.0, 0.0, expected), "{}", ran.stderr);
         assert!((on_chip - spikes).abs() < 0.03 * spikes, "{}", ran.stderr);
-        let [_, _, agreeing, _] = figures(told, "outputs agree")[..] else {
+        let [_, _, agreeing, _] = figures(report, "outputs agree")[..] else {
             panic!("{}", ran.stderr)
         };
         assert!(agreeing > 97.0, "{}", ran.stderr);
-        let of_outputs = told.rsplit("node `outputs`: ").next().unwrap();
+        let of_outputs = report.rsplit("node `outputs`: ").next().unwrap();
         let [_, size, error] = figures(of_outputs, "3 outputs, ")[..] else {
             panic!("{}", ran.stderr)
         };
@@ -352,7 +359,7 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
-/// snnTorch and Norse write layers as nested graphs, of which one is recurrent.
+/// Networks whose layers are nested graphs, as snnTorch and Norse write them, are read, and so is a recurrent layer.
 #[test]
 fn nested_and_recurrent_graphs_are_taken() {
     let whole = good(&network(&peers("roll.nir").display().to_string()), "");
@@ -367,7 +374,7 @@ fn nested_and_recurrent_graphs_are_taken() {
 
     let recurrent = good(&network(&peers("recurrent.nir").display().to_string()), "");
     let rows = recurrent.output.split("recurrent: &[").nth(1).unwrap();
-    // From neuron 1 to neuron 0, below 0, as in the graph; none to itself.
+    // As in the graph, the weight to neuron 0 is negative, and that to neuron 1 is 0.
     let row: Vec<i32> = rows
         .lines()
         .nth(2)
@@ -383,7 +390,8 @@ fn nested_and_recurrent_graphs_are_taken() {
     assert!(spikes > 1_000.0 && (spikes - on_chip).abs() < 0.1 * spikes, "{}", recurrent.stderr);
 }
 
-/// A damaged file is refused or read as another network; the program never panics.
+/// A network file that is cut or has a flipped byte is refused, or read as a different network, but never makes the
+/// program panic.
 #[test]
 fn damaged_files_are_refused() {
     let whole = fs::read(peers("roll.nir")).unwrap();
@@ -403,7 +411,8 @@ fn damaged_files_are_refused() {
     assert!(refusals >= 60, "{refusals}");
 }
 
-/// `cargo verify peers` runs this with the Python package `nir`.
+/// Files written by the Python package `nir` are read, and a faulty one is refused with the name of the node. `cargo
+/// verify peers` runs this test.
 #[test]
 #[ignore = "needs PEERS_PYTHON with nir"]
 fn files_of_pypis_nir_are_read_and_what_is_wrong_is_named() {

@@ -1,4 +1,4 @@
-//! Output files are written whole or not at all, however the program ends, and errors name the file.
+//! Output files are written completely or not at all, however the program ends, and errors name the file.
 #![cfg(unix)]
 
 mod common;
@@ -9,7 +9,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// More rows than are read before the output is opened.
+/// Number of table rows sent to `encode`: more than it reads before it opens its output.
 const ROWS: usize = 20_000;
 
 #[test]
@@ -37,7 +37,7 @@ fn ctrl_c_leaves_no_file() {
 }
 
 #[test]
-fn a_full_disk_is_told_with_the_file() {
+fn a_full_disk_is_reported_with_the_files_name() {
     for command in ["signal -o /dev/full", "signal --seconds 5000 -o /dev/full"] {
         refused(command, "", &["error: /dev/full: cannot be written: No space left"]);
     }
@@ -51,19 +51,19 @@ fn a_full_disk_is_told_with_the_file() {
             .unwrap();
         child.stdin.take().unwrap().write_all(b"x\n1\n2\n1\n").unwrap();
         let done = child.wait_with_output().unwrap();
-        let told = String::from_utf8(done.stderr).unwrap();
-        assert_eq!(done.status.code(), Some(2), "{told}");
+        let report = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(2), "{report}");
         assert!(
-            told.contains("error: standard output: cannot be written: No space left"),
-            "{told}"
+            report.contains("error: standard output: cannot be written: No space left"),
+            "{report}"
         );
     }
 }
 
-/// For a table of 100 000 columns the message lists only the first names.
+/// The message for a missing column lists only the first names of a table with 100 000 columns.
 #[test]
 fn a_message_is_short_though_names_are_many() {
-    let names: Vec<String> = (0..100_000).map(|own| format!("c{own}")).collect();
+    let names: Vec<String> = (0..100_000).map(|index| format!("c{index}")).collect();
     let row = vec!["0"; names.len()].join(",");
     let table = format!("{}\n{row}\n{row}\n", names.join(","));
     let ran = spikewire("encode --scheme sf --threshold 1 -", &table);

@@ -1,4 +1,4 @@
-//! `--params FILE`: read by every command that takes a scheme; options on the command line override it.
+//! `--params FILE` is accepted by every command that takes a scheme, and options on the command line override it.
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! Pictures: PNG and SVG show the same, long curves are thinned, and texts say what is shown.
+//! `plot`: PNG and SVG show the same picture, long curves are decimated, and panels state units, parameters and
+//! latency.
 
 mod common;
 
@@ -7,22 +8,22 @@ use std::fmt::Write;
 use std::fs;
 use tiny_skia::Pixmap;
 
-/// Draws a plot, and returns the bytes of the picture.
+/// Runs `plot`; returns the bytes of the picture, and standard error.
 fn plot(options: &str, ending: &str) -> (Vec<u8>, String) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("picture").with_extension(ending);
-    let told = ran!("plot {options} -o {}", path.display()).stderr;
-    (fs::read(path).unwrap(), told)
+    let report = ran!("plot {options} -o {}", path.display()).stderr;
+    (fs::read(path).unwrap(), report)
 }
 
 fn svg(options: &str) -> String {
     String::from_utf8(plot(options, "svg").0).unwrap()
 }
 
-/// The colour of the decoded curve.
+/// Colour of the decoded curve, as red, green, blue.
 const DECODED: [u8; 3] = [0xe8, 0x7d, 0x1e];
 
-/// Returns the corners of the curves of this colour in an SVG.
+/// Returns the points of the longest curve of this colour in an SVG.
 fn curve(svg: &str, colour: &str) -> Vec<(f64, f64)> {
     let lines = svg.lines().filter(|line| line.contains("<polyline") && line.contains(colour));
     let points = |line: &str| -> Vec<(f64, f64)> {
@@ -38,7 +39,8 @@ fn curve(svg: &str, colour: &str) -> Vec<(f64, f64)> {
     lines.map(points).max_by_key(Vec::len).unwrap()
 }
 
-/// Every segment of the SVG's decoded curve is in the PNG without a break, and nothing is beyond the curve.
+/// The PNG has the decoded curve at every point where the SVG has it, and no pixel of the curve's colour above the
+/// curve's highest point.
 #[test]
 fn png_shows_what_svg_shows() {
     let hexarotor = flight("hexarotor.csv");
@@ -117,7 +119,7 @@ fn panels_tell_unit_parameters_and_latency() {
     assert!(svg(&format!("--scheme sf --threshold 0.5 {path}")).contains("\nsample\n"));
 }
 
-/// The legend stands above the curves' field, which begins below the title.
+/// The legend stands above the highest point of the signal's curve.
 #[test]
 fn the_legend_is_off_the_curves() {
     let hexarotor = flight("hexarotor.csv");

@@ -1,4 +1,4 @@
-//! Encodes and decodes with every scheme and sample type, from tables and from flight logs.
+//! `encode` piped into `decode`, for every scheme and sample type, and the commands that score and draw the result.
 
 mod common;
 
@@ -71,7 +71,7 @@ fn sub_timesteps_have_times_of_their_own() {
 
 #[test]
 fn scores_are_those_of_a_signal_worked_by_hand() {
-    // Decoded 0, 0, 1, 1: errors 0, 1, 1, 1 less; the variance of 0, 1, 2, 1 is 1/2.
+    // Decoded as 0, 0, 1, 1: the squared errors are 0, 1, 1, 0, and the signal's variance is 1/2.
     let (_directory, path) = file("x.csv", table(&[0.0, 1.0, 2.0, 1.0]));
     let figures = ran!("score --scheme sf --threshold 1 --rate 2 --json {path}").json();
     let number = |name: &str| figures[0][name].as_f64().unwrap();
@@ -121,7 +121,7 @@ fn a_scheme_that_refuses_is_a_row() {
     let rows = rows.as_array().unwrap();
     let refusals = rows.iter().filter(|row| row["refused"].is_string()).count();
     assert!((1..rows.len()).contains(&refusals), "{rows:?}");
-    // One scheme that is asked for alone ends the command.
+    // If only this scheme is asked for, its refusal is the command's.
     let alone = format!("score --scheme mw --sample q8.8 --rate 100 {path}");
     refused(&alone, "", &["threshold"]);
 }

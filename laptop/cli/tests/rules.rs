@@ -1,12 +1,13 @@
-//! Rules that the program adds to those of the schemes, which `host-tests` checks.
+//! Properties of the schemes as the program runs them; `host-tests` checks the schemes themselves.
 
 mod common;
 
 use common::{events, good, table, values};
 
-/// The earlier a spike, the nearer the value to its neuron; `floor` suppresses the latest slots.
+/// In a code with time slots, the neuron nearest to the value fires first. `--floor` suppresses the spikes of the last
+/// slots.
 #[test]
-fn slots_come_in_their_order() {
+fn earlier_slots_are_nearer_neurons() {
     for (floor, neurons) in [("", &[1, 0, 2][..]), ("--floor 16", &[1, 0])] {
         let slots = format!("grf-slots --neurons 4 --slots 100 --min 0 --max 1 {floor}");
         let encoded = good(&format!("encode --scheme {slots} -"), &table(&[0.1])).output;
@@ -54,6 +55,6 @@ fn probabilistic_spikes_come_from_their_seed() {
     assert_eq!(first, again);
     assert_ne!(events(&first), events(&other));
     assert!(first.contains("# seed=1\n"));
-    // The neuron at its own centre, 1/2, always fires.
+    // The middle neuron always fires: the signal is at its centre, 1/2.
     assert_eq!(events(&first).iter().filter(|event| event.1 == 2).count(), 200);
 }

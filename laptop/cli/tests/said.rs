@@ -1,10 +1,13 @@
-//! Runs the program on the cases in `said`, one on each line, and checks its words.
+//! Runs the program on the cases in the directory `said`, one case on each line, and checks what it prints.
 //!
-//! `command << input => words | words`: the command is refused, with these words on standard error. With `->` in place
-//! of `=>` it succeeds, with these words on either output, and without those that follow a `!`. With `==` it succeeds
-//! and writes exactly this text. ` |> ` pipes the output of one command into the next. `\n`, `\r`, `\t` and `\\` are
-//! escapes. `NAME := text` defines a name for a text; `@NAME := text` writes the text to a file, and the name is its
-//! path; `{NAME}` inserts it.
+//! - `command << input => words | words`: the command fails, and standard error contains each of the words.
+//! - `command << input -> words | !words`: the command succeeds, and its outputs contain each of the words, but none
+//!   that follow a `!`.
+//! - `command << input == text`: the command succeeds, and writes exactly this text.
+//!
+//! ` |> ` pipes the output of one command into the next. `\n`, `\r`, `\t` and `\\` are escapes. `NAME := text` defines
+//! a name for a text; `@NAME := text` writes the text to a file, and the name stands for the file's path; `{NAME}`
+//! inserts it.
 
 mod common;
 
@@ -13,10 +16,10 @@ use flight_logs::made::{KINDS, blackbox, dataflash, dataflash_text, tlog};
 use std::fs;
 use std::path::Path;
 
-/// Names and the texts they stand for, the last defined first.
+/// Pairs of a name and the text that `{name}` stands for; a later definition may use the names before it.
 type Names = Vec<(String, String)>;
 
-/// Returns the names that every table may use.
+/// Returns the names that all files of cases may use, after writing the files that some of them stand for.
 fn names(directory: &Path) -> Names {
     let wave = |size: f64| -> Vec<f64> {
         (0..500).map(|sample| (f64::from(sample) * 0.05).sin() * size).collect()
@@ -44,7 +47,7 @@ fn names(directory: &Path) -> Names {
     names
 }
 
-/// Replaces the names in a text.
+/// Replaces each `{name}` in a text by the text that it stands for.
 fn plain(text: &str, names: &Names) -> String {
     let mut text = text.to_owned();
     for (name, value) in names.iter().rev() {
@@ -58,7 +61,7 @@ fn unescaped(text: &str) -> String {
     text.replace(r"\t", "\t").replace('\0', r"\")
 }
 
-/// Runs a case, and returns a description of its fault, if there is one.
+/// Runs a case; returns the case and the program's output if the result is not the expected one.
 fn fault(case: &str, names: &Names) -> Option<String> {
     let parts = ["=>", "->", "=="].into_iter().filter_map(|sign| {
         let (start, words) = case.split_once(&format!(" {sign}"))?;
@@ -81,14 +84,14 @@ fn fault(case: &str, names: &Names) -> Option<String> {
     let words = unescaped(&plain(words.trim_start_matches(' '), names));
     let is_right = match sign {
         "==" => status == 0 && output == words,
-        "=>" => status == 2 && words.split(" | ").all(|own| stderr.contains(own)),
+        "=>" => status == 2 && words.split(" | ").all(|word| stderr.contains(word)),
         _ => {
-            let said = format!("{output}{stderr}");
-            let is_said = |own: &str| match own.strip_prefix('!') {
-                Some(unsaid) => !said.contains(unsaid),
-                None => said.contains(own),
+            let printed = format!("{output}{stderr}");
+            let is_right = |word: &str| match word.strip_prefix('!') {
+                Some(unsaid) => !printed.contains(unsaid),
+                None => printed.contains(word),
             };
-            status == 0 && words.split(" | ").all(is_said)
+            status == 0 && words.split(" | ").all(is_right)
         }
     };
     (!is_right).then(|| {

@@ -1,4 +1,4 @@
-//! Clocks that wrap or restart: times continue beyond 32 bits, and nothing is joined across a reboot.
+//! Clocks that wrap or restart: times continue beyond 32 bits, and codes start anew after a reboot.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{file, good, ran};
 use flight_logs::made::Kind;
 use std::fmt::Write;
 
-/// Returns a table of these times in µs and a wave.
+/// Returns a CSV table with these times, in µs, and a sine wave.
 fn table(times: impl Iterator<Item = i64>) -> String {
     let mut table = "time_us,x\n".to_owned();
     for (sample, time) in times.enumerate() {
@@ -16,7 +16,7 @@ fn table(times: impl Iterator<Item = i64>) -> String {
     table
 }
 
-/// Returns step forward's row of the scores, and its spikes a second.
+/// Runs `score` with step forward; returns standard error, and the number of spikes a second.
 fn spikes_a_second(path: &str) -> (String, f64) {
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
     let rows: serde_json::Value = ran.json();
@@ -29,9 +29,9 @@ fn a_clock_of_32_bits_goes_on_behind_its_end() {
     let straight = (0..1000).map(|sample| start + sample * 5000);
     let (_directory, wrapped) = file("x.csv", table(straight.clone().map(|time| time % (1 << 32))));
     let (_other, plain) = file("x.csv", table(straight));
-    let (told, rate) = spikes_a_second(&wrapped);
-    assert!(told.contains("runs over 1 times, first after sample 399"), "{told}");
-    assert!(!told.contains("back in time") && !told.contains("anew"), "{told}");
+    let (report, rate) = spikes_a_second(&wrapped);
+    assert!(report.contains("runs over 1 times, first after sample 399"), "{report}");
+    assert!(!report.contains("back in time") && !report.contains("anew"), "{report}");
     assert_eq!(rate, spikes_a_second(&plain).1);
     let encode = |path: &str| ran!("encode --scheme sf --threshold 0.1 --column x {path}").output;
     assert_eq!(encode(&wrapped), encode(&plain));
@@ -41,16 +41,16 @@ fn a_clock_of_32_bits_goes_on_behind_its_end() {
 fn a_reboot_starts_a_segment_of_its_own() {
     let flight = |samples: i64| (0..samples).map(|sample| 100_000 + sample * 5000);
     let (_directory, path) = file("x.csv", table(flight(1000).chain(flight(600))));
-    let (told, rate) = spikes_a_second(&path);
-    assert!(told.contains("the clock starts anew 1 times"), "{told}");
-    assert!(!told.contains("back in time"), "{told}");
-    // As much as both flights alone.
+    let (report, rate) = spikes_a_second(&path);
+    assert!(report.contains("the clock starts anew 1 times"), "{report}");
+    assert!(!report.contains("back in time"), "{report}");
+    // The rate refers to the duration of both flights, without the time between them.
     let seconds = 999.0 * 0.005 + 599.0 * 0.005;
     let spikes = (rate * seconds).round();
     assert!((rate * seconds - spikes).abs() < 1e-6 && spikes > 100.0, "{rate}");
 }
 
-/// The second segment is encoded from its own first sample, as if it stood alone.
+/// The samples after a restart of the clock are encoded from their own first value, as if they stood alone.
 #[test]
 fn no_code_joins_two_segments() {
     let values = |offset: f64| (0..200).map(move |sample| offset + f64::from(sample).sin() * 0.05);
@@ -70,13 +70,13 @@ fn no_code_joins_two_segments() {
     let curves = |colour: &str| {
         svg.lines().filter(|line| line.contains("<polyline") && line.contains(colour)).count()
     };
-    // One for the legend.
+    // Two segments, and the line in the legend.
     assert_eq!((curves("#1F5FA8"), curves("#E87D1E")), (3, 3));
     assert!(svg.contains("time, s, of 2 segments one after the other"));
     assert!(svg.contains("\n1.5\n") && !svg.contains("\n-0.5\n"), "2 s from 0 on");
 }
 
-/// The messages of this bag are stored in reverse order.
+/// A bag whose messages are stored in reverse order has the right duration and rate.
 #[test]
 fn an_unsorted_bag_has_a_length_and_a_rate() {
     let messages = (0..160).rev().map(|sample| Kind::Bag.record(sample));
@@ -86,6 +86,6 @@ fn an_unsorted_bag_has_a_length_and_a_rate() {
     let ran = ran!("info {path}").output;
     assert!(ran.contains("160 samples") && ran.contains("0.795 s, 200.00 Hz"), "{ran}");
     let score = format!("score --scheme sf --threshold 0.1 --topic /imu --field rate {path}");
-    let told = good(&score, "").stderr;
-    assert!(told.contains("159 steps back in time"), "{told}");
+    let report = good(&score, "").stderr;
+    assert!(report.contains("159 steps back in time"), "{report}");
 }

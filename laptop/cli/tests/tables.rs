@@ -1,4 +1,4 @@
-//! Tables as other programs write them, and files that are no tables.
+//! Tables as other programs write them, and files that are not tables.
 
 mod common;
 
@@ -50,14 +50,14 @@ fn other_encodings_and_compressed_tables_are_read() {
         let ran = good_bytes(&format!("{SF} --column 2 -"), &bytes);
         assert!(String::from_utf8(ran.output).unwrap().contains("# column=roll µ\n"), "{what}");
     }
-    // A file of spikes through a shell that writes UTF-16.
+    // A file of spikes, redirected by a shell that writes UTF-16.
     let spikes = good(&format!("{SF} -"), &table(&[0.0, 1.0])).output;
     let wide: Vec<u8> = spikes.encode_utf16().flat_map(u16::to_le_bytes).collect();
     let decoded = good_bytes("decode", &with_mark(b"\xff\xfe", &wide)).output;
     assert_eq!(decoded, good("decode", &spikes).output.as_bytes());
 }
 
-/// Packers that run on several cores write several frames, with and without content.
+/// A Zstandard file may consist of several frames, some of them skippable, as packers that use several cores write it.
 #[test]
 fn all_frames_of_zstandard_are_read() {
     let skipped = b"\x5a\x2a\x4d\x18\x03\0\0\0abc";
@@ -142,15 +142,15 @@ fn a_binary_file_is_no_file_of_spikes() {
     {
         noise.splice(..start.len(), start.iter().copied());
         let (_directory, path) = file("spikes", &noise);
-        let told = common::spikewire(&format!("decode {path}"), "");
-        assert_eq!((told.status, told.stderr.lines().count()), (2, 1), "{}", told.stderr);
-        assert!(told.stderr.contains("binary") && told.stderr.len() < 300, "{}", told.stderr);
+        let report = common::spikewire(&format!("decode {path}"), "");
+        assert_eq!((report.status, report.stderr.lines().count()), (2, 1), "{}", report.stderr);
+        assert!(report.stderr.contains("binary") && report.stderr.len() < 300, "{}", report.stderr);
     }
 }
 
-/// The first value may come after any number of rows.
+/// A table whose first 20 000 rows have no value is read.
 #[test]
-fn missing_values_may_stand_first() {
+fn missing_values_may_come_first() {
     let late = [vec![f64::NAN; 20_000], vec![0.0, 1.0]].concat();
     let ran = good(&format!("{SF} --skip-non-finite -"), &table(&late)).output;
     assert_eq!(train(&ran)[20_001], 1);

@@ -1,4 +1,4 @@
-//! Times: the column and unit in which they are found, and the report on their steps.
+//! Times: how `encode` reports their steps, and how `decode` restores them.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{flight, good, ran};
 
 #[test]
 fn repeated_times_are_no_gaps() {
-    // Four samples a time, as of a driver that hands over batches.
+    // Four samples share each time, as from a driver that delivers batches.
     let rows = (0..4000).map(|row| format!("{},0\n", row / 4 * 20_000));
     let ran = good(
         "encode --scheme sf --threshold 0.5 -",
@@ -26,15 +26,15 @@ fn decoded_values_have_times() {
     let times = |decoded: &str| column(decoded, |line| line.rsplit(',').next());
     let recorded = std::fs::read_to_string(&hexarotor).unwrap();
     let recorded = column(&recorded, |line| line.split(',').next());
-    // A spike each sample: every time is known.
+    // This code has a spike in every sample, and therefore a recorded time for each.
     let position = encode("--scheme position --neurons 20");
     let decoded = good("decode", &position).output;
     assert!(decoded.starts_with("index,value,time_us\n"), "{decoded}");
     assert_eq!(times(&decoded), recorded);
-    // With slots an event's time is not its sample's.
+    // In a code with slots, the time of an event differs from the time of its sample.
     let slots = encode("--scheme grf-slots --neurons 15 --slots 10");
     assert_eq!(times(&good("decode", &slots).output), recorded);
-    // With few spikes they are exact there, at gaps and at the ends, and near elsewhere.
+    // With few spikes, times are exact at spikes, gaps and both ends, and within 20 ms elsewhere.
     let few = encode("--scheme sf --threshold 0.3");
     let decoded = times(&good("decode", &few).output);
     assert_eq!(decoded.len(), recorded.len());

@@ -1,72 +1,73 @@
-//! Errors, as values that a program can act on.
+//! Errors of reading a flight file, as values that a program can match.
 
 use std::path::Path;
 use std::{error, fmt, io};
 
-/// The error of a flight that cannot be read, or whose parts do not fit together.
+/// Error of a flight file that cannot be read, or whose parts do not fit together.
 #[derive(Debug)]
 pub struct FlightError {
-    /// The key at fault, such as `period` or `threshold`; empty where the whole file is.
+    /// Key of the wrong value, such as `period` or `threshold`; empty if no single key is wrong.
     pub parameter: String,
-    /// The place of that key.
+    /// Position of the wrong value.
     pub place: Place,
-    /// The reason.
+    /// Reason that the value is wrong.
     pub kind: FlightErrorKind,
 }
 
-/// A place in a file.
+/// Position in a flight file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// The file, if the flight was read from one.
+    /// Path of the file; `None` if the flight was parsed from text.
     pub file: Option<Box<Path>>,
-    /// The channel, from 0, if one of them is at fault.
+    /// Index of the channel, if the error is in a channel.
     pub channel: Option<usize>,
-    /// The line, from 1, where there is one.
+    /// Number of the line, counted from 1, if it is known.
     pub line: Option<usize>,
 }
 
-/// The reason that a flight is refused.
+/// Reason that a flight file is refused.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum FlightErrorKind {
     /// The file cannot be opened or written.
     File(io::Error),
-    /// The text is not TOML, or has a key that no flight has, or a value of another type. The parser says which.
+    /// The text is not TOML, or it has an unknown key, or a value of a wrong type. Holds the parser's message.
     Text(String),
-    /// The file is of a version that this library does not know.
+    /// The file's version is unknown to this library.
     Version {
-        /// The file's version.
+        /// Version of the file.
         given: u32,
-        /// The version that this library reads and writes.
+        /// Version that this library reads and writes.
         known: u32,
     },
-    /// A name that is none of these.
+    /// A scheme or a parameter has an unknown name.
     Unknown {
-        /// The name.
+        /// Name in the file.
         given: String,
-        /// The names there are.
+        /// Names that are allowed.
         known: Vec<String>,
     },
-    /// A number out of its range.
+    /// A number is out of its range.
     Range {
-        /// The number.
+        /// Number in the file.
         given: f64,
-        /// The least that is allowed.
+        /// Smallest number allowed.
         min: f64,
-        /// The most that is allowed.
+        /// Largest number allowed.
         max: f64,
     },
     /// A parameter that the scheme needs is missing.
     Missing,
-    /// A bank starts from its first samples, so that a flight has no `start`.
+    /// The parameter `start` is given, but every channel of a flight starts from its first sample.
     NoStart,
-    /// Two channels have this name.
+    /// Two channels have the same name.
     Twice,
-    /// The channels differ in more than numbers: in words, filters or counts, so that no bank holds them.
+    /// Two channels differ in a parameter that is not a number, such as a count or a filter. A
+    /// [`Bank`](spikewire::Bank) cannot hold both.
     NotOneBank,
-    /// The scheme has no constant in Rust, as it takes the user's generator.
+    /// The scheme cannot be written as a constant in Rust, because it needs a random generator of the user's.
     NoConstant,
-    /// The scheme or the filter refuses the value.
+    /// The scheme or the filter refuses the value, with this error.
     Refused(Box<dyn error::Error + Send + Sync>),
 }
 
@@ -139,9 +140,9 @@ impl fmt::Display for FlightErrorKind {
             Self::Refused(error) => {
                 write!(f, "is refused: {error}")?;
                 let mut cause = error.source();
-                while let Some(own) = cause {
-                    write!(f, ": {own}")?;
-                    cause = own.source();
+                while let Some(error) = cause {
+                    write!(f, ": {error}")?;
+                    cause = error.source();
                 }
                 Ok(())
             }
@@ -149,5 +150,5 @@ impl fmt::Display for FlightErrorKind {
     }
 }
 
-/// Its text says all that led to it.
+/// The text contains all causes, so [`source`](error::Error::source) returns none.
 impl error::Error for FlightError {}

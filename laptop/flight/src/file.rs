@@ -1,18 +1,18 @@
-//! The file of a flight, TOML: strict, and of a version.
+//! Reads and writes the flight file, `flight.toml`. It is strict: unknown keys and other versions are errors.
 //!
 //! | key | value | unless given |
 //! |---|---|---|
 //! | `version` | 1 | required |
 //! | `scheme` | a scheme's short name, such as `sod` | required |
 //! | `sample` | `f32`, `i16`, `i32` or fixed point such as `q8.8` | `f32` |
-//! | `period` | µs from sample to sample, 1 to 65 535 | required |
-//! | `keyframe_every` | samples from one keyframe or heartbeat to the next | as many as 50 ms hold |
-//! | `clock_ppm` | by how many millionths the time from sample to sample may differ from `period`, 0 to 100 000 | 20 000, a sensor's own oscillator |
-//! | `parameters` | those that all channels share | none |
+//! | `period` | time from one sample to the next in µs, 1 to 65 535 | required |
+//! | `keyframe_every` | samples from one keyframe or heartbeat to the next | the number of samples in 50 ms |
+//! | `clock_ppm` | tolerance of the time between samples, in millionths of `period`, 0 to 100 000 | 20 000, for a sensor's own oscillator |
+//! | `parameters` | parameters that all channels share | none |
 //! | `filter` | `kind` (`low-pass`, `first-order`, `notch`), `corner` or `centre` in Hz, a notch's `q` | none |
-//! | `[[channel]]` | `name`; `source`, the column or `topic.field`; `unit`; `counts` a unit; `parameters` of its own | `source`: the name; `counts`: 1 |
+//! | `[[channel]]` | `name`; `source`, the column or `topic.field` in a recording; `unit`; `counts` in one unit; `parameters` of this channel alone | `source`: the name; `counts`: 1 |
 //!
-//! Parameters are in samples: in counts where a channel has `counts`. Frames are those of the link, version 3.
+//! Parameters are in units of samples, which are counts if a channel has `counts`. Frames are those of the link, version 3.
 
 use crate::{Channel, Filter, Flight, FlightError, FlightErrorKind, Parts};
 use catalogue::run::{Asked, SET, SampleType, Value};
@@ -25,16 +25,16 @@ use std::num::NonZeroU16;
 use std::path::Path;
 use toml::Spanned;
 
-/// The version that is read and written.
+/// Version of the file format that is read and written.
 const VERSION: u32 = 1;
 
-/// The time between keyframes unless given, in µs.
+/// Time between keyframes in µs if `keyframe_every` is missing.
 const KEYFRAMES: u32 = 50_000;
 
-/// The error of a clock unless given, in millionths: that of a sensor's own oscillator.
+/// Value of `clock_ppm` if it is missing, in millionths: the tolerance of a sensor's own oscillator.
 const CLOCK_PPM: u32 = 20_000;
 
-/// Parameters by name, each with its place.
+/// Parameters by name, with the position of each name and value in the text.
 type Given = BTreeMap<Spanned<String>, Spanned<toml::Value>>;
 
 #[derive(Deserialize)]
@@ -66,10 +66,10 @@ struct FileChannel {
 }
 
 impl Flight {
-    /// Reads a file.
+    /// Reads a flight file.
     ///
     /// # Errors
-    /// Returns an error, with file and line, if the file is missing or [is no flight](Self::parse).
+    /// Returns an error, with path and line, if the file cannot be read or is [not a valid flight](Self::parse).
     pub fn read(path: impl AsRef<Path>) -> Result<Self, FlightError> {
         let path = path.as_ref();
         let text = fs::read_to_string(path)
@@ -77,22 +77,22 @@ impl Flight {
         text.and_then(|text| Self::parse(&text)).map_err(|error| error.in_file(path))
     }
 
-    /// Reads the text of a file.
+    /// Parses the text of a flight file.
     ///
     /// # Errors
-    /// Returns an error, with its line, if the text is not TOML, has an unknown key, lacks a key, or its parts do not
-    /// [fit together](Self::new).
+    /// Returns an error, with its line, if the text is not TOML, if a key is unknown or missing, or if the parts of the
+    /// flight do not [fit together](Self::new).
     pub fn parse(text: &str) -> Result<Self, FlightError> {
         let line =
             |at: usize| Some(1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count());
         let file: File = toml::from_str(text).map_err(|error| {
             let span = error.span();
-            let own = span.clone().and_then(|own| text.get(own)).unwrap_or_default();
-            let is_key =
-                !own.is_empty() && own.chars().all(|own| own.is_alphanumeric() || own == '_');
+            let key = span.clone().and_then(|span| text.get(span)).unwrap_or_default();
+            let is_key = !key.is_empty()
+                && key.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
             let kind = FlightErrorKind::Text(error.message().to_owned());
-            FlightError::new(if is_key { own } else { "" }, kind)
-                .at(span.and_then(|own| line(own.start)))
+            FlightError::new(if is_key { key } else { "" }, kind)
+                .at(span.and_then(|span| line(span.start)))
         })?;
         let version = *file.version.get_ref();
         if version != VERSION {
@@ -110,15 +110,15 @@ impl Flight {
         }?;
         let period = *file.period.get_ref();
         let usual = (KEYFRAMES / u32::from(period.get())).max(1);
-        // Where each key of the flight, or of one of its channels, stands.
-        let mut places: BTreeMap<(Option<usize>, String), usize> = BTreeMap::new();
+        // Byte offset of each key in the text: of a channel, or without one of the whole flight.
+        let mut offsets: BTreeMap<(Option<usize>, String), usize> = BTreeMap::new();
         for (name, span) in [
             ("keyframe_every", file.keyframe_every.as_ref().map(Spanned::span)),
             ("clock_ppm", file.clock_ppm.as_ref().map(Spanned::span)),
             ("filter", file.filter.as_ref().map(Spanned::span)),
         ] {
             if let Some(span) = span {
-                places.insert((None, name.to_owned()), span.start);
+                offsets.insert((None, name.to_owned()), span.start);
             }
         }
         let mut asked = |given: Given, channel: Option<usize>| -> Result<Asked, FlightError> {
@@ -126,21 +126,21 @@ impl Flight {
             for (name, value) in given {
                 let at = name.span().start;
                 let read = parameter(scheme, name.get_ref())
-                    .and_then(|own| Ok((own.name, read(own, value.get_ref())?)));
+                    .and_then(|parameter| Ok((parameter.name, read(parameter, value.get_ref())?)));
                 let (name, value) = read.map_err(|error| error.at(line(at)))?;
                 if let Some(value) = value {
                     asked.set(name, value);
-                    places.insert((channel, name.to_owned()), at);
+                    offsets.insert((channel, name.to_owned()), at);
                 }
             }
             Ok(asked)
         };
         let shared = asked(file.parameters, None)?;
         let (mut channels, mut starts) = (Vec::new(), Vec::new());
-        for (place, own) in file.channel.into_iter().enumerate() {
-            starts.push(own.span().start);
-            let FileChannel { name, source, unit, counts, parameters } = own.into_inner();
-            let asked = asked(parameters, Some(place))?;
+        for (index, channel) in file.channel.into_iter().enumerate() {
+            starts.push(channel.span().start);
+            let FileChannel { name, source, unit, counts, parameters } = channel.into_inner();
+            let asked = asked(parameters, Some(index))?;
             let source = source.unwrap_or_else(|| name.clone());
             channels.push(Channel { name, source, unit, counts: counts.unwrap_or(1.0), asked });
         }
@@ -156,13 +156,13 @@ impl Flight {
         };
         Self::new(parts).map_err(|error| {
             let channel = error.place.channel;
-            let key = places.get(&(channel, error.parameter.clone()));
-            let start = channel.and_then(|own| starts.get(own));
+            let key = offsets.get(&(channel, error.parameter.clone()));
+            let start = channel.and_then(|channel| starts.get(channel));
             error.at(key.or(start).and_then(|at| line(*at)))
         })
     }
 
-    /// The text of the file, below these comments.
+    /// Returns the text of the flight file, with a comment line for each of `comments` at its start.
     pub fn to_toml(&self, comments: &[String]) -> String {
         let mut text = String::new();
         for comment in comments {
@@ -175,8 +175,8 @@ impl Flight {
             self.scheme.name, self.sample, self.period, self.keyframe_every, self.clock_ppm
         );
         if let Some(filter) = self.filter {
-            // A table of strings and numbers always has a text.
-            let table = toml::Value::try_from(filter).map(|own| own.to_string());
+            // Serializing a table of strings and numbers cannot fail.
+            let table = toml::Value::try_from(filter).map(|table| table.to_string());
             let _ = writeln!(text, "filter = {}", table.unwrap_or_default());
         }
         if !self.shared.is_empty() {
@@ -202,23 +202,32 @@ impl Flight {
     }
 }
 
-/// The scheme of this name.
+/// Returns the scheme of this name.
+///
+/// # Errors
+/// Returns an error, with all names, if there is no such scheme.
 fn scheme(name: &str) -> Result<&'static Info, FlightError> {
-    catalogue::INFO.iter().find(|own| own.name == name).ok_or_else(|| {
-        let known = catalogue::INFO.iter().map(|own| own.name.to_owned()).collect();
+    catalogue::INFO.iter().find(|info| info.name == name).ok_or_else(|| {
+        let known = catalogue::INFO.iter().map(|info| info.name.to_owned()).collect();
         FlightError::new("scheme", FlightErrorKind::Unknown { given: name.to_owned(), known })
     })
 }
 
-/// The scheme's parameter of this name.
+/// Returns the scheme's parameter of this name.
+///
+/// # Errors
+/// Returns an error, with all names, if the scheme has no such parameter.
 fn parameter(scheme: &'static Info, name: &str) -> Result<&'static Parameter, FlightError> {
     scheme.parameter(name).ok_or_else(|| {
-        let known = scheme.parameters.iter().map(|own| own.name.to_owned()).collect();
+        let known = scheme.parameters.iter().map(|parameter| parameter.name.to_owned()).collect();
         FlightError::new("parameters", FlightErrorKind::Unknown { given: name.to_owned(), known })
     })
 }
 
-/// A parameter's value; `None` where a flag is off.
+/// Converts a TOML value to the value of a parameter; returns `None` for a flag that is `false`.
+///
+/// # Errors
+/// Returns an error if the value's type or range is wrong for the parameter.
 fn read(parameter: &Parameter, value: &toml::Value) -> Result<Option<Value>, FlightError> {
     let of_another_type = || {
         let kind = FlightErrorKind::Text("must be a number, a list of them or a text".to_owned());
@@ -243,7 +252,7 @@ fn read(parameter: &Parameter, value: &toml::Value) -> Result<Option<Value>, Fli
     parameter.check(value).map(Some).map_err(refused)
 }
 
-/// Parameters in one line.
+/// Returns parameters as an inline table, `{ name = value, name = value }`.
 fn inline(asked: &Asked) -> String {
     let all = asked.iter().map(|(name, value)| {
         let value = match value {
@@ -251,14 +260,16 @@ fn inline(asked: &Asked) -> String {
             Value::Number(value) => number(*value),
             Value::Count(count) => toml::Value::from(count.cast_signed()),
             Value::Word(word) => word.as_ref().into(),
-            Value::Numbers(all) => all.iter().map(|own| number(*own)).collect::<Vec<_>>().into(),
+            Value::Numbers(all) => {
+                all.iter().map(|value| number(*value)).collect::<Vec<_>>().into()
+            }
         };
         format!("{name} = {value}")
     });
     format!("{{ {} }}", all.collect::<Vec<_>>().join(", "))
 }
 
-/// A whole number without a point.
+/// Returns a number as a TOML integer if it is whole, otherwise as a float.
 fn number(value: f64) -> toml::Value {
     match value.to_string().parse::<i64>() {
         Ok(whole) => whole.into(),

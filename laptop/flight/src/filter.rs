@@ -1,4 +1,4 @@
-//! The filter before the code: its kinds, how it runs on the laptop, and how it is written in Rust.
+//! The filter that runs before the encoder of each channel: how it is run on the laptop, and written in Rust.
 
 use catalogue::for_sample_type;
 use catalogue::run::SampleType;
@@ -6,35 +6,35 @@ use serde::{Deserialize, Serialize};
 use spikewire::filter::{Biquad, FirstOrder};
 use spikewire::{ConfigError, Fingerprint, Sample};
 
-/// A filter before the code of every channel, by its corner or centre in Hz.
+/// Filter that runs before the encoder of each channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Filter {
-    /// A low-pass of first order.
+    /// First-order low-pass.
     FirstOrder {
-        /// The corner in Hz, 0.001 to 0.49 of the rate.
+        /// Corner frequency in Hz, 0.001 to 0.49 of the sample rate.
         corner: f32,
     },
-    /// Butterworth's low-pass of second order.
+    /// Butterworth low-pass of second order.
     LowPass {
-        /// The corner in Hz, 0.001 to 0.49 of the rate.
+        /// Corner frequency in Hz, 0.001 to 0.49 of the sample rate.
         corner: f32,
     },
-    /// A notch.
+    /// Notch: removes a narrow band of frequencies.
     Notch {
-        /// The centre in Hz, 0.001 to 0.49 of the rate.
+        /// Centre frequency in Hz, 0.001 to 0.49 of the sample rate.
         centre: f32,
-        /// The centre over the width, 0.1 to 100.
+        /// Quality factor: the centre frequency divided by the width of the band, 0.1 to 100.
         q: f32,
     },
 }
 
-/// A filter that keeps its state from sample to sample.
+/// A running filter: takes the samples one by one, and returns the filtered samples.
 pub type Filtering = Box<dyn FnMut(f64) -> f64 + Send>;
 
 impl Filter {
-    /// Starts the filter on samples of this type and rate, in Hz: a function from sample to sample, whose results have
-    /// the bits of a firmware's. What is not finite passes as it is.
+    /// Starts the filter for a sample type and a sample rate in Hz. Returns a function that takes one sample after the
+    /// other; its results are bit for bit those of a firmware. Samples that are not finite are returned unchanged.
     ///
     /// # Errors
     /// Returns an error if the corner, the centre or `q` is out of its range at this rate.
@@ -42,7 +42,8 @@ impl Filter {
         for_sample_type!(sample, S => self.started::<S>(sample.one(), rate))
     }
 
-    /// The fingerprint of the filter before samples of this type and rate, in Hz, which a link's is made from.
+    /// Returns the filter's fingerprint for a sample type and a sample rate in Hz, which becomes a part of the flight's
+    /// fingerprint.
     ///
     /// # Errors
     /// Returns an error if the corner, the centre or `q` is out of its range at this rate.
@@ -55,7 +56,7 @@ impl Filter {
         }))
     }
 
-    /// By how many samples of this rate, in Hz, a slow signal comes late.
+    /// Returns the delay of slow signals in samples, at a sample rate in Hz.
     ///
     /// # Errors
     /// Returns an error if the corner, the centre or `q` is out of its range at this rate.
@@ -84,7 +85,8 @@ impl Filter {
         })
     }
 
-    /// The filter before a scheme, in Rust: its type, and its value.
+    /// Returns type and value, in Rust, of a scheme behind this filter. `scheme` holds type and value of the scheme
+    /// alone, and `sample` is the sample type in Rust.
     pub(crate) fn constant(self, sample: &str, rate: f32, scheme: [String; 2]) -> [String; 2] {
         let (name, value) = match self {
             Self::FirstOrder { corner } => {

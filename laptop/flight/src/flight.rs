@@ -1,4 +1,4 @@
-//! A flight: what the vehicle codes and the far end decodes, checked.
+//! A flight: the description from which both sender and receiver are made, checked for consistency.
 
 use crate::{Filter, Filtering, FlightError, FlightErrorKind};
 use catalogue::run::{Asked, Error, Known, RunTime, SampleType, Settings, Value, Visit};
@@ -9,47 +9,49 @@ use std::collections::BTreeSet;
 use std::num::NonZeroU16;
 use std::ops::Deref;
 
-/// A channel of a flight.
+/// A channel of a flight: one sensor signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// The name, different from every other channel's.
+    /// Name, unique among the flight's channels.
     pub name: String,
-    /// The column of a table, or the topic and field of a log, that holds its samples.
+    /// Name of the column, or topic and field, that holds the channel's values in a recording.
     pub source: String,
-    /// The unit of the recording's values, such as `rad/s`; empty if it is not known.
+    /// Unit of the recording's values, such as `rad/s`; empty if it is unknown.
     pub unit: String,
-    /// The number of counts for one unit, above 0: a sample is this many times the recording's value. 1 where samples are
-    /// in that unit themselves.
+    /// Number of counts in one unit, above 0. A sample is the recording's value times this number. 1 if samples are in
+    /// the unit itself.
     pub counts: f64,
-    /// The parameters of this channel alone, in samples.
+    /// Parameters of this channel that the other channels do not share, in units of samples.
     pub asked: Asked,
 }
 
-/// The parts of a flight, as they stand in its file. [`Flight::new`] checks that they fit together.
+/// The parts of a flight, as they are in the flight file. [`Flight::new`] checks that they fit together.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// The scheme of every channel.
+    /// Encoding scheme of all channels.
     pub scheme: &'static Info,
-    /// The type of the samples.
+    /// Type of the samples.
     pub sample: SampleType,
-    /// The time from sample to sample, in µs.
+    /// Time from one sample to the next, in µs.
     pub period: NonZeroU16,
-    /// The number of samples from one keyframe, or heartbeat, to the next; 1 or more.
+    /// Number of samples from one keyframe, or heartbeat, to the next; 1 or more.
     pub keyframe_every: u32,
-    /// By how many millionths the time from sample to sample may differ from the period, in the sender's ticks.
+    /// Maximum deviation from the period of the time between samples, as measured by the sender's clock, in millionths
+    /// of the period, 0 to 100 000.
     pub clock_ppm: u32,
-    /// The filter before every channel's code.
+    /// Filter that runs before the encoder of each channel.
     pub filter: Option<Filter>,
-    /// The parameters that all channels share.
+    /// Parameters that all channels share, in units of samples.
     pub shared: Asked,
-    /// The channels, in the order of a sample.
+    /// Channels, in the order in which a sample holds their values.
     pub channels: Vec<Channel>,
 }
 
-/// A flight whose parts fit together: what the vehicle codes, and what its far end decodes.
+/// A flight whose parts fit together, from which sender and receiver are made.
 ///
-/// Its channels have one scheme. Numbers, such as a threshold or a range, may differ from channel to channel; words,
-/// filters and counts, such as neurons, slots and spikes, are shared, as a [`Bank`](spikewire::Bank) shares a type.
+/// All channels have the same scheme. Parameters that are numbers, such as a threshold or a range, may differ between
+/// channels. Words, filters and counts, such as the number of neurons, are the same for all, because a
+/// [`Bank`](spikewire::Bank) holds schemes of one type.
 ///
 /// ```
 /// use spikewire_flight::Flight;
@@ -74,8 +76,8 @@ pub struct Parts {
 /// assert_eq!(flight.settings()[1].number("threshold").unwrap(), 0.5);
 /// assert_eq!(flight.coding().period.get(), 2000);
 ///
-/// let told = Flight::parse("version = 1\nscheme = \"sod\"\nperiod = 0").unwrap_err();
-/// assert_eq!(told.place.line, Some(3));
+/// let error = Flight::parse("version = 1\nscheme = \"sod\"\nperiod = 0").unwrap_err();
+/// assert_eq!(error.place.line, Some(3));
 /// # Ok::<(), spikewire_flight::FlightError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -93,15 +95,16 @@ impl Deref for Flight {
     }
 }
 
-/// The most channels: a receiver on the laptop has no more.
+/// Maximum number of channels: that of a receiver on the laptop.
 const MOST: usize = 64;
 
 impl Flight {
-    /// Checks that parts fit together.
+    /// Checks that the parts fit together, and makes a flight of them.
     ///
     /// # Errors
-    /// Returns an error if there are no channels or too many, two have one name, a number is out of its range, the
-    /// scheme refuses a parameter or misses one, or no bank holds all channels.
+    /// Returns an error if there are no channels or more than 64, if two have the same name, if a number is out of its
+    /// range, if the scheme refuses a parameter or lacks one, or if a [`Bank`](spikewire::Bank) cannot hold all
+    /// channels.
     pub fn new(parts: Parts) -> Result<Self, FlightError> {
         let range = |name: &str, given: f64, min: f64, max: f64| {
             let is_within = (min..=max).contains(&given);
@@ -112,11 +115,11 @@ impl Flight {
         range("keyframe_every", parts.keyframe_every.into(), 1.0, f64::from(u32::MAX))?;
         range("clock_ppm", parts.clock_ppm.into(), 0.0, 1e5)?;
         let mut names = BTreeSet::new();
-        for (place, channel) in parts.channels.iter().enumerate() {
+        for (index, channel) in parts.channels.iter().enumerate() {
             range("counts", channel.counts, f64::MIN_POSITIVE, f64::MAX)
-                .map_err(|error| error.of_channel(place))?;
+                .map_err(|error| error.of_channel(index))?;
             if !names.insert(&channel.name) {
-                return Err(FlightError::new("name", FlightErrorKind::Twice).of_channel(place));
+                return Err(FlightError::new("name", FlightErrorKind::Twice).of_channel(index));
             }
         }
         let rate = rate(&parts);
@@ -125,9 +128,9 @@ impl Flight {
             started.map(drop).map_err(|error| FlightError::refused("filter", error))?;
         }
         let mut settings = Vec::new();
-        for (place, channel) in parts.channels.iter().enumerate() {
-            let own = settle(&parts, channel).map_err(|error| error.of_channel(place))?;
-            settings.push(own.with_stream(place as u64));
+        for (index, channel) in parts.channels.iter().enumerate() {
+            let settled = settle(&parts, channel).map_err(|error| error.of_channel(index))?;
+            settings.push(settled.with_stream(index as u64));
         }
         let mut flight = Self { parts, settings, fingerprint: Fingerprint::new("") };
         flight.check_bank()?;
@@ -135,16 +138,19 @@ impl Flight {
         Ok(flight)
     }
 
-    /// Refuses channels that no bank holds, and sub-timesteps that do not fit into a sample.
+    /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, and that a sub-timestep takes at least 1 µs.
     fn check_bank(&self) -> Result<(), FlightError> {
         let shape = |settings: &Settings| -> Vec<String> {
-            let parameters = self.scheme.parameters.iter().filter(|own| own.kind != Kind::Number);
-            parameters.filter_map(|own| Some(settings.get(own.key())?.to_string())).collect()
+            let parameters =
+                self.scheme.parameters.iter().filter(|parameter| parameter.kind != Kind::Number);
+            parameters
+                .filter_map(|parameter| Some(settings.get(parameter.key())?.to_string()))
+                .collect()
         };
         let first = shape(&self.settings[0]);
-        if let Some(place) = self.settings.iter().position(|settings| shape(settings) != first) {
+        if let Some(index) = self.settings.iter().position(|settings| shape(settings) != first) {
             let error = FlightError::new("parameters", FlightErrorKind::NotOneBank);
-            return Err(error.of_channel(place));
+            return Err(error.of_channel(index));
         }
         let (slots, period) = (self.slots(), f64::from(self.period.get()));
         if self.is_slotted() && slots as f64 > period {
@@ -154,27 +160,31 @@ impl Flight {
         Ok(())
     }
 
-    /// The scheme of every channel, to be run.
+    /// Returns the scheme of all channels, in the form that runs on the laptop.
     pub fn run_time(&self) -> &'static dyn RunTime {
         run_time(self.scheme)
     }
 
-    /// The settings of each channel, in samples, as they run.
+    /// Returns the settings with which each channel runs, in units of samples.
     pub fn settings(&self) -> &[Settings] {
         &self.settings
     }
 
-    /// The parameters of all channels: a number that differs from channel to channel is a list of one each.
+    /// Returns the parameters of all channels as one set. A number that differs between channels becomes a list with
+    /// one item for each channel.
     pub fn asked_of_all(&self) -> Asked {
-        let each: Vec<Asked> = self.channels.iter().map(|own| self.asked(own)).collect();
+        let each: Vec<Asked> = self.channels.iter().map(|channel| self.asked(channel)).collect();
         let mut all = each.first().cloned().unwrap_or_default();
-        for parameter in self.scheme.parameters.iter().filter(|own| own.kind == Kind::Number) {
+        for parameter in
+            self.scheme.parameters.iter().filter(|parameter| parameter.kind == Kind::Number)
+        {
             let name = parameter.name;
-            if each.iter().all(|own| own.get(name) == each[0].get(name)) {
+            if each.iter().all(|asked| asked.get(name) == each[0].get(name)) {
                 continue;
             }
-            // One that is not given everywhere has its default elsewhere.
-            let numbers = self.settings.iter().map(|own| own.get(name).and_then(Value::number));
+            // Channels without the parameter have its default.
+            let numbers =
+                self.settings.iter().map(|settings| settings.get(name).and_then(Value::number));
             if let Some(numbers) = numbers.collect::<Option<Vec<f64>>>() {
                 all.set(name, numbers);
             }
@@ -182,15 +192,15 @@ impl Flight {
         all
     }
 
-    /// The parameters of a channel: its own, and those that all share.
+    /// Returns the parameters of a channel: its own, completed by the shared ones.
     pub fn asked(&self, channel: &Channel) -> Asked {
         channel.asked.or(&self.shared)
     }
 
-    /// Starts the filter of each channel; none if the flight has no filter.
+    /// Starts the filter of each channel; returns an empty list if the flight has no filter.
     ///
     /// # Errors
-    /// Returns no error: that the filter fits the rate was checked.
+    /// Never returns an error, because the filter was checked when the flight was made.
     pub fn filters(&self) -> Result<Vec<Filtering>, FlightError> {
         let Some(filter) = self.filter else { return Ok(Vec::new()) };
         let start = |_: &Channel| {
@@ -200,12 +210,12 @@ impl Flight {
         self.channels.iter().map(start).collect()
     }
 
-    /// Samples a second.
+    /// Returns the sample rate in Hz.
     pub fn rate(&self) -> f64 {
         rate(&self.parts)
     }
 
-    /// The number of neurons of each channel.
+    /// Returns the number of neurons of each channel.
     pub fn neurons(&self) -> usize {
         self.shape().0
     }
@@ -219,32 +229,34 @@ impl Flight {
         shape.map_or((1, 1), |shape| (shape.neurons, shape.slots))
     }
 
-    /// Whether the sub-timestep of a spike carries a value. The spikes of a temporal code are all alike.
+    /// Returns whether the sub-timestep of a spike affects the decoded value. It does not for temporal codes.
     fn is_slotted(&self) -> bool {
         !self.scheme.has_first_value() && self.slots() > 1
     }
 
-    /// The length of a sub-timestep in µs; 0 for codes without.
+    /// Returns the length of a sub-timestep in µs, or 0 if the scheme has no sub-timesteps.
     pub fn slot_ticks(&self) -> u32 {
         if self.is_slotted() { u32::from(self.period.get()) / self.slots() as u32 } else { 0 }
     }
 
-    /// What a scheme's parameters do not say: the period, and each channel's name, unit and counts, in one text. Two flights
-    /// with the same schemes and another label mean other things by the same spikes.
+    /// Returns the period and each channel's name, unit and counts as one text. The text is part of the
+    /// [fingerprint](Self::fingerprint), because the same spikes have a different meaning if it differs.
     pub fn label(&self) -> String {
-        let channel = |own: &Channel| format!("; {} [{}] {}", own.name, own.unit, own.counts);
+        let channel =
+            |channel: &Channel| format!("; {} [{}] {}", channel.name, channel.unit, channel.counts);
         let channels: String = self.channels.iter().map(channel).collect();
         format!("{} us{channels}", self.period)
     }
 
-    /// The fingerprint that the flight's frames carry: that of its bank, filters included, with its [label](Self::label).
+    /// Returns the fingerprint in the frames of this flight: that of its bank, filters included, and its
+    /// [label](Self::label).
     pub fn fingerprint(&self) -> Fingerprint {
         self.fingerprint
     }
 
     fn described(&self) -> Result<Fingerprint, FlightError> {
         let name = self.scheme.name;
-        let filter = self.filter.map(|own| own.fingerprint(self.sample, self.rate() as f32));
+        let filter = self.filter.map(|filter| filter.fingerprint(self.sample, self.rate() as f32));
         let filter = filter.transpose().map_err(|error| FlightError::refused("filter", error))?;
         let scheme = |settings| {
             let scheme = for_sample_type!(self.sample, S => catalogue::visit::<S, _>(name, settings, Described))?;
@@ -256,14 +268,15 @@ impl Flight {
         Ok(bank.labelled(&self.label()))
     }
 
-    /// The number of bits that the parts of an event take on the link, and the period.
+    /// Returns the frame format: the number of bits for each part of an event, and the period.
     pub fn coding(&self) -> Coding {
         let addresses = self.channels.len() * self.neurons();
         let jitter = self.slot_ticks().checked_ilog2().map_or(0, |bits| bits as u8 + 2);
         Coding::for_channels(addresses as u16, self.period.get()).with_jitter_bits(jitter)
     }
 
-    /// The most events of one sample over all channels, as a receiver keeps them; 0 for codes whose receiver keeps none.
+    /// Returns the maximum number of events that a receiver stores for a sample, over all channels; 0 if the receiver
+    /// of the scheme stores none.
     pub fn events(&self) -> usize {
         let Parts { scheme, channels, .. } = &self.parts;
         if scheme.has_first_value() && !is_timed(scheme) {
@@ -272,14 +285,14 @@ impl Flight {
         let settings = &self.settings[0];
         let spikes = settings.count("spikes", 1..=usize::MAX).ok();
         let (neurons, slots) = self.shape();
-        // A neuron fires once a sample; without sub-timesteps, chance or a count of spikes, one neuron names the value.
+        // Without sub-timesteps, randomness or a count of spikes, only one neuron of a channel fires in a sample.
         let fires_together = slots > 1 || scheme.parameter("seed").is_some();
         let most = if neurons > 1 && fires_together { neurons } else { slots };
         channels.len() * spikes.unwrap_or(most)
     }
 }
 
-/// Takes the fingerprint of a scheme.
+/// Visitor that returns the fingerprint of a scheme.
 struct Described;
 
 impl<S: Sample> Visit<S> for Described {
@@ -294,7 +307,8 @@ impl<S: Sample> Visit<S> for Described {
     }
 }
 
-/// Whether a decoder of steps counts samples, too: its step adapts, so that silent samples change it.
+/// Returns whether the decoder of a temporal code depends on the number of samples, because its step adapts in samples
+/// without spikes.
 fn is_timed(scheme: &Info) -> bool {
     scheme.parameter("doublings").is_some()
 }
@@ -303,13 +317,17 @@ fn rate(parts: &Parts) -> f64 {
     1e6 / f64::from(parts.period.get())
 }
 
-/// The scheme of this description.
+/// Returns the scheme in the catalogue that has this description, in the form that runs on the laptop.
 fn run_time(info: &'static Info) -> &'static dyn RunTime {
-    let own = catalogue::ALL.iter().find(|own| own.info().name == info.name);
-    *own.unwrap_or(&catalogue::ALL[0]) // descriptions come from the catalogue alone
+    let found = catalogue::ALL.iter().find(|scheme| scheme.info().name == info.name);
+    *found.unwrap_or(&catalogue::ALL[0]) // descriptions come from the catalogue alone
 }
 
-/// The settings of a channel as it flies: where its signal begins is no parameter.
+/// Returns the settings of a channel as it flies.
+///
+/// # Errors
+/// Returns an error if a parameter is missing or refused, or if `start` is given: a flight starts from its first
+/// sample.
 fn settle(parts: &Parts, channel: &Channel) -> Result<Settings, FlightError> {
     let scheme = run_time(parts.scheme);
     let asked = channel.asked.or(&parts.shared);
@@ -319,9 +337,9 @@ fn settle(parts: &Parts, channel: &Channel) -> Result<Settings, FlightError> {
     let past = vec![0.0; scheme.looks_back(&asked)];
     let known = Known { calibrated: None, first: &past, can_calibrate: false };
     let refused = |error| FlightError::refused("", error);
-    let is_open = |own: &&Parameter| {
-        let is_given = asked.get(own.name).is_some() || own.default.is_some();
-        own.is_recorded && own.name != "start" && !is_given
+    let is_open = |parameter: &&Parameter| {
+        let is_given = asked.get(parameter.name).is_some() || parameter.default.is_some();
+        parameter.is_recorded && parameter.name != "start" && !is_given
     };
     let settings = scheme.resolve(parts.sample, &asked, &known).map_err(|error| {
         match parts.scheme.parameters.iter().find(is_open) {

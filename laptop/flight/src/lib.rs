@@ -1,12 +1,14 @@
-//! One file that describes a flight on spikes, and the code for both of its ends.
+//! Reads, checks and writes the flight file (`flight.toml`), which describes how a vehicle encodes its sensors as
+//! spikes, and generates the sender and the receiver from it.
 //!
-//! A [`Flight`] says what a vehicle codes and what its far end decodes: channels, scheme, sample type, parameters, filter,
-//! period, keyframes and frame format. The laptop program writes it, and reads it wherever it codes or listens; a
-//! firmware makes its constants from it. Two ends that are made from one file cannot disagree on a threshold.
+//! A [`Flight`] holds what sender and receiver must have in common: channels, scheme, sample type, parameters, filter,
+//! period, keyframes and frame format. The laptop program writes the file, and reads it to encode recordings and to
+//! decode frames; a firmware generates its constants from it. Sender and receiver that are generated from one file
+//! cannot differ in a threshold.
 //!
 //! # From the file to a firmware
 //!
-//! `build.rs`, with this crate among the build dependencies:
+//! In `build.rs`, with this crate among the build dependencies:
 //!
 //! ```no_run
 //! # // In `main`:

@@ -1,14 +1,15 @@
-//! A build script's one line.
+//! Generates the module `flight` in a build script.
 
 use crate::{Flight, FlightError, FlightErrorKind, rust};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Writes `flight.rs` into the directory of built files, from a flight's file. Call it in `build.rs`: cargo runs that
-/// again if the file changes.
+/// Generates `flight.rs` from a flight file, in the directory `OUT_DIR`. Call it in `build.rs`: cargo then runs the
+/// build script again when the file changes.
 ///
 /// # Errors
-/// Returns an error if the file is no flight, its scheme has no constant, or this is no build script.
+/// Returns an error if the file is not a valid flight, if its scheme cannot be written as a constant, or if `flight.rs`
+/// cannot be written, as outside of a build script.
 pub fn build(path: impl AsRef<Path>) -> Result<(), FlightError> {
     let path = path.as_ref();
     println!("cargo:rerun-if-changed={}", path.display());

@@ -1,14 +1,14 @@
-//! Both ends that a flight's file writes: they compile, and each bit of them is the laptop's.
+//! The generated senders and receivers compile, and their events and values are bit for bit those of the laptop.
 
 use catalogue::run::{Event as Fired, Known};
 use spikewire::link::{MAX_FRAME, Reader, Session};
 use spikewire::{Event, FromItems, Item, Put, Sample, Scheme, Tick};
 use spikewire_flight::{Flight, rust};
 
-/// Samples of each flight.
+/// Number of samples of each flight.
 const SAMPLES: usize = 1500;
 
-/// A list as the end of a queue.
+/// A list to which a bank appends its items.
 struct Items<'a>(&'a mut Vec<Item>);
 
 impl Put for Items<'_> {
@@ -17,18 +17,18 @@ impl Put for Items<'_> {
     }
 }
 
-/// A channel's values in counts: slow, fast, and a jump.
+/// Returns the test signal of a channel, in counts: a slow and a fast sine wave, and a square wave.
 fn signal(flight: &Flight, channel: usize) -> Vec<f64> {
     let counts = flight.channels[channel].counts;
-    let value = |place: usize| {
-        let (at, own) = (place as f64, channel as f64 + 1.0);
-        let jump = if place / 400 % 2 == 1 { 0.8 } else { 0.0 };
-        (at * 0.011 * own).sin() + 0.2 * (at * 0.9).sin() + jump
+    let value = |sample: usize| {
+        let (at, pace) = (sample as f64, channel as f64 + 1.0);
+        let jump = if sample / 400 % 2 == 1 { 0.8 } else { 0.0 };
+        (at * 0.011 * pace).sin() + 0.2 * (at * 0.9).sin() + jump
     };
-    (0..SAMPLES).map(|place| value(place) * counts).collect()
+    (0..SAMPLES).map(|sample| value(sample) * counts).collect()
 }
 
-/// What the laptop makes of a channel: its events, and its decoded values.
+/// Encodes and decodes the test signal of a channel with the laptop's codec; returns its events and decoded values.
 fn on_the_laptop(flight: &Flight, channel: usize) -> (Vec<Fired>, Vec<f64>) {
     let mut values = signal(flight, channel);
     if let Some(filter) = flight.filter {
@@ -48,21 +48,22 @@ fn on_the_laptop(flight: &Flight, channel: usize) -> (Vec<Fired>, Vec<f64>) {
     (events, decoded)
 }
 
-/// A saw with a step, whose numbers are the same on any machine, and whole in counts; `bindings/c/tests/ends.c` has it too.
-fn saw(place: u32, channel: u32, counts: f64) -> f64 {
-    let saw = place * (3 + 2 * channel) % 193;
+/// Returns a sample of a triangle wave with a different frequency in each channel, which `bindings/c/tests/ends.c`
+/// generates too. The values are the same on every machine.
+fn saw(sample: u32, channel: u32, counts: f64) -> f64 {
+    let saw = sample * (3 + 2 * channel) % 193;
     let value = (f64::from(if saw < 97 { saw } else { 193 - saw }) - 48.0) / 32.0 * counts;
     if counts > 1.0 { value.trunc() } else { value }
 }
 
-/// FNV-1a.
+/// Continues an FNV-1a hash with these bytes.
 fn fnv(hash: u64, bytes: &[u8]) -> u64 {
     bytes
         .iter()
-        .fold(hash, |hash, own| (hash ^ u64::from(*own)).wrapping_mul(0x0000_0100_0000_01b3))
+        .fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-/// For each flight: its module as it is written, and both ends of that module beside the laptop.
+/// Defines the tests for each flight in `tests/flights`, named after its file.
 macro_rules! flights {
     ($($name:ident)*) => {$(
         mod $name {
@@ -88,11 +89,11 @@ macro_rules! flights {
                 let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::random(7)));
                 let (mut items, mut buffer) = (Vec::new(), [0; MAX_FRAME]);
                 let (mut bytes, mut frames) = (Vec::new(), 0);
-                for place in 0..400 {
-                    let tick = Tick::from(place * u32::from(flight::PERIOD));
-                    let sample = |own: usize| S::from_f64(saw(place, own as u32, flight::COUNTS[own]));
-                    bank.encode_into(tick, std::array::from_fn(sample), Items(&mut items));
-                    if place % flight::KEYFRAME_EVERY == 0 {
+                for sample in 0..400 {
+                    let tick = Tick::from(sample * u32::from(flight::PERIOD));
+                    let value = |channel: usize| S::from_f64(saw(sample, channel as u32, flight::COUNTS[channel]));
+                    bank.encode_into(tick, std::array::from_fn(value), Items(&mut items));
+                    if sample % flight::KEYFRAME_EVERY == 0 {
                         bank.keyframe_into(tick, Items(&mut items));
                     }
                     let mut source = FromItems(items.drain(..));
@@ -118,27 +119,27 @@ macro_rules! flights {
                 let (name, length) = (stringify!($name), bytes.len());
                 let line = format!("{name} {frames} frames, {length} bytes, {exact} exact values, {hash:016x}");
                 let known = include_str!("flights/flown.txt");
-                assert!(known.lines().any(|own| own == line), "tests/flights/flown.txt lacks {line}");
+                assert!(known.lines().any(|flown| flown == line), "tests/flights/flown.txt lacks {line}");
             }
 
             #[test]
-            fn both_ends_are_the_laptop_s() {
+            fn both_ends_have_the_laptops_bits() {
                 type S = <flight::Code as Scheme>::Sample;
-                let told = Flight::parse(include_str!(concat!("flights/", stringify!($name), ".toml"))).unwrap();
-                let columns: Vec<Vec<f64>> = (0..flight::CHANNELS).map(|own| signal(&told, own)).collect();
-                let laptop: Vec<_> = (0..flight::CHANNELS).map(|own| on_the_laptop(&told, own)).collect();
+                let parsed = Flight::parse(include_str!(concat!("flights/", stringify!($name), ".toml"))).unwrap();
+                let columns: Vec<Vec<f64>> = (0..flight::CHANNELS).map(|channel| signal(&parsed, channel)).collect();
+                let laptop: Vec<_> = (0..flight::CHANNELS).map(|channel| on_the_laptop(&parsed, channel)).collect();
 
                 let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(1)));
                 let (mut reader, mut receiver) = (Reader::<MAX_FRAME>::new(), flight::receiver());
                 let (mut sent, mut items): (Vec<Event>, Vec<Item>) = (Vec::new(), Vec::new());
                 let mut buffer = [0; MAX_FRAME];
-                let tick = |place: usize| Tick::from_micros(place as u64 * u64::from(flight::PERIOD));
+                let tick = |sample: usize| Tick::from_micros(sample as u64 * u64::from(flight::PERIOD));
                 let mut compared = 0;
-                for place in 0..SAMPLES {
-                    let samples = std::array::from_fn(|own| S::from_f64(columns[own][place]));
-                    bank.encode_into(tick(place), samples, Items(&mut items));
-                    if place % flight::KEYFRAME_EVERY as usize == 0 {
-                        bank.keyframe_into(tick(place), Items(&mut items));
+                for sample in 0..SAMPLES {
+                    let samples = std::array::from_fn(|channel| S::from_f64(columns[channel][sample]));
+                    bank.encode_into(tick(sample), samples, Items(&mut items));
+                    if sample % flight::KEYFRAME_EVERY as usize == 0 {
+                        bank.keyframe_into(tick(sample), Items(&mut items));
                     }
                     sent.extend(items.iter().filter_map(|item| match item {
                         Item::Event(event) => Some(*event),
@@ -151,24 +152,24 @@ macro_rules! flights {
                             receiver.apply(&received, |_, _, _| ());
                         }
                     }
-                    receiver.advance(tick(place + 1), |_, _, _| ());
-                    for (own, (_, decoded)) in laptop.iter().enumerate() {
-                        if let Some(value) = receiver.exact(own as u16) {
-                            let is_same = value.to_f64().to_bits() == S::from_f64(decoded[place]).to_f64().to_bits();
-                            assert!(is_same, "channel {own}, sample {place}: {value:?}, {}", decoded[place]);
+                    receiver.advance(tick(sample + 1), |_, _, _| ());
+                    for (channel, (_, decoded)) in laptop.iter().enumerate() {
+                        if let Some(value) = receiver.exact(channel as u16) {
+                            let is_same = value.to_f64().to_bits() == S::from_f64(decoded[sample]).to_f64().to_bits();
+                            assert!(is_same, "channel {channel}, sample {sample}: {value:?}, {}", decoded[sample]);
                             compared += 1;
                         }
                     }
                 }
-                // From the first keyframe, or the second, all are exact.
+                // All values are exact from the first or second keyframe on.
                 assert!(compared >= (SAMPLES - 60) * flight::CHANNELS, "{compared}");
 
-                let (neurons, slot_ticks) = (told.neurons() as u16, told.slot_ticks());
+                let (neurons, slot_ticks) = (parsed.neurons() as u16, parsed.slot_ticks());
                 let mut expected: Vec<Event> = (0..).zip(&laptop).flat_map(|(channel, (events, _))| {
-                    events.iter().map(move |own| Event {
-                        tick: tick(own.sample as usize) + u32::from(own.slot) * slot_ticks,
-                        address: channel * neurons + own.neuron,
-                        polarity: own.polarity,
+                    events.iter().map(move |event| Event {
+                        tick: tick(event.sample as usize) + u32::from(event.slot) * slot_ticks,
+                        address: channel * neurons + event.neuron,
+                        polarity: event.polarity,
                     })
                 }).collect();
                 expected.sort_by_key(|event| (event.tick.micros(), event.address));

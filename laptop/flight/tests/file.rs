@@ -1,4 +1,4 @@
-//! The file: what is read is written, what is none is told with its line, and counts follow the scheme.
+//! Flight files: they are read, written and read again without change, and a wrong one is refused with key and line.
 
 use proptest::prelude::*;
 use spikewire_flight::{Filter, Flight, FlightErrorKind, rust};
@@ -17,7 +17,7 @@ fn a_short_file_has_its_defaults() {
 }
 
 #[test]
-fn what_is_no_flight_is_told_by_key_and_line() {
+fn an_invalid_file_is_refused_with_key_and_line() {
     for (text, parameter, line, words) in [
         ("nonsense", "", Some(1), "cannot be read"),
         ("version = 1", "", Some(1), "missing field `scheme`"),
@@ -43,9 +43,13 @@ fn what_is_no_flight_is_told_by_key_and_line() {
         ),
         ("version = 1\nscheme = \"sf\"\nperiod = 2000", "channel", None, "0 must be in 1..=64"),
     ] {
-        let told = Flight::parse(text).unwrap_err();
-        assert_eq!((told.parameter.as_str(), told.place.line), (parameter, line), "{text}: {told}");
-        assert!(told.to_string().contains(words), "{text}: {told}");
+        let error = Flight::parse(text).unwrap_err();
+        assert_eq!(
+            (error.parameter.as_str(), error.place.line),
+            (parameter, line),
+            "{text}: {error}"
+        );
+        assert!(error.to_string().contains(words), "{text}: {error}");
     }
     let after = |more: &str| Flight::parse(&format!("{HEAD}{more}")).unwrap_err();
     for (more, parameter, channel, line, words) in [
@@ -102,47 +106,47 @@ fn what_is_no_flight_is_told_by_key_and_line() {
         ),
         ("[[channel]]\nname = \"a\"\nparameters = { threshold = -1 }", "", Some(0), 4, "above 0"),
     ] {
-        let told = after(more);
+        let error = after(more);
         assert_eq!(
-            (told.parameter.as_str(), told.place.channel, told.place.line),
+            (error.parameter.as_str(), error.place.channel, error.place.line),
             (parameter, channel, Some(line)),
-            "{more}: {told}"
+            "{more}: {error}"
         );
-        assert!(told.to_string().contains(words), "{more}: {told}");
+        assert!(error.to_string().contains(words), "{more}: {error}");
     }
 }
 
 #[test]
-fn channels_of_other_lengths_are_no_bank() {
+fn channels_that_differ_in_a_count_are_refused() {
     let text = "version = 1\nscheme = \"sod\"\nperiod = 2000\n\
         [[channel]]\nname = \"a\"\nparameters = { threshold = 1, spikes = 4 }\n\
         [[channel]]\nname = \"b\"\nparameters = { threshold = 1, spikes = 5 }\n";
-    let told = Flight::parse(text).unwrap_err();
-    assert!(matches!(told.kind, FlightErrorKind::NotOneBank), "{told}");
-    assert_eq!((told.place.channel, told.place.line), (Some(1), Some(7)));
+    let error = Flight::parse(text).unwrap_err();
+    assert!(matches!(error.kind, FlightErrorKind::NotOneBank), "{error}");
+    assert_eq!((error.place.channel, error.place.line), (Some(1), Some(7)));
     assert!(Flight::parse(&text.replace("= 5", "= 4")).is_ok());
 }
 
-/// They take the user's generator.
+/// Random codes need a generator of the user's, and cannot be written as a constant.
 #[test]
-fn codes_by_chance_have_no_module() {
+fn random_codes_have_no_module() {
     let text = "version = 1\nscheme = \"bernoulli\"\nperiod = 2000\nparameters = { min = 0, max = 1 }\n[[channel]]\nname = \"a\"\n";
-    let told = rust(&Flight::parse(text).unwrap()).unwrap_err();
-    assert!(matches!(told.kind, FlightErrorKind::NoConstant), "{told}");
+    let error = rust(&Flight::parse(text).unwrap()).unwrap_err();
+    assert!(matches!(error.kind, FlightErrorKind::NoConstant), "{error}");
 }
 
 #[test]
 fn a_file_names_itself_in_its_errors() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("flight.toml");
-    let told = Flight::read(&path).unwrap_err();
-    assert!(matches!(told.kind, FlightErrorKind::File(_)), "{told}");
+    let error = Flight::read(&path).unwrap_err();
+    assert!(matches!(error.kind, FlightErrorKind::File(_)), "{error}");
     std::fs::write(&path, "version = 3").unwrap();
-    let told = Flight::read(&path).unwrap_err();
-    assert!(told.to_string().starts_with(&path.display().to_string()), "{told}");
+    let error = Flight::read(&path).unwrap_err();
+    assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
 }
 
-/// Bounds hold for every scheme: no sample has more events than a receiver has room for.
+/// For every scheme, no sample of a test signal has more events than [`Flight::events`] gives.
 #[test]
 fn no_sample_has_more_events_than_are_kept() {
     for info in catalogue::INFO {
@@ -151,7 +155,7 @@ fn no_sample_has_more_events_than_are_kept() {
             "version = 1\nscheme = \"{}\"\nperiod = 2000\nparameters = {{ {parameters} }}\n[[channel]]\nname = \"a\"\n",
             info.name
         );
-        let flight = Flight::parse(&text).unwrap_or_else(|told| panic!("{text}: {told}"));
+        let flight = Flight::parse(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
         let mut codec = flight.run_time().codec(&flight.settings()[0]).unwrap();
         let signal =
             (0..3000).map(|i| f64::from(i) * 0.031).map(|at| 2.4 * at.sin() * (at * 7.3).cos());
@@ -169,9 +173,9 @@ fn no_sample_has_more_events_than_are_kept() {
 }
 
 proptest! {
-    /// What is written is read again, and written alike.
+    /// A flight is the same after it is written and read again.
     #[test]
-    fn what_is_written_is_read(
+    fn a_written_file_is_read_back(
         thresholds in prop::collection::vec(1e-3_f64..1e3, 1..8),
         counts in 1e-2_f64..1e4,
         period in 1_u16..,
@@ -180,8 +184,8 @@ proptest! {
         corner in prop::option::of(0.01_f32..0.4),
         name in "[a-z\"\\\\ ./\\[\\]µ]{1,9}",
     ) {
-        let channels = thresholds.iter().enumerate().map(|(place, threshold)| {
-            let name = toml::Value::from(format!("{name}{place}"));
+        let channels = thresholds.iter().enumerate().map(|(index, threshold)| {
+            let name = toml::Value::from(format!("{name}{index}"));
             format!("[[channel]]\nname = {name}\nunit = \"m/s²\"\ncounts = {counts:?}\nparameters = {{ threshold = {threshold:?} }}\n")
         });
         let channels = channels.collect::<String>();

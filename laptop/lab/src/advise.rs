@@ -34,32 +34,32 @@ const PHASE: f64 = 20.0;
 /// a threshold that falls behind at 0.9 % of the samples flies; one that does at 3.9 % loses steps and flips.
 const STEEP: f64 = 0.02;
 
-/// Fewest samples that a control loop needs in one period of its bandwidth. Nyquist's two are too few to control
-/// anything.
+/// Smallest sample rate that a control loop can work with, in multiples of the loop's bandwidth. The Nyquist rate, a
+/// multiple of 2, is too small.
 const FEWEST: f64 = 4.0;
 
-/// Returns the largest latency, in samples, that a loop of this bandwidth tolerates.
+/// Returns the largest latency, in samples, that a loop of `bandwidth` Hz tolerates at `rate` samples a second.
 fn borne(bandwidth: f64, rate: f64) -> f64 {
     (PHASE / 360.0 * rate / bandwidth).floor()
 }
 
 /// The recordings to advise on, and limits on what a scheme may cost, for [`advise`].
 pub struct AdviseRequest {
-    /// The channels; each is also judged by itself.
+    /// The recordings, one for each channel; each channel is also judged by itself.
     pub recordings: Vec<Recording>,
     /// Sample type of the codecs.
     pub sample: SampleType,
     /// Largest RMSE that the control loop tolerates, in the signal's unit; a fifth of the standard deviation if `None`.
     pub max_rmse: Option<f64>,
-    /// Maximum delay of the code, in samples.
+    /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate.
-    /// Codes that are too late for it, or that cannot keep up with the signal, are not advised.
+    /// Codes that are too late for the loop, or that cannot keep up with the signal, are not advised.
     pub loop_bandwidth: Option<f64>,
     /// Share of frames that the link loses, in percent, 0 to 10. With a control loop, a code is not advised if a
     /// simulated drone flew badly on it at this loss.
     pub frame_loss: f64,
-    /// Core whose measured instruction counts apply.
+    /// Processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
@@ -73,7 +73,7 @@ impl AdviseRequest {
     /// Default number of settings to score for each scheme and channel.
     pub const EVALUATIONS: usize = 300;
 
-    /// Default share of frames that are lost, in percent.
+    /// Default share of frames that the link loses, in percent.
     pub const FRAME_LOSS: f64 = 1.0;
 
     /// Requests advice in `f32`, with a fifth of the standard deviation as the allowed RMSE.
@@ -102,9 +102,9 @@ pub struct Advice {
     max_rmse: f64,
     /// The schemes that reach the allowed RMSE, the advised one first.
     reaching: Vec<Candidate>,
-    /// The schemes that miss it, each with the reason.
+    /// The schemes that miss the allowed RMSE or break a limit, each with the reason.
     others: Vec<String>,
-    /// Those of them that did not fly, on any channel.
+    /// The schemes among `others` that flew badly in the simulator; they are the same for every channel.
     #[serde(skip)]
     unflown: Vec<String>,
     /// Whether a search stopped before it had scored all its settings.
@@ -122,18 +122,18 @@ pub struct Advice {
     is_one_of_many: bool,
 }
 
-/// A filter whose corner is possible at the recording's sample rate.
+/// A filter whose corner frequency is possible at the recording's sample rate.
 #[derive(Clone, Copy)]
 struct Filtered {
     filter: Filter,
     sample: SampleType,
     rate: f32,
-    /// Delay of slow signals, in samples.
+    /// Delay that the filter adds to slow signals, in samples.
     delay: f64,
 }
 
 impl Filtered {
-    /// Prepares a filter; `None` if its corner is not possible at this rate.
+    /// Prepares a filter. Returns `None` if its corner frequency is not possible at `rate` samples a second.
     fn new(filter: Filter, sample: SampleType, rate: f64) -> Option<Self> {
         let rate = rate as f32;
         drop(filter.start(sample, rate).ok()?);
@@ -142,7 +142,7 @@ impl Filtered {
     }
 
     fn start(&self) -> Filtering {
-        // That it fits was tried.
+        // `new` has checked that the filter can start.
         self.filter.start(self.sample, self.rate).unwrap_or_else(|_| Box::new(|sample| sample))
     }
 }
@@ -151,7 +151,7 @@ impl Filtered {
 enum Tuning {
     /// Settings within the allowed RMSE.
     Reached(Box<Candidate>),
-    /// The reason that there are none, to be written after the scheme's name.
+    /// The reason that no settings are within the allowed RMSE, in words that follow the scheme's name in a sentence.
     Missed(String),
 }
 
@@ -258,7 +258,8 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme briefly, unless it is known to fly badly.
+    /// Tunes a scheme briefly and keeps the outcome, or only the reason not to tune if the scheme flew badly in the
+    /// simulator.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -285,7 +286,7 @@ impl Advice {
         Ok(())
     }
 
-    /// Tunes a scheme briefly, with the parameters in `fixed` given.
+    /// Tunes a scheme briefly, while the parameters in `fixed` keep their values.
     fn tuned(
         &self,
         request: &AdviseRequest,
@@ -294,7 +295,7 @@ impl Advice {
         fixed: &Asked,
         budget: &Budget,
     ) -> Result<Tuning> {
-        /// How far the RMSE on held-out blocks may exceed the allowed one: blocks differ by chance.
+        /// Factor by which the RMSE on held-out blocks may exceed the allowed RMSE, because blocks differ by chance.
         const MARGIN: f64 = 1.25;
         let filtered = self.filter(scheme, request.sample);
         let own;
@@ -355,14 +356,15 @@ impl Advice {
         Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
     }
 
-    /// Returns the filter with which the scheme flew in a loop, if it is possible at this rate.
+    /// Returns the low-pass behind which the scheme flew in the simulated control loop. Returns `None` if no loop
+    /// bandwidth was given, or if the filter is not possible at the recording's sample rate.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;
         Filtered::new(filter, sample, self.look.rate?)
     }
 
-    /// Returns the settings of a scheme, if they reach the allowed RMSE.
+    /// Returns the tuned settings of a scheme, if they reach the allowed RMSE.
     fn row(&self, scheme: Scheme) -> Option<&Row> {
         let own = self.reaching.iter().find(|own| own.scheme == Some(scheme));
         own.map(|own| &own.row)
@@ -386,7 +388,7 @@ impl Advice {
         })
     }
 
-    /// Formats the advice for reading.
+    /// Formats the advice as text for people.
     pub fn page(&self) -> String {
         let Look { name, samples, seconds, rate, jitter_ms, gaps, rejected, .. } = &self.look;
         let unit = known_unit(name).map_or(String::new(), |unit| format!(" {unit}"));
@@ -425,7 +427,8 @@ impl Advice {
         } else if self.objection.is_none() {
             lines.push(format!("  no scheme comes within an RMSE of {}", short(self.max_rmse)));
         }
-        // What did not fly is said once, on the page of the bank.
+        // With several channels, the page of the bank lists the schemes that did not fly, and the channels' pages leave
+        // them out.
         let is_told = |own: &&String| !self.is_one_of_many || !self.unflown.contains(own);
         let others: Vec<&str> = self.others.iter().filter(is_told).map(String::as_str).collect();
         if !others.is_empty() {
@@ -486,8 +489,8 @@ impl Advice {
     }
 }
 
-/// Returns the number of bytes that all events take on the crate's link, in full frames, with a keyframe a second if a
-/// decoder needs them.
+/// Returns the number of bytes that a trial's events take on the crate's link, in full frames. A scheme whose decoder
+/// needs keyframes sends one a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.

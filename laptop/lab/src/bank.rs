@@ -5,17 +5,18 @@ use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use catalogue::run::{Codec, Event, Settings};
 
-/// Codecs of one scheme, one for each channel. The neurons of a second channel are numbered on from those of the first.
+/// Codecs of one scheme, one for each channel. Neurons are numbered through: those of channel 1 follow those of channel
+/// 0.
 pub struct Bank {
     codecs: Vec<Codec>,
     neurons: u16,
-    /// Events of one channel; a buffer.
-    own: Vec<Event>,
+    /// Buffer for the events of one channel.
+    buffer: Vec<Event>,
 }
 
 impl Bank {
-    /// Makes a codec for each channel, in the state in which a recording begins. Codes that draw by chance get a
-    /// separate stream of random numbers for each channel.
+    /// Makes a codec for each channel, in the state in which a recording begins. A stochastic code gets a separate
+    /// stream of random numbers for each channel.
     ///
     /// # Errors
     /// Returns an error if a parameter is invalid, or if there are too many neurons in all.
@@ -32,7 +33,7 @@ impl Bank {
             .zip(channels)
             .map(|(stream, settings)| scheme.codec(&settings.with_stream(stream)));
         let codecs = codecs.collect::<Result<_, _>>()?;
-        Ok(Self { codecs, neurons: neurons as u16, own: Vec::new() })
+        Ok(Self { codecs, neurons: neurons as u16, buffer: Vec::new() })
     }
 
     /// Returns the number of neurons of each channel.
@@ -40,7 +41,7 @@ impl Bank {
         self.neurons.into()
     }
 
-    /// Returns the latency: how many samples after a sample its code comes out.
+    /// Returns the latency: the number of samples from a sample to its code.
     pub fn latency(&self) -> usize {
         self.codecs.first().map_or(0, Codec::latency)
     }
@@ -60,7 +61,7 @@ impl Bank {
         self.collect(events, Codec::finish);
     }
 
-    /// Sorts the events of all channels by sample, then by slot and channel.
+    /// Runs `take` on each codec, and appends the codecs' events, sorted by sample, then by slot and channel.
     fn collect(
         &mut self,
         events: &mut Vec<Event>,
@@ -71,9 +72,9 @@ impl Bank {
         }
         let before = events.len();
         for (codec, channel) in self.codecs.iter_mut().zip(0..) {
-            take(codec, &mut self.own);
+            take(codec, &mut self.buffer);
             let first = channel * self.neurons;
-            let own = self.own.drain(..);
+            let own = self.buffer.drain(..);
             events.extend(own.map(|event| Event { neuron: first + event.neuron, ..event }));
         }
         events[before..].sort_by_key(|event| (event.sample, event.slot));
@@ -82,7 +83,7 @@ impl Bank {
     /// Decodes the next samples of all channels from their events.
     ///
     /// # Errors
-    /// Returns the first event of a sample if no encoder could emit the sample's events together.
+    /// Returns the first event of a sample whose events no encoder could emit together.
     pub fn decode(
         &mut self,
         samples: usize,
@@ -94,11 +95,11 @@ impl Bank {
         }
         for ((codec, channel), column) in self.codecs.iter_mut().zip(0..).zip(columns) {
             let first = channel * self.neurons;
-            self.own.clear();
+            self.buffer.clear();
             let is_own = |event: &&Event| event.neuron / self.neurons == channel;
             let own = events.iter().filter(is_own);
-            self.own.extend(own.map(|event| Event { neuron: event.neuron - first, ..*event }));
-            codec.decode(samples, &self.own, column)?;
+            self.buffer.extend(own.map(|event| Event { neuron: event.neuron - first, ..*event }));
+            codec.decode(samples, &self.buffer, column)?;
         }
         Ok(())
     }
@@ -109,7 +110,7 @@ mod tests {
     use super::{Bank, Scheme};
     use catalogue::run::{Asked, Known, SampleType};
 
-    /// Four channels have the same value and code it by chance: with the same draws they would fire together.
+    /// Stochastic codes of channels that have the same values and settings do not fire together.
     #[test]
     fn channels_draw_apart() {
         for name in ["bernoulli", "grf-prob"] {

@@ -1,8 +1,9 @@
-//! Parameters in short form, for tables and pictures.
+//! Formats parameters in short, for tables and pictures.
 
 use catalogue::run::Value;
 
-/// Formats parameters as `threshold=0.1 start=0.001`; a filter is given by its length and sum.
+/// Formats parameters as `threshold=0.1, start=0.001`. Taps are given by their number and sum, other lists of over four
+/// numbers by their ends and length.
 pub fn brief(parameters: &[(&'static str, Value)]) -> String {
     let words = parameters.iter().map(|(key, value)| match list(value) {
         Some(taps) if *key == "taps" => {
@@ -35,7 +36,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// Converts a parameter to JSON: a number, a list of numbers, or a word.
+/// Converts a parameter's value to JSON: a number, a list of numbers, or a word.
 pub(crate) fn json(value: &Value) -> serde_json::Value {
     let text = value.to_string();
     let numbers: Option<Vec<serde_json::Value>> =

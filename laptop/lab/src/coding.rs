@@ -1,4 +1,4 @@
-//! A scheme with some of its parameters given, and the TOML files that tuning writes of it.
+//! A choice of scheme, sample type and parameters, and its TOML file, which tuning writes.
 
 use crate::error::At;
 use crate::scheme::Scheme;
@@ -10,24 +10,24 @@ use std::fs;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table};
 
-/// A scheme, its sample type, and the parameters given.
+/// A scheme, its sample type, and the parameters that were set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coding {
     /// The scheme.
     pub scheme: Scheme,
     /// The sample type.
     pub sample: SampleType,
-    /// The parameters given.
+    /// The parameters that were set; the others have their defaults or come from a recording.
     pub asked: Asked,
 }
 
 impl Coding {
-    /// Makes the coding that results in these settings.
+    /// Makes the coding with all parameters of `settings`.
     pub fn of_settings(scheme: Scheme, settings: &Settings) -> Self {
         Self { scheme, sample: settings.sample, asked: settings.to_asked(scheme.info()) }
     }
 
-    /// Reads a file of parameters.
+    /// Reads a TOML file of parameters.
     ///
     /// # Errors
     /// Returns an error, with file and line, if the file is missing, is not TOML, names no scheme, or has an entry that
@@ -37,7 +37,7 @@ impl Coding {
         Self::parse(path, &text)
     }
 
-    /// Parses the text of a file of parameters; `file` is its name in errors.
+    /// Parses the text of a TOML file of parameters; `file` is its name in errors.
     ///
     /// # Errors
     /// See [`read`](Self::read).
@@ -105,8 +105,8 @@ impl Coding {
         Ok(coding)
     }
 
-    /// Builds the scheme if no parameter is left to options or to a recording, so that an invalid value is found in the
-    /// file.
+    /// Builds the scheme once, to report invalid values with their lines in the file. Does nothing if a parameter is
+    /// left to options or to a recording.
     fn built_alone(&self) -> Result<()> {
         let Self { scheme, sample, asked } = self;
         let is_open = |own: &Parameter| {
@@ -127,7 +127,7 @@ impl Coding {
         })
     }
 
-    /// Formats the coding as a file of parameters, with these comments at its start.
+    /// Formats the coding as a TOML file of parameters, with `comments` at its start.
     pub fn to_toml(&self, comments: &[String]) -> String {
         let mut table = Table::new();
         for (name, value) in self.asked.iter() {
@@ -152,7 +152,7 @@ impl Coding {
     }
 }
 
-/// Reads a value from a file; `None` for a flag that is off.
+/// Converts a TOML value to a value of `parameter`; `None` for a flag that is off.
 fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>> {
     let number = |value: &DeValue| -> Result<f64> {
         let number = match value {
@@ -201,7 +201,7 @@ mod tests {
         let coding = read(text).unwrap();
         assert_eq!(coding.asked.get("filter"), Some(&Value::from(vec![0.25, 1.0, 0.5])));
         assert_eq!(coding.to_toml(&[]), text);
-        // One tap is no name of a file.
+        // A list of one number stays a list; a text would be the name of a file.
         let one = text.replace("[0.25, 1, 0.5]", "[2]");
         assert_eq!(read(&one).unwrap().to_toml(&[]), one);
         let flag = read("scheme = \"tbr\"\nfactor = 0.5\nmagnitudes = true\n").unwrap();
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_none_is_told_with_file_and_line() {
+    fn an_invalid_entry_is_reported_with_file_and_line() {
         for (text, words) in [
             ("threshold = 1", "own.toml: `scheme = "),
             ("scheme = \"snf\"", "own.toml:1: there is no scheme `snf`; there are tbr, "),
@@ -235,8 +235,8 @@ mod tests {
             ),
             ("scheme = \"sf\"\nsample = \"q8.8\"\nthreshold = 0.0001", "own.toml:3: "),
         ] {
-            let told = read(text).unwrap_err().to_string();
-            assert!(told.contains(words), "{text}: {told}");
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains(words), "{text}: {error}");
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Writes source code for firmware: a constant in Rust, a file of parameters, or a crate that builds the C library.
+//! Writes source code for firmware: a constant in Rust, a TOML file of parameters, or a crate that builds the C
+//! library.
 
 use crate::coding::Coding;
 use crate::error::At;
@@ -12,7 +13,7 @@ use catalogue::run::{Constant, ErrorKind, Known, Settings};
 use std::path::Path;
 use std::{fs, io};
 
-/// Writes a Rust constant of this name, with these comments before it.
+/// Writes a coding as a Rust constant called `name`, with `comments` before it.
 ///
 /// # Errors
 /// Returns an error if a parameter is missing or invalid, or if the scheme cannot be written as a constant.
@@ -20,7 +21,7 @@ pub fn rust(coding: &Coding, name: &str, comments: &[String]) -> Result<String> 
     emit::rust(comments, name, coding.scheme, &settings(coding)?)
 }
 
-/// Writes a file of parameters, with these comments at its start.
+/// Writes a coding as a TOML file of parameters, with `comments` at its start.
 ///
 /// # Errors
 /// Returns an error if a parameter is missing or invalid.
@@ -28,7 +29,7 @@ pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
     Ok(emit::toml(comments, coding.scheme, &settings(coding)?))
 }
 
-/// Resolves a coding to settings for flight, without the first value of a signal.
+/// Completes a coding's parameters to settings; an error if a parameter must be found in a signal.
 fn settings(coding: &Coding) -> Result<Settings> {
     let Coding { scheme, sample, asked } = coding;
     let past = vec![0.0; scheme.looks_back(asked)];
@@ -40,7 +41,7 @@ fn settings(coding: &Coding) -> Result<Settings> {
     Ok(scheme.resolve(*sample, asked, &known)?)
 }
 
-/// A codec of the C library.
+/// A codec to build into a C library.
 #[derive(Clone, Debug)]
 pub struct Codec {
     /// The codec's name in C: `roll` gives `sw_roll_encode`.
@@ -49,8 +50,8 @@ pub struct Codec {
     pub coding: Coding,
 }
 
-/// Writes a crate that builds a C library of exactly these codecs, with their parameters in flash, into a new
-/// directory. It depends on the checkout at `spikewire`, or on the published crates if that is `None`.
+/// Writes a crate into a new directory that builds a C library of exactly these codecs, with their parameters in flash.
+/// The crate depends on the checkout at `spikewire`, or on the published crates if `None`.
 ///
 /// # Errors
 /// Returns an error if a parameter is missing or invalid, if the library has no such scheme, if two codecs share a
@@ -72,7 +73,8 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     write(directory, "codecs", &files, spikewire).map_err(unwritten)
 }
 
-/// Writes a crate that builds a C library of both ends of these flights, each under its name, into a new directory.
+/// Writes a crate into a new directory that builds a C library of sender and receiver of each flight, under the name
+/// given with the flight. The crate depends on the checkout at `spikewire`, or on the published crates if `None`.
 ///
 /// # Errors
 /// Returns an error if a scheme has no constant, if two flights share a name, or if the directory exists.
@@ -101,7 +103,7 @@ pub fn c_flights(
     write(directory, "flights", &files, spikewire).map_err(unwritten)
 }
 
-/// Returns the declaration of a codec.
+/// Checks that a codec can be built, and returns its declaration for `spikewire_c::codecs!`.
 fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     let Coding { scheme, sample, asked } = coding;
     let info = scheme.info();
@@ -117,11 +119,11 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     }
     let known = Known { calibrated: None, first: &[0.0], can_calibrate: false };
     let settings = scheme.resolve(*sample, asked, &known)?;
-    scheme.codec(&settings)?; // what makes no sense is told here, not by the compiler
+    scheme.codec(&settings)?; // invalid settings are an error here, before a compiler sees them
     Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
 }
 
-/// Returns the declaration of a codec with this name and constant.
+/// Returns the declaration of a codec with the given name and constant.
 fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
     let Constant { scheme: kind, value } = constant;
     let text = Coding::of_settings(scheme, settings).to_toml(&[]);
@@ -132,7 +134,8 @@ fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Const
     )
 }
 
-/// Writes a crate around a module and these files.
+/// Writes a crate into a new directory: the manifest, a library that contains the module `module`, and `files`, each
+/// given by path and text.
 fn write(
     directory: &Path,
     module: &str,
@@ -162,7 +165,7 @@ fn write(
     let own = [
         ("Cargo.toml", manifest.as_str()),
         ("src/lib.rs", &library),
-        ("src/sizes.rs", "// The header brings it.\n"),
+        ("src/sizes.rs", "// Written by the program `header`.\n"),
     ];
     let files = files.iter().map(|(path, text)| (path.as_str(), text.as_str()));
     for (path, text) in own.into_iter().chain(files) {
@@ -208,7 +211,7 @@ panic = \"abort\"
 ";
 
 const LIBRARY: &str = "\
-//! What flies, for firmware in C.
+//! A C library of spike codecs for firmware.
 
 #![cfg_attr(target_os = \"none\", no_std)]
 #![allow(improper_ctypes_definitions)] // C sees storage of a size
@@ -245,7 +248,7 @@ fn main() -> std::io::Result<()> {
 
 const FLIGHTS: &str = "\
 @MODULES@
-/// What the headers tell of them.
+/// Descriptions of the flights, from which the headers are written.
 #[allow(dead_code)] // the library itself does not ask
 pub static FLIGHTS: &[fn() -> spikewire_c::Flight] = &[@ALL@];
 ";

@@ -13,7 +13,7 @@ use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorde
 use crate::tune::RequestKind;
 use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
 
-/// Encodes the channels of a flight from a recording, as its sender does; see [`encode`].
+/// Encodes the channels of a `flight.toml` from a recording, as the sender on the drone does; see [`encode`].
 ///
 /// # Errors
 /// Returns an error if the recording lacks a channel, or if the output cannot be written.
@@ -30,8 +30,10 @@ pub fn encode_flight(
     encode_to(&open, &input, (scheme, sample, &asked), format, output)
 }
 
-/// Encodes channels of a recording. The output is opened last, once recording and parameters are known to be valid.
-/// Without a format it is a table. Returns the output, still to be finished, and notes for the user, a line each.
+/// Encodes channels of a recording to a log in `format`, or to a table of spikes if `None`. The output is opened last,
+/// once recording and parameters are known to be valid.
+///
+/// Returns the output, which the caller must finish, and notes for the user, a line each.
 ///
 /// # Errors
 /// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.
@@ -47,7 +49,7 @@ pub fn encode(
     encode_to(&open, input, (scheme, sample, parameters), format, output)
 }
 
-/// Opens a recording at its start.
+/// A function that opens the recording at its start, each time it is called.
 pub(crate) type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
 
 /// What a writer of spikes is made from.
@@ -127,7 +129,7 @@ pub(crate) fn encode_from(
     if firsts.first().is_none_or(Vec::is_empty) {
         return Err(TableKind::NoneFinite { samples: count }.at(input.name()));
     }
-    let mut told = Vec::new();
+    let mut rounded = Vec::new();
     let mut channels: Vec<Settings> = Vec::new();
     for (channel, first) in firsts.iter().enumerate() {
         let calibrated = calibrated.as_ref().and_then(|all| all.get(channel));
@@ -135,7 +137,7 @@ pub(crate) fn encode_from(
         let own = parameters.channel(scheme.info(), channel, firsts.len())?;
         let settings = scheme.resolve(sample, &own, &known);
         let settings = settings.map_err(|error| explained(error.into(), sample, first))?;
-        told.extend(rounding(&settings).filter(|rounding| !told.contains(rounding)));
+        rounded.extend(rounding(&settings).filter(|rounding| !rounded.contains(rounding)));
         channels.push(settings);
     }
     let mut bank = Bank::new(scheme, &channels)?;
@@ -190,7 +192,7 @@ pub(crate) fn encode_from(
     let (output, summary) = writer.finish(&mut events)?;
     let mut notes = source.notes().to_vec();
     let lines = report(&summary, &clock, header.channels.len());
-    notes.extend(told.into_iter().chain(lines).map(Words::from));
+    notes.extend(rounded.into_iter().chain(lines).map(Words::from));
     for (((fit, settings), &spikes), name) in
         fits.iter().zip(&header.channels).zip(&spikes).zip(source.names())
     {
@@ -203,7 +205,7 @@ pub(crate) fn encode_from(
     Ok(Encoded { output, names, spikes, summary, clock, notes })
 }
 
-/// Reads the first samples: at least `enough` finite ones, or all if there are fewer.
+/// Reads the start of a recording: at least `enough` finite samples, or all samples if fewer are finite.
 fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
     let mut finite = 0;
@@ -218,7 +220,7 @@ fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     Ok(all)
 }
 
-/// Reads the whole recording once, to calibrate on it.
+/// Calibrates each channel by reading the whole recording once.
 ///
 /// # Errors
 /// Returns an error if the input cannot be read.
@@ -238,7 +240,7 @@ fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
     }
 }
 
-/// Formats the counts as notes.
+/// Formats the numbers of samples and spikes, and the clock's findings in the times, as lines of notes.
 fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<String> {
     let Summary { samples, rejected, events } = *summary;
     let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };

@@ -1,4 +1,5 @@
-//! Errors as values: a program can act on them, and each front end words them with its own names of settings.
+//! The library's errors, as values. A program matches on their kind; each front end (command line, Python, web page)
+//! words them with its own spelling of the settings.
 
 use crate::events::EventsKind;
 #[cfg(feature = "frames")]
@@ -16,7 +17,7 @@ use std::{error, fmt, io};
 /// The result of a function of this library.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// The error of a request, or of a file named in it.
+/// An error in a request to this library, or in a file that the request names.
 #[derive(Debug)]
 pub struct Error {
     /// The setting at fault, if it is a single one.
@@ -27,10 +28,10 @@ pub struct Error {
     pub kind: Box<ErrorKind>,
 }
 
-/// The place of a fault: a file, by the name that the user gave it, and a spot in it.
+/// The place of a fault: a file and a spot in that file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// Name of the file, or `standard input`.
+    /// Name of the file as the user gave it, or `standard input`.
     pub file: Option<String>,
     /// The spot in the file.
     pub spot: Option<Spot>,
@@ -41,9 +42,9 @@ pub struct Place {
 pub enum Spot {
     /// A line, counted from 1.
     Line(u64),
-    /// An entry of a file of settings, given by its line.
+    /// An entry of a settings file, given by its line, counted from 1.
     Entry(u64),
-    /// A column of a table, given by its line, counted from 1, and its name.
+    /// A column of a table: the line, counted from 1, and the column's name.
     Column(u64, String),
     /// A byte, counted from 0.
     Byte(u64),
@@ -90,11 +91,11 @@ pub enum ErrorKind {
     Open(io::Error),
     /// A file, stream or device cannot be read or written.
     Io(io::Error),
-    /// An error of another library, in that library's words.
+    /// An error of a library that this one uses, with that library's message.
     Other(Box<dyn error::Error + Send + Sync>),
 }
 
-/// Implements the conversions from a module's error kinds to [`Error`].
+/// Implements the conversions from `$kinds`, the error kinds of a module, to [`Error`].
 macro_rules! room {
     ($kinds:ty, $variant:ident) => {
         impl From<$kinds> for $crate::Error {
@@ -108,13 +109,13 @@ macro_rules! room {
         }
 
         impl $kinds {
-            /// Makes an error of this kind, about a setting.
+            /// Makes an error of this kind about the setting `parameter`.
             #[allow(dead_code)]
             pub(crate) fn of(self, parameter: catalogue::run::Given) -> $crate::Error {
                 $crate::Error { parameter: Some(parameter), ..self.into() }
             }
 
-            /// Makes an error of this kind, at a place.
+            /// Makes an error of this kind, found at `place`.
             #[allow(dead_code)]
             pub(crate) fn at(self, place: impl Into<$crate::Place>) -> $crate::Error {
                 $crate::Error { place: place.into(), ..self.into() }
@@ -124,7 +125,7 @@ macro_rules! room {
 }
 pub(crate) use room;
 
-/// Adds to an error the place at which it was found.
+/// Adds a place to the error of a result.
 pub(crate) trait At<T> {
     /// Adds the place, unless the error already has a more precise one.
     fn at<P: Into<Place>>(self, place: impl FnOnce() -> P) -> Result<T>;
@@ -201,14 +202,14 @@ impl Error {
         }
     }
 
-    /// Returns whether the error is that the reader of the output closed it.
+    /// Returns whether the error is a broken pipe: the program that read the output closed it.
     pub fn is_closed_pipe(&self) -> bool {
         matches!(&*self.kind, ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 }
 
 impl ErrorKind {
-    /// Returns the name of the kind, for programs.
+    /// Returns the variant's name, for programs that tell errors apart by text.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Setting(kind) => kind.name(),
@@ -282,7 +283,7 @@ impl From<Spot> for Place {
     }
 }
 
-/// Writes the place, followed by the punctuation that leads over to the kind.
+/// Writes the place with the punctuation that follows it in a message, such as `a.csv: line 3: `.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(file) = &self.file {
@@ -376,7 +377,7 @@ impl From<io::Error> for Error {
     }
 }
 
-/// Converts errors of other libraries, which keep their own words.
+/// Implements the conversions from other libraries' errors to [`ErrorKind::Other`], which keeps their messages.
 macro_rules! foreign {
     ($($(#[$when:meta])* $error:ty),* $(,)?) => {$(
         $(#[$when])*

@@ -8,7 +8,7 @@ use crate::tune::RequestKind;
 use catalogue::run::{SampleType, Settings};
 use std::fmt::Write;
 
-/// The range of a channel's samples, and the number of samples that the type cannot hold or the code cannot reach.
+/// A channel's range, resolution, and numbers of samples that the sample type cannot hold or the code cannot reach.
 pub struct Fit {
     scheme: Scheme,
     sample: SampleType,
@@ -24,7 +24,7 @@ pub struct Fit {
 impl Fit {
     /// Starts with a channel that has no samples yet.
     pub fn new(scheme: Scheme, settings: &Settings) -> Self {
-        // A rate code adds up its filters on its shift.
+        // A rate code's largest value is the sum of its taps above its shift.
         let reach = settings
             .number("shift")
             .ok()
@@ -58,7 +58,7 @@ impl Fit {
         self.resolution.observe(values);
     }
 
-    /// Returns notes for the user, a line each.
+    /// Returns notes for the user, a line each. `spikes` is the number of spikes that the channel emitted.
     pub fn notes(&self, settings: &Settings, spikes: u64) -> String {
         let mut notes = String::new();
         // Writing to a string cannot fail.
@@ -67,7 +67,7 @@ impl Fit {
     }
 
     fn write(&self, notes: &mut String, settings: &Settings, spikes: u64) -> std::fmt::Result {
-        /// Fewest quantisation steps in a signal's range; below this it is mostly rounding.
+        /// Fewest quantisation steps in a signal's range. A signal of fewer steps is mostly rounding noise.
         const STEPS: f64 = 16.0;
         let Self { sample, min, max, samples, saturated, .. } = *self;
         if samples == 0 {
@@ -109,27 +109,27 @@ impl Fit {
     }
 }
 
-/// Returns the threshold of a code that spikes on changes.
+/// Returns the threshold, if the code is one that spikes on changes.
 fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
     settings.number("threshold").ok().filter(|_| scheme.info().has_first_value())
 }
 
-/// Describes in a sentence how many samples the sample type cut off, if any.
+/// Returns a sentence that says how many samples the sample type clamped; `None` if `count` is 0.
 pub fn cut(sample: SampleType, count: u64) -> Option<String> {
     let (low, high) = sample.range();
     (count > 0)
         .then(|| format!("{count} samples were cut to the range of {sample}, {low} to {high}"))
 }
 
-/// Describes in a sentence what the sample type rounded, if anything.
+/// Returns a sentence that says which parameters the sample type rounded; `None` if it rounded none.
 pub fn rounding(settings: &Settings) -> Option<String> {
-    let (mut told, mut lists) = (Vec::new(), Vec::new());
+    let (mut words, mut lists) = (Vec::new(), Vec::new());
     for (name, asked) in &settings.rounded {
         let (Some(asked), Ok(ran)) = (asked.numbers(), settings.numbers(name)) else { continue };
         match (asked, ran) {
-            // Samples are rounded like that, too.
+            // A start value is rounded as every sample is, which needs no note.
             _ if ["start", "first"].contains(name) => {}
-            ([asked], [ran]) => told.push(format!("{name} {} ran as {ran}", short(*asked))),
+            ([asked], [ran]) => words.push(format!("{name} {} ran as {ran}", short(*asked))),
             _ => {
                 let off = asked.iter().zip(ran).map(|(asked, ran)| (asked - ran).abs());
                 let count = off.clone().filter(|off| *off > 0.0).count();
@@ -138,11 +138,11 @@ pub fn rounding(settings: &Settings) -> Option<String> {
             }
         }
     }
-    told.extend(lists);
-    (!told.is_empty()).then(|| format!("in {}, {}", settings.sample, told.join(", ")))
+    words.extend(lists);
+    (!words.is_empty()).then(|| format!("in {}, {}", settings.sample, words.join(", ")))
 }
 
-/// Extends an error about settings from a column: adds the reason if the sample type cannot hold the column's steps.
+/// Adds a reason to an error about settings, if the sample type cannot hold the steps of the column `values`.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

@@ -1,4 +1,5 @@
-//! A flight's file on the laptop: reads its channels from a recording, and decodes its frames to values.
+//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the frames of its link to
+//! values.
 
 use crate::Result;
 use crate::coding::Coding;
@@ -23,15 +24,15 @@ impl From<FlightError> for crate::Error {
 }
 
 impl Coding {
-    /// Makes the coding of a flight, with the parameters of all its channels.
+    /// Makes the coding of a `flight.toml`, with the parameters of all its channels.
     pub fn of_flight(flight: &Flight) -> Self {
         let scheme = Scheme::from(flight.run_time());
         Self { scheme, sample: flight.sample, asked: flight.asked_of_all() }
     }
 }
 
-/// Makes a flight of tuned channels, each with its name, scheme and settings, for samples of this type and rate. A
-/// keyframe is sent 20 times a second.
+/// Makes a [`Flight`] of tuned channels, each with its name, scheme and settings, for samples of this type and rate.
+/// The flight sends 20 keyframes a second.
 ///
 /// # Errors
 /// Returns an error if there are no channels, if their schemes differ or they differ in more than numbers, or if the
@@ -47,10 +48,12 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
     of_settings(*scheme, sample, rate, rows.iter().map(asked))
 }
 
-/// The flight of channels by their names and what is asked of their parameters. A keyframe comes 20 times a second.
+/// Makes a [`Flight`] of channels, each with its name and the parameters that are set. The flight sends 20 keyframes a
+/// second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, they differ in more than numbers, or the rate has no period in µs.
+/// Returns an error if there are no channels, if they differ in more than numbers, or if the rate's period cannot be
+/// expressed in whole µs.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,
@@ -77,11 +80,10 @@ pub fn of_settings(
     })?)
 }
 
-/// Default tolerance of the time between samples, in millionths of the period: as much as a sensor's own oscillator may
-/// be off.
+/// Default tolerance of the sample period, in parts per million: the deviation of a sensor's own oscillator.
 pub(crate) const CLOCK_PPM: u32 = 20_000;
 
-/// Returns the time between samples, in µs.
+/// Returns the sample period in µs at `rate` samples a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the period.
@@ -90,14 +92,14 @@ pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
     period.ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
 }
 
-/// Returns options that read a flight's channels from the recording in `options`.
+/// Returns options that read a flight's channels from the recording that `options` reads.
 pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     let mut own = options.clone();
     own.channel.columns = flight.channels.iter().map(|own| own.source.clone()).collect();
     own
 }
 
-/// A recording as the flight's sender sees it: in counts, and filtered.
+/// A recording as the flight's sender reads it: in the sensor's counts, and filtered.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,
@@ -139,10 +141,10 @@ impl Source for Sampled<'_> {
     }
 }
 
-/// Makes the receiver of a flight, whose values are in the channels' units, and passes it to `then`.
+/// Makes the receiver of a flight and passes it to `then`. The decoded values are in the channels' units.
 ///
 /// # Errors
-/// Returns the error of `then`.
+/// Returns an error if `then` returns one, or if the flight's settings make no receiver.
 pub fn with_receiver<'a>(
     flight: &'a Flight,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,
@@ -156,7 +158,7 @@ pub fn with_receiver<'a>(
     })
 }
 
-/// Converts decoded values from counts to the channels' units.
+/// A decoder whose values are converted from the sensor's counts to the channels' units.
 struct InUnits<'a, 'b> {
     flight: &'a Flight,
     values: Box<dyn Values + 'b>,

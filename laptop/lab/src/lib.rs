@@ -1,7 +1,7 @@
 //! The library of the laptop programs: reads recordings, and makes spikes, scores, parameters, advice, pictures and
 //! networks of them.
 //!
-//! It has no command line and prints nothing. The program `spikewire` and the Python bindings are built on it.
+//! The library has no command line and prints nothing. The program `spikewire` and the Python bindings are built on it.
 
 pub mod advise;
 pub mod bank;

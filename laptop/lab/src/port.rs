@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Duration;
 
 kinds! {
-    /// The reason that a port cannot be read.
+    /// The reason for which a port cannot be read.
     pub enum PortKind by spell of subject {
         NotOpened { baud: u32, error: serialport::Error } => ("cannot be opened at {baud} baud: {error}"),
         NeedsBaud => ("a device; {} says how fast it is", spell("baud")),
@@ -25,23 +25,23 @@ pub struct Port {
     is_file: bool,
 }
 
-/// The outcome of a read.
+/// The outcome of [`Port::read`].
 pub enum Bytes {
-    /// Bytes were read; holds their number.
+    /// Bytes were read, as many as the number says.
     Some(usize),
     /// No bytes have arrived yet.
     NotYet,
-    /// There will be no more bytes.
+    /// The source has ended.
     End,
 }
 
 impl Port {
-    /// Opens a serial port if `baud` is given, or else a file; `-` is standard input.
+    /// Opens a serial port at `baud` baud, or a file if `baud` is `None`; the path `-` is standard input.
     ///
     /// # Errors
     /// Returns an error if the source cannot be opened.
     pub fn open(path: &Path, baud: Option<u32>) -> Result<Self> {
-        /// Longest time that a read waits, so that the display is updated meanwhile.
+        /// Longest time that a read waits, short enough to keep a display up to date.
         const PATIENCE: Duration = Duration::from_millis(100);
         let name = path.display().to_string();
         if let Some(baud) = baud {
@@ -66,12 +66,12 @@ impl Port {
         &self.name
     }
 
-    /// Returns whether all bytes are available from the start.
+    /// Returns whether the source is a file, whose bytes are all available from the start.
     pub fn is_file(&self) -> bool {
         self.is_file
     }
 
-    /// Reads the bytes that have arrived.
+    /// Reads into `buffer` the bytes that have arrived. On a serial port, waits for bytes for at most 100 ms.
     ///
     /// # Errors
     /// Returns an error if the port failed or was disconnected.
@@ -83,7 +83,7 @@ impl Port {
             Err(error) if matches!(error.kind(), Interrupted | TimedOut | WouldBlock) => {
                 Ok(Bytes::NotYet)
             }
-            // A broken pipe itself would pass for a reader who has read enough.
+            // The error of a broken pipe would be taken for an output that nobody reads any more.
             Err(error) if error.kind() == BrokenPipe => Err(PortKind::Gone.at(&self.name)),
             Err(error) => Err(Error::from(error).at(&self.name)),
         }

@@ -3,17 +3,20 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Share of the steps by which rounding may change them, on average; a type that changes them more loses them.
+/// Largest mean error that rounding may cause in the steps, as a share of their mean size. A sample type that causes
+/// more is said to lose the steps.
 const PART: f64 = 0.1;
 
-/// The steps between the samples of a column, and how a sample type changes them.
+/// The steps from sample to sample of a column, and their errors in a sample type.
 pub struct Resolution {
     sample: SampleType,
     previous: Option<f64>,
     steps: u64,
-    /// Sum of the steps' magnitudes; `off` and `off_single` are the sums of their errors in the type, and in `f32`.
+    /// Sum of the sizes of the steps.
     moved: f64,
+    /// Sum of the errors of the steps in the sample type.
     off: f64,
+    /// Sum of the errors of the steps in `f32`.
     off_single: f64,
     min: f64,
     max: f64,
@@ -21,7 +24,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Starts with a column without samples.
+    /// Starts with a column that has no samples yet, for the sample type `sample`.
     pub fn new(sample: SampleType) -> Self {
         let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
         Self {
@@ -37,7 +40,7 @@ impl Resolution {
         }
     }
 
-    /// Examines a column of samples.
+    /// Examines a whole column of samples in the sample type `sample`.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
@@ -62,12 +65,13 @@ impl Resolution {
         }
     }
 
-    /// Returns whether the type changes any step.
+    /// Returns whether the sample type changes any step.
     pub fn is_rounded(&self) -> bool {
         self.off > 0.0
     }
 
-    /// Describes in a sentence the steps that the type loses, and the types that hold them; `None` if it loses none.
+    /// Returns a sentence that describes the steps which the sample type loses, and names the types that hold them;
+    /// `None` if the type loses none.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -81,7 +85,7 @@ impl Resolution {
         })
     }
 
-    /// Lists the types that hold the steps.
+    /// Returns words that name the types which hold the steps, or say that no type does.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()
@@ -124,8 +128,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column's steps survive rounding to multiples of `step`. The bound is half a step; the mean
-    /// error of a difference of two rounded values is a third.
+    /// Returns whether the column's steps survive rounding to multiples of `step`. Half of `step` is taken as the error
+    /// of a rounded column's step, whose mean is only a third.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }
@@ -150,8 +154,8 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_a_type_loses_are_told_with_what_holds_them() {
-        // Counts, and decimals that fixed point is too coarse for.
+    fn lost_steps_are_reported_with_the_types_that_hold_them() {
+        // Counts lose nothing in `i16`, and these decimals are too fine for `q8.8`.
         assert_eq!(lost("i16", |sample| (sample * 1.7).floor()), "");
         let fine = |sample: f64| (sample * 0.01).sin() * 0.1;
         assert!(
@@ -162,15 +166,16 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// For columns of any size and step, the type that is named holds the steps.
+    /// If a sample type loses the steps of a column, the types named in its place lose none, for columns of any size
+    /// and step.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {
             for step in [1e-6, 1e-3, 0.25, 1.0, 40.0, 3e4] {
                 let value = |sample: f64| offset + (sample * 0.37).sin() * step;
                 for sample in ["f32", "i16", "i32", "q8.8", "q16.16"] {
-                    let told = lost(sample, value);
-                    let Some((_, holders)) = told.rsplit_once("; ") else { continue };
+                    let words = lost(sample, value);
+                    let Some((_, holders)) = words.rsplit_once("; ") else { continue };
                     let Some(names) = holders.strip_suffix(" them") else {
                         continue;
                     };
@@ -180,7 +185,7 @@ mod tests {
                     }
                     for name in names.split(" and ") {
                         assert_ne!(name, sample);
-                        assert_eq!(lost(name, value), "", "{offset} {step} {sample}: {told}");
+                        assert_eq!(lost(name, value), "", "{offset} {step} {sample}: {words}");
                     }
                 }
             }

@@ -14,12 +14,12 @@ impl Scheme {
         catalogue::ALL.iter().map(|scheme| Self(*scheme))
     }
 
-    /// Returns the scheme of this name, as in options and files.
+    /// Returns the scheme that options and files call `name`.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|scheme| scheme.name() == name)
     }
 
-    /// Returns the name, as in options and files.
+    /// Returns the scheme's name in options and files.
     pub fn name(self) -> &'static str {
         self.info().name
     }

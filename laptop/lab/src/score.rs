@@ -1,4 +1,4 @@
-//! Scores a trial: counts its spikes, and measures how near they decode to the signal.
+//! Scores a trial: counts its spikes, and measures the error of the decoded values.
 
 use crate::brief::{brief, json};
 use crate::steep::Steep;
@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// The figures of one scheme.
+/// The figures of a trial of one scheme on a recording.
 #[derive(Debug, Serialize)]
 pub struct Figures {
     /// Short name of the scheme.
@@ -16,17 +16,17 @@ pub struct Figures {
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percentage of samples without a spike, for a code that has at most one each; see [`Trial::efficiency`].
+    /// Percentage of samples without a spike, for a code with at most one spike a sample; see [`Trial::efficiency`].
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
     /// Signal-to-noise ratio in dB: the signal's variance over the mean square of the error.
     pub snr: f64,
-    /// Spikes a second, if the length is known.
+    /// Spikes a second, if the recording's length is known.
     pub spikes_per_second: Option<f64>,
-    /// The parameters that were used.
+    /// The parameters that were used, by their keys.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// The signal's slope compared with the code's largest; `None` if the code has no such limit.
+    /// The signal's slope compared with the largest that the code can follow; `None` if the code can follow any slope.
     pub slope: Option<Steep>,
     /// Notes for the user.
     pub notes: Vec<String>,

@@ -1,4 +1,4 @@
-//! Checks whether a code keeps up with a recording, for codes that climb by at most one step for each sample.
+//! Checks whether a step code keeps up with a recording: such a code climbs by at most one step for each sample.
 
 use crate::brief::short;
 use crate::scheme::Scheme;
@@ -6,28 +6,28 @@ use crate::trial::Recording;
 use catalogue::run::Settings;
 use serde::Serialize;
 
-/// The slopes of a recording, compared with the largest that the code can follow.
+/// The largest slope of a recording, compared with the largest that a code can follow.
 #[derive(Clone, Debug, Serialize)]
 pub struct Steep {
     /// Name of the scheme.
     #[serde(skip)]
     scheme: &'static str,
-    /// Whether no change between samples exceeds the threshold.
+    /// Whether no change from one sample to the next exceeds the threshold.
     follows: bool,
-    /// Number of changes between samples that exceed the threshold.
+    /// Number of changes from one sample to the next that exceed the threshold.
     steps_above_threshold: usize,
     /// `steps_above_threshold` as a share of the samples.
     part: f64,
-    /// Largest slope of the code: threshold times rate, or the threshold if no rate is known.
+    /// Largest slope that the code follows: threshold times rate, or the threshold if no rate is known.
     fastest: f64,
     /// Largest slope of the signal, in the same unit.
     steepest: f64,
-    /// What both slopes are counted per: `second` or `sample`.
+    /// Unit of time in both slopes: `second` or `sample`.
     per: &'static str,
 }
 
 impl Steep {
-    /// Measures the slopes; `None` for a code that can climb by more than a step a sample.
+    /// Measures the slopes; returns `None` for a code that can climb by more than one step a sample.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;
         let segments = recording.segments.iter().map(|own| &recording.values[own.clone()]);
@@ -50,7 +50,7 @@ impl Steep {
         self.part
     }
 
-    /// Describes both slopes in a sentence.
+    /// Returns a sentence for the user that compares both slopes.
     pub fn words(&self) -> String {
         const FEW: f64 = 0.1;
         let Self { scheme, steps_above_threshold: above, part, per, .. } = self;

@@ -1,4 +1,4 @@
-//! Interpolates the times of samples between those that are known.
+//! Interpolates the unknown times of samples between known ones.
 
 use std::collections::VecDeque;
 
@@ -11,24 +11,25 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// Starts without known times. Samples before the first known time and after the last are spaced by `rate`.
+    /// Starts without known times. Samples before the first known time and after the last will be spaced by `rate`, in
+    /// samples a second.
     pub fn new(rate: Option<f64>) -> Self {
         Self { step: rate.map_or(0.0, |rate| 1e6 / rate), before: None, ahead: VecDeque::new() }
     }
 
-    /// Sets the time of a sample; samples must come in order.
+    /// Adds the known time of a sample, in µs; samples must be added in order.
     pub fn learn(&mut self, sample: u64, time: i64) {
         if self.ahead.back().is_none_or(|&(last, _)| last < sample) {
             self.ahead.push_back((sample, time));
         }
     }
 
-    /// Returns the number of known times that have not been asked for yet.
+    /// Returns the number of known times of samples after the last one that [`at`](Self::at) was asked for.
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }
 
-    /// Returns the time of a sample; samples must be asked for in order.
+    /// Returns the time of a sample in µs; samples must be asked for in order.
     pub fn at(&mut self, sample: u64) -> i64 {
         while let Some(&known) = self.ahead.front().filter(|(known, _)| *known <= sample) {
             self.before = Some(known);

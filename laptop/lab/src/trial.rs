@@ -1,4 +1,4 @@
-//! Encodes and decodes a recording, for pictures and scores.
+//! Encodes and decodes recordings in memory, for pictures and scores.
 
 use crate::Result;
 use crate::brief::short;
@@ -10,30 +10,30 @@ use crate::tune::RequestKind;
 use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
-/// A recording in memory.
+/// One channel of a recording, in memory.
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// Their times in µs, if recorded. If the clock restarted, a new segment follows the one before it after a usual
-    /// step.
+    /// The samples' times in µs; empty if no times were recorded. Where the recorder's clock restarted, the later
+    /// segment is moved to follow the earlier one after a usual step.
     pub times: Vec<i64>,
-    /// The samples of each segment, that is between restarts of the clock.
+    /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
-    /// Samples a second, if known.
+    /// Sample rate in Hz, if known.
     pub rate: Option<f64>,
-    /// Name of the recording.
+    /// Name of the channel.
     pub name: String,
-    /// Number of samples that were not finite.
+    /// Number of samples that were missing or not finite.
     rejected: usize,
     clock: Clock,
-    /// Notes on how it was read.
+    /// Notes for the user on how the recording was read.
     notes: Vec<Words>,
 }
 
 impl Recording {
-    /// Makes a recording of evenly spaced samples in memory, which must be finite.
+    /// Makes a recording of evenly spaced samples, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// Bound of gaps; it has no effect, as all steps are equal.
+        /// Longest step that is no gap, in usual steps; without effect, because all steps are equal.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -50,7 +50,7 @@ impl Recording {
         Self::read_all(input)?.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
     }
 
-    /// Reads a recording of every channel asked for.
+    /// Reads a recording of every chosen channel, without the rows that are not finite in all channels.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read, or if no row is finite in all columns.
@@ -90,8 +90,8 @@ impl Recording {
             .collect()
     }
 
-    /// Returns the recording with each sample replaced by a function's value; `start` makes the function anew for each
-    /// segment.
+    /// Returns the recording with each sample replaced by the filter's value for it. `start` makes a new filter for
+    /// each segment.
     #[must_use]
     pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
         let mut values = self.values.clone();
@@ -139,14 +139,16 @@ impl Recording {
     }
 }
 
-/// Returns the segments of `samples` samples; `bounds` are the first samples of all but the first.
+/// Splits `samples` samples into segments; `bounds` holds the index of the first sample of each segment after the
+/// first.
 fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.insert(0, 0);
     bounds.push(samples);
     bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-/// Moves the times of each segment so that it follows the one before it after a usual step.
+/// Moves the times of each later segment: its earliest time follows the latest time of the segment before by `period`.
+/// Times are in µs.
 fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     let mut all: Vec<i64> = Vec::with_capacity(times.len());
     let mut latest: Option<i64> = None;
@@ -168,7 +170,7 @@ pub struct Trial {
     pub settings: Settings,
     /// Numbers of neurons and sub-timesteps.
     pub shape: Shape,
-    /// How many samples after a sample its code comes out.
+    /// Latency of the code: the number of samples from a sample to its code.
     pub latency: usize,
     /// Notes for the user on whether the parameters suit the recording.
     pub notes: Vec<String>,
@@ -179,10 +181,10 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Encodes and decodes the recording.
+    /// Encodes and decodes a recording, each of its segments with a new codec.
     ///
     /// # Errors
-    /// Returns an error if a parameter is invalid.
+    /// Returns an error if a parameter is invalid, or if the codec cannot decode its own events.
     pub fn new(
         scheme: Scheme,
         asked: &Asked,
@@ -224,13 +226,13 @@ impl Trial {
         Ok(Self { scheme, settings, shape, latency, notes, events, decoded })
     }
 
-    /// Returns `(1 - spikes / samples) * 100`.
+    /// Returns the spiking efficiency, `(1 - spikes / samples) * 100`, in percent.
     pub fn efficiency(&self) -> f64 {
         (1.0 - self.events.len() as f64 / self.decoded.len() as f64) * 100.0
     }
 }
 
-/// Returns a note if the decoded values have an offset that is larger than the signal's own movement.
+/// Returns a note if the mean error of the decoded values exceeds the signal's standard deviation.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

@@ -1,4 +1,4 @@
-//! Decodes frames to values in any sample type, with the receiver that runs on boards.
+//! Decodes link frames to values in any sample type, with the receiver that also runs on boards.
 
 use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
@@ -10,26 +10,28 @@ use spikewire::link::{Received, Receiver};
 use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
-/// Maximum number of channels, for codes with one neuron for each.
+/// Maximum number of channels of a code with one neuron a channel.
 const MOST: usize = 256;
 
-/// Maximum number of channels, for all other codes: with 1024 neurons each they fill all addresses.
+/// Maximum number of channels of a code with several neurons a channel: 64 channels of 1024 neurons fill all addresses.
 const FEWER: usize = 64;
 
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// The function that uses a receiver.
+/// A function that is called once, with the receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
-/// Properties of a sender besides its schemes.
+/// Properties of a link's sender besides its schemes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Link {
-    /// Length of the sub-timesteps in µs, if there are any.
+    /// Length of the sub-timesteps in µs, if the code has any.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint of the sender's frames; unless given, that of the schemes alone, for as many channels as match the sender's.
+    /// Fingerprint that the sender's frames carry. If `None`, it is computed from the schemes; if one scheme stands for
+    /// all channels, for the number of channels that matches the sender's fingerprint.
     pub fingerprint: Option<Fingerprint>,
-    /// How far the time between samples may differ from the period, in millionths of it; a sensor's tolerance unless given.
+    /// Largest deviation of the sample period from its nominal length, in parts per million; the receiver's default if
+    /// `None`.
     pub clock_ppm: Option<u32>,
 }
 
@@ -39,10 +41,11 @@ impl From<Option<u32>> for Link {
     }
 }
 
-/// Makes a receiver with these settings, one set for each channel or one for all, and passes it to `then`.
+/// Makes a receiver and passes it to `then`. `settings` holds one set for each channel, or a single set for all
+/// channels.
 ///
 /// # Errors
-/// Returns an error if a parameter is out of its range, or if there are too many channels; or the error of `then`.
+/// Returns an error if a parameter is out of its range, if there are too many channels, or if `then` returns one.
 pub fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
@@ -85,7 +88,7 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 }
 
 impl Receive<'_> {
-    /// Makes a receiver of up to `N` channels.
+    /// Makes a receiver of up to `N` channels and passes it to `then`.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
         let Self { scheme, sample, settings, link, then } = self;
         let Link { slot_ticks, fingerprint, clock_ppm } = link;
@@ -94,7 +97,7 @@ impl Receive<'_> {
             return Err(RequestKind::Channels { channels, scheme, most: N }.into());
         }
         let mut started = Vec::new();
-        // The last one stands beyond the channels that were given.
+        // The first scheme once more: a placeholder for channel numbers beyond those given.
         let beyond = settings.first().filter(|_| settings.len() > 1);
         for (place, own) in settings.iter().chain(beyond).enumerate() {
             let built = catalogue::visit::<P::Sample, _>(scheme.name(), own, Boxed)?;
@@ -134,7 +137,7 @@ impl Receive<'_> {
     }
 }
 
-/// A visitor that returns the scheme built.
+/// A visitor that returns the visited scheme in a box.
 struct Boxed;
 
 impl<S: Sample> Visit<S> for Boxed {
@@ -149,10 +152,10 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// A scheme whose decoders start from a given value. It serves only for decoding.
+/// A scheme whose decoders start from the value `start`, if there is one. Serves only for decoding.
 struct Started<P: Scheme> {
     scheme: P,
-    /// Whether the channel exists; false for the placeholder after the last one.
+    /// Whether the channel exists; false for the placeholder that fills the array after the last channel.
     is_given: bool,
     start: Option<P::Sample>,
 }
@@ -221,23 +224,24 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     channels: usize,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Which channels have values: all of a temporal code; others from their first event on.
+    /// Whether each channel has a value: from the start if keyframes resynchronize the code, otherwise from the
+    /// channel's first event on.
     has_fired: [bool; N],
-    /// A tick by which the last sample received is over.
+    /// Tick one sample period after the last received event, at which the event's sample is over.
     end: Option<Tick>,
-    /// Number of keyframes received for a code that has none.
+    /// Number of keyframes received although the code uses none.
     unused_keyframes: u64,
-    /// The number that represents 1 in the decoders' unit.
+    /// The number that represents 1.0 in the decoders' unit.
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of events for channels that do not exist, besides those that the receiver counts.
+    /// Number of values decoded for channels that do not exist, besides the events that the receiver itself counts.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
-    /// The sender's fingerprint, if it is known.
+    /// Fingerprint of the sender, if the caller gave it.
     known: Option<Fingerprint>,
-    /// Fingerprint of each channel's scheme; or of the one scheme that all channels share, however many there are.
+    /// Fingerprint of each channel's scheme, or of the one scheme that all channels share, whatever their number.
     schemes: Vec<Fingerprint>,
     /// Whether any value so far was exact.
     has_exact: bool,
@@ -245,9 +249,9 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels keyframes of the sender's sample type as the decoders': these treat all fixed-point types of one width
-    /// alike. Keyframes of the decoders' type, if that is not the sender's, are relabelled too, so that they count as
-    /// misfits.
+    /// Relabels keyframes of the sender's sample type with the decoders' type, which stands for all fixed-point types
+    /// of one width. Keyframes labelled with the decoders' type, if the sender has a different one, are relabelled too,
+    /// which makes the receiver count them as misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -260,12 +264,12 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         Received { frame, ..*received }
     }
 
-    /// Returns for each channel whether its value is exact.
+    /// Returns whether each channel's value is exact.
     fn exact(&self) -> [bool; N] {
         std::array::from_fn(|channel| self.receiver.exact(channel as u16).is_some())
     }
 
-    /// Notes which channels fire, and when the last sample of a frame is over.
+    /// Notes which channels fire in a frame, and the tick at which the frame's last sample is over.
     fn observe(&mut self, received: &Received<'_>) {
         for event in received.frame.events() {
             if let Some(has_fired) =
@@ -277,10 +281,11 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Appends the decoded values as items; the first `keyframes` of them are keyframes.
+    /// Turns the decoded values into items and appends these; the first `keyframes` values are keyframes. `before` says
+    /// which channels were exact before the frame.
     ///
-    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on, so
-    /// that no estimate is marked exact.
+    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on,
+    /// which keeps every estimate unmarked.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
@@ -304,8 +309,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Returns the fingerprint that a sender of these channels has, in its own sample type. If one scheme stands for all
-    /// channels, their number is not known: each is tried until one gives the fingerprint `sender`.
+    /// Returns the fingerprint that a sender with these schemes has in its sample type. If one scheme stands for all
+    /// channels, their number is unknown; each number is tried until one gives the fingerprint `sender`.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {
@@ -334,7 +339,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P,
         let mut keyframes = keyframes.count();
         match P::RECOVERY {
             Recovery::Keyframe => {}
-            // Keyframes come among samples, and count as such.
+            // Timed keyframes replace samples, and are counted as samples.
             Recovery::TimedKeyframe(_) => keyframes = 0,
             _ => self.unused_keyframes += std::mem::take(&mut keyframes) as u64,
         }

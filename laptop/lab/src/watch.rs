@@ -9,7 +9,7 @@ pub struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    /// Follows nothing; the work runs to its end.
+    /// A watch that follows nothing and lets the work run to its end.
     pub const NONE: Watch<'static> = Watch { is_stopped: &|| false, tell: &|_| () };
 }
 

@@ -1,20 +1,20 @@
-//! `ReckOn`'s port on a board.
+//! The simulated board with a `ReckOn`, and the port for its driver.
 
 use spikewire_chips::ReckOnPort;
 
 use super::{Inputs, ReckOn};
 use crate::board::{self, Model};
 
-/// The chip, the wires and their faults.
+/// The pins of `ReckOn`, and their faults.
 pub type Pins = board::Pins<ReckOn>;
 
-/// A board, shared between a driver and a test.
+/// A simulated board with a `ReckOn`.
 pub type Board = board::Board<ReckOn>;
 
-/// The chip's SPI pins.
+/// The SPI device of `ReckOn`.
 pub type Spi = board::Spi<ReckOn>;
 
-/// The chip's other pins.
+/// The port of `ReckOn`: all pins other than SPI.
 pub type Port = board::Port<ReckOn>;
 
 impl Model for ReckOn {

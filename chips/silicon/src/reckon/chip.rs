@@ -1,4 +1,4 @@
-//! The controller of `ReckOn`, its memories, and the arithmetic of neurons and traces.
+//! The model of `ReckOn`: its controllers, its memories, and the arithmetic of neurons and traces.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -8,7 +8,7 @@ use super::lfsr::Lfsr;
 use super::memory::Memory;
 use super::spi::{self, SpiSlave};
 
-/// A set of neurons or inputs, one bit for each.
+/// A set of up to 256 neurons or inputs, one bit for each.
 pub(super) type Set = [u64; 4];
 
 pub(super) fn has(set: &Set, at: u8) -> bool {
@@ -21,45 +21,46 @@ fn put(set: &mut Set, at: u8, value: bool) {
     *word = if value { *word | bit } else { *word & !bit };
 }
 
-/// The state of the controller.
+/// The state of the main controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum State {
-    /// Waits between samples.
+    /// Waits for a sample to begin.
     #[default]
     Idle,
-    /// Applies spikes and inputs to neurons.
+    /// Applies spikes of neurons and inputs to neurons, before the next tick.
     Prop,
-    /// Lets neurons leak and fire.
+    /// After a tick, lets neurons leak and fire.
     Step,
-    /// Ends the time step.
+    /// The time step is done.
     StepDone,
-    /// Waits for a target.
+    /// Waits for a target from which to learn.
     GetTarget,
-    /// Pauses for an access over SPI.
+    /// Waits while SPI accesses the memories.
     Config,
-    /// Changes weights.
+    /// Changes weights (learns).
     Learn,
-    /// Sends the outputs.
+    /// Sends the outputs' potentials or a label.
     Send,
 }
 
-/// The state in which an event is applied.
+/// The state of the controller that applies events to neurons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum EventState {
-    /// There is no event.
+    /// No event waits.
     #[default]
     Wait,
-    /// Looks for the next event.
+    /// Searches for the next input or neuron that has an event.
     Count,
-    /// Applies the event, to two neurons in two clocks.
+    /// Applies an event to all neurons: two neurons in two clock cycles.
     Event,
-    /// Updates the event's trace, if no neuron has its number.
+    /// Updates the trace of an input whose number is higher than that of any neuron.
     Trace,
 }
 
-/// Two neurons, as stored in one word of memory; 0 if they have not been used since the sample began.
+/// The state of two neurons, as one word of memory stores it. It reads as 0 if the neurons were not updated since the
+/// sample began.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
@@ -68,7 +69,7 @@ pub(super) struct Pair {
     pub(super) output_trace: [u16; 2],
 }
 
-/// All state that a clock changes, except for the memories.
+/// All state that a clock cycle changes, except for the memories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Clocked {
     resets: [bool; 2],
@@ -187,71 +188,72 @@ impl Default for Clocked {
     }
 }
 
-/// The levels of the pins that a host drives, without those of SPI.
+/// The levels of the pins that a host drives, except for those of SPI.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inputs {
-    /// `RST`.
+    /// Level of `RST`, the reset.
     pub reset: bool,
-    /// `AERIN_ADDR`.
+    /// `AERIN_ADDR`: the number of an input, or a byte of a target.
     pub address: u8,
-    /// `AERIN_REQ`.
+    /// Level of `AERIN_REQ`, the REQ of the input bus.
     pub request: bool,
     /// `AERIN_TAR_EN`: whether the address is a byte of a target.
     pub is_target: bool,
-    /// `SAMPLE`.
+    /// Level of `SAMPLE`, which is high during a sample.
     pub sample: bool,
-    /// `TIME_TICK`.
+    /// Level of `TIME_TICK`, which begins a time step.
     pub tick: bool,
-    /// `TARGET_VALID`.
+    /// Level of `TARGET_VALID`: whether the chip learns in this step.
     pub target_valid: bool,
-    /// `INFER_ACC`.
+    /// Level of `INFER_ACC`: whether this step counts for the label.
     pub infer: bool,
-    /// `OUT_ACK`.
+    /// Level of `OUT_ACK`, the ACK of the output bus.
     pub output_acknowledge: bool,
 }
 
 /// The levels of the pins that the chip drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outputs {
-    /// `MISO`.
+    /// Level of `MISO`, the SPI output.
     pub miso: bool,
-    /// `AERIN_ACK`.
+    /// Level of `AERIN_ACK`, the ACK of the input bus.
     pub acknowledge: bool,
-    /// `OUT_REQ`.
+    /// Level of `OUT_REQ`, the REQ of the output bus.
     pub request: bool,
-    /// `OUT_DATA`.
+    /// `OUT_DATA`: a byte of an answer.
     pub data: u8,
-    /// `SPI_RDY`.
+    /// Level of `SPI_RDY`, which is high while SPI may access the memories.
     pub spi_ready: bool,
-    /// `TIMING_ERROR_RDY`.
+    /// Level of `TIMING_ERROR_RDY`: high while the chip is ready for a tick; with register 23 set, high after a tick that
+    /// came too early.
     pub error_or_ready: bool,
 }
 
-/// The model of `ReckOn`.
+/// The model of the chip `ReckOn`.
 #[derive(Clone, Debug)]
 pub struct ReckOn {
     pub(super) inputs: Inputs,
     pub(super) spi: SpiSlave,
     pub(super) now: Clocked,
-    /// The memory of neurons: two in each word.
+    /// The memory of neurons; each word holds two neurons.
     pub neurons: Vec<u128>,
-    /// Weights from inputs: sixteen in each word, sixteen words for each input.
+    /// Weights from inputs to neurons: sixteen weights in each word, sixteen words for each input.
     pub input_weights: Memory,
-    /// Weights from neurons: sixteen in each word, sixteen words for each neuron.
+    /// Weights from neurons to neurons: sixteen weights in each word, sixteen words for each neuron.
     pub recurrent_weights: Memory,
-    /// Weights from neurons to outputs: one word for each neuron.
+    /// Weights from neurons to outputs: one word for each neuron, one byte for each output.
     pub output_weights: Memory,
     is_still: bool,
-    /// Number of clocks so far.
+    /// Number of clock cycles so far.
     pub clocks: u64,
-    /// Neurons that have fired, until a test takes them.
+    /// Neurons that have fired, in order. A test may clear the list.
     pub fired: Vec<u8>,
-    /// Addresses that the input bus has accepted, until a test takes them.
+    /// Addresses that the input bus has accepted, in order. A test may clear the list.
     pub taken: Vec<u8>,
 }
 
 impl Default for ReckOn {
-    /// The state after power-up, with all memories 0.
+    /// Makes a chip in the state after power-up, with memories that are all 0.
     fn default() -> Self {
         Self {
             inputs: Inputs::default(),
@@ -269,14 +271,14 @@ impl Default for ReckOn {
     }
 }
 
-/// An access to a memory in this clock.
+/// An access to a memory in this clock cycle.
 struct Access {
     address: usize,
-    /// The data to write with its mask; `None` to read.
+    /// Data and mask of a write; `None` for a read.
     write: Option<(u128, u128)>,
 }
 
-/// Returns the word after a masked write.
+/// Returns the memory word `old` after a write: the bits of `data` where `mask` is 1, those of `old` elsewhere.
 const fn changed(old: u128, (data, mask): (u128, u128)) -> u128 {
     data & mask | old & !mask
 }
@@ -289,13 +291,14 @@ fn access(memory: &mut Memory, word: &mut u128, access: Option<&Access>) {
     }
 }
 
-/// Returns the data and the mask that write 32 bits into a word of 128.
+/// Returns the data and the mask that write 32 bits into the part of a 128-bit word that `address` selects.
 fn part(address: u16, data: u32) -> (u128, u128) {
     let shift = u32::from(address & 3) * 32;
     (u128::from(data) << shift, 0xFFFF_FFFF << shift)
 }
 
-/// Adds two 16-bit numbers with the chip's saturation, in which the sign of the sum may also come from `noise`.
+/// Adds three 16-bit numbers as the chip does: the sum saturates if its sign differs from that of both `one` and `other`,
+/// even if only `noise` causes this.
 fn add(one: i16, other: i16, noise: i16) -> i16 {
     let sum = one.wrapping_add(other).wrapping_add(noise);
     match (one < 0, other < 0, sum < 0) {
@@ -305,7 +308,7 @@ fn add(one: i16, other: i16, noise: i16) -> i16 {
     }
 }
 
-/// Returns an 8-bit weight, shifted left, as a 16-bit number.
+/// Returns weight `at` of a word of 8-bit weights as a 16-bit number, shifted left by `shift`.
 fn shifted(weights: u128, at: u32, shift: u32) -> i16 {
     i16::from((weights >> (8 * at)) as i8) << shift
 }
@@ -349,7 +352,7 @@ impl ReckOn {
         self.inputs
     }
 
-    /// Drives the host's pins.
+    /// Drives the pins of the host, except for those of SPI.
     pub fn set_inputs(&mut self, inputs: Inputs) {
         self.is_still &= self.inputs == inputs;
         if inputs.reset && !self.inputs.reset {
@@ -358,13 +361,13 @@ impl ReckOn {
         self.inputs = inputs;
     }
 
-    /// Raises SCK, with MOSI at `bit`.
+    /// Raises SCK, the SPI clock, with the chip's SPI input MOSI at `bit`.
     pub fn rise(&mut self, bit: bool) {
         self.is_still = false;
         self.spi.rise(bit, self.inputs.reset);
     }
 
-    /// Lowers SCK.
+    /// Lowers SCK, the SPI clock.
     pub fn fall(&mut self) {
         self.is_still = false;
         if !self.inputs.reset {
@@ -372,7 +375,8 @@ impl ReckOn {
         }
     }
 
-    /// Runs the chip for this many clocks; stops early, without counting them, once nothing can change any more.
+    /// Runs the chip for `clocks` clock cycles. Stops early if no further clock cycle can change anything; the skipped
+    /// cycles are not counted.
     pub fn run(&mut self, clocks: u32) {
         self.clocks += u64::from(clocks);
         for _ in 0..clocks {
@@ -396,7 +400,7 @@ impl ReckOn {
         now.state == State::Idle || now.state == State::Prop && now.event_state == EventState::Wait
     }
 
-    /// Returns the state of the controller.
+    /// Returns the state of the main controller.
     pub const fn state(&self) -> State {
         self.now.state
     }
@@ -406,7 +410,7 @@ impl ReckOn {
         &self.now.outputs
     }
 
-    /// Returns whether a tick since the last reset came before the previous step was done.
+    /// Returns whether, since the last reset, a tick came before the previous step was done.
     pub const fn timing_error(&self) -> bool {
         self.now.timing_error
     }
@@ -453,7 +457,7 @@ impl ReckOn {
         }
     }
 
-    /// Returns the last count of a step: the largest of the numbers of neurons, inputs and outputs.
+    /// Returns the highest number that a step counts to: the largest of the highest neuron, input and output.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }
@@ -501,7 +505,7 @@ impl ReckOn {
         let reading = now.reading[1];
         let (eprop, force) = (self.register(9), self.flag(33));
 
-        // Targets and outputs.
+        // The handshakes of targets and of answers.
         let target_comes = !now.acknowledge && pins.is_target && now.request[1];
         let event_comes = !now.acknowledge && !pins.is_target && now.request[1];
         let is_last_target =
@@ -511,7 +515,7 @@ impl ReckOn {
         let send_done =
             now.output_acknowledge[1] && now.output_request && now.send_count == send_last;
 
-        // Controllers.
+        // The controllers' next states.
         let input_event = has(&now.inputs, now.event_count);
         let spike = has(&now.fired, now.event_count);
         let is_beyond =
@@ -520,7 +524,7 @@ impl ReckOn {
         let next_event = self.next_event(next, input_event || spike, is_beyond);
         let to_idle = now.state != State::Idle && next == State::Idle;
 
-        // The pair of neurons at hand.
+        // The pair of neurons that this clock cycle accesses.
         let pair_at = match now.event_state {
             EventState::Event => now.pair_count >> 1,
             EventState::Trace => now.event_count >> 1,
@@ -534,7 +538,7 @@ impl ReckOn {
         let selects = matches!(now.event_state, EventState::Event | EventState::Trace) || is_step;
         let writes = now.pair_count & 1 == 1 || now.is_trace_cycle || is_odd_step;
 
-        // Neurons and traces.
+        // The neurons' potentials and traces.
         let is_own = pair_at == now.event_count >> 1;
         let is_in_event = now.event_state == EventState::Event;
         let traces = [
@@ -598,7 +602,8 @@ impl ReckOn {
                 let product = old * factor;
                 let whole = product >> digits & most;
                 let part = product & ((1 << digits) - 1);
-                // The bits of the product above the digits, as far as the chip keeps them.
+                // Rounds up at random: more often, the larger the bits that are dropped. A whole part of 0 is not
+                // rounded up.
                 let up = is_rounding && factor != 1 << digits && part >= random && whole != 0;
                 (whole + u32::from(up)) & most
             };
@@ -644,11 +649,11 @@ impl ReckOn {
             mask |= own_mask << (50 * n);
         }
 
-        // Learning.
+        // Learning: the changes of weights.
         let learning = learn::Learning::new(self, &pair);
         learning.clock(self, &mut new, next);
 
-        // Memories.
+        // The accesses to the memories.
         let (address, word) = (self.spi.address, self.spi.data);
         let is_learn = now.state == State::Learn;
         let neuron_access = if prog & spi::PROG_NEURON != 0 {
@@ -710,7 +715,7 @@ impl ReckOn {
         access(&mut self.recurrent_weights, &mut new.recurrent_weights, recurrent_access.as_ref());
         access(&mut self.output_weights, &mut new.output_weights, output_access.as_ref());
 
-        // The input bus.
+        // The handshake of the input bus.
         if event_comes || target_comes {
             new.acknowledge = true;
         } else if now.acknowledge && !now.request[1] {
@@ -736,7 +741,7 @@ impl ReckOn {
             self.taken.push(pins.address);
         }
 
-        // Targets.
+        // The targets received so far.
         if now.state == State::Idle || now.state == State::GetTarget && next != State::GetTarget {
             new.target_count = 0;
         } else if target_comes {
@@ -760,7 +765,7 @@ impl ReckOn {
             new.has_label = true;
         }
 
-        // The output bus.
+        // The handshake of the output bus, and the bytes of the answer.
         if now.state == State::Idle {
             (new.output_request, new.output, new.send_count) = (false, 0, 0);
         } else if now.state == State::Send && next != State::Send {
@@ -785,7 +790,7 @@ impl ReckOn {
             }
         }
 
-        // Counters.
+        // Counters of steps and events.
         let error = tick
             && (!matches!(now.state, State::Idle | State::Prop)
                 || now.state == State::Prop && now.event_state != EventState::Wait);
@@ -813,7 +818,7 @@ impl ReckOn {
             new.event_count = now.event_count.wrapping_add(1);
         }
 
-        // Who fired, and who was touched.
+        // The neurons that fired, and those whose state was updated since the sample began.
         let flags = prog & spi::PROG_NEURON != 0 && address >> 9 & 1 == 1;
         if is_reset || to_idle {
             (new.fired, new.dirty) = ([0; 4], [0; 4]);
@@ -840,7 +845,7 @@ impl ReckOn {
             }
         }
 
-        // Output neurons.
+        // The potentials of the outputs.
         if is_reset || to_idle {
             new.outputs = [0; 16];
         } else {
@@ -864,7 +869,7 @@ impl ReckOn {
             }
         }
 
-        // Who wins.
+        // The number of steps that each output has won.
         if now.state == State::Idle {
             new.winners = [0; 16];
         } else if now.infer[1] && now.state == State::StepDone {
@@ -874,7 +879,7 @@ impl ReckOn {
             *count = count.wrapping_add(1);
         }
 
-        // What SPI reads.
+        // The word that SPI reads.
         let shift = u32::from(address & 3) * 32;
         let read = |memory: u128| (memory >> shift) as u32;
         if reading & 1 != 0 {
@@ -894,7 +899,7 @@ impl ReckOn {
         self.now = new;
     }
 
-    /// Advances the sources of random numbers.
+    /// Advances the random generators.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;
         let is_reset = now.resets[1];
@@ -968,7 +973,7 @@ impl ReckOn {
     }
 }
 
-/// Returns the first of the largest values.
+/// Returns the index of the first of the largest values among `values[..=last]`.
 fn first_most<T: PartialOrd>(values: &[T; 16], last: u8) -> u8 {
     (0..=last).fold(
         0,

@@ -1,8 +1,8 @@
-//! Digests of the chip's state. The simulation of the register-transfer code computes the same ones for comparison.
+//! Digests of the chip's state. The simulation of the register-transfer code computes the same digests, for comparison.
 
 use super::chip::ReckOn;
 
-/// Mixes words into one number.
+/// A digest to which words are added one by one.
 #[derive(Default)]
 struct Mixed(u64);
 
@@ -19,7 +19,8 @@ impl Mixed {
 }
 
 impl ReckOn {
-    /// Returns the pins, both controllers' states and the current event as one number, and a digest of the registers.
+    /// Returns two numbers: the pins, the states of both controllers and the current event; and a digest of all
+    /// registers.
     pub fn digest(&self) -> [u64; 2] {
         let now = &self.now;
         let (state, event_state) = (now.state as u64, now.event_state as u64);

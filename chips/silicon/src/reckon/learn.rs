@@ -1,26 +1,26 @@
-//! Learning on the chip: e-prop, with weights that change by 1 at random.
+//! Learning on the chip, by eligibility propagation (e-prop), with weights that change by 1 at random.
 
 use super::chip::{Clocked, Pair, ReckOn, State};
 use super::lfsr::Bits;
 
-/// An access to a memory of weights: its address, and for a write the word with its mask.
+/// An access to a memory of weights: its address, and for a write the word and its mask.
 type Access = Option<(usize, Option<(u128, u128)>)>;
 
-/// What learning does in one clock.
+/// The results of learning in one clock cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Learning {
     neuron: (bool, u8),
     pub(super) input_weights: Access,
     pub(super) recurrent_weights: Access,
     pub(super) output_weights: Access,
-    /// Whether the weights of inputs, of neurons and of outputs draw random numbers.
+    /// Whether the weights from inputs, between neurons and to outputs use random numbers in this clock cycle.
     pub(super) draws: [bool; 3],
     slope: i8,
     signal: i16,
     regularised: u16,
 }
 
-/// The weights that may change, and the random numbers that decide it.
+/// A word of weights that may change, and the random numbers that decide which do.
 struct Move<'a> {
     weights: u128,
     random: &'a Bits,
@@ -30,7 +30,7 @@ struct Move<'a> {
 }
 
 impl Move<'_> {
-    /// Returns the new word of weights and its mask. `likely` returns for each weight a signed measure of how likely it
+    /// Returns the new word of weights and its mask. `likely` returns, for a weight, a signed measure of how likely it
     /// moves up or down, and whether it may move.
     fn apply(&self, likely: impl Fn(usize) -> (i32, bool)) -> (u128, u128) {
         let (mut data, mut mask) = (0, 0);
@@ -63,7 +63,7 @@ const fn post(now: &Clocked) -> u8 {
 }
 
 impl ReckOn {
-    /// Returns whether this is the last clock of learning.
+    /// Returns whether this is the last clock cycle of learning.
     pub(super) fn learns_last(&self) -> bool {
         let now = &self.now;
         let last = self.register(95) as u8;
@@ -78,7 +78,7 @@ impl ReckOn {
         self.now.pre >> 1 == u16::from(self.last_source()) && self.now.pre & 1 == 1
     }
 
-    /// Returns the difference between an output's target and its value.
+    /// Returns the difference between the target and the value of output `k`.
     fn error(&self, k: usize) -> i16 {
         if self.register(9) == 0 || !self.now.target_valid[1] || k as u32 > self.register(96) {
             return 0;
@@ -98,7 +98,7 @@ impl ReckOn {
         (target - y).clamp(i16::MIN.into(), i16::MAX.into()) as i16
     }
 
-    /// Returns the learning signal of a neuron.
+    /// Returns the learning signal of the current neuron: its weighted sum of the outputs' errors.
     fn signal(&self) -> i16 {
         if self.register(9) & 3 == 0 {
             return 0;
@@ -224,7 +224,7 @@ impl Learning {
         self.neuron
     }
 
-    /// Advances the counters, and stores what is needed of sixteen neurons.
+    /// Advances the counters, and stores the slopes and learning signals of sixteen neurons.
     pub(super) fn clock(&self, chip: &ReckOn, new: &mut Clocked, next: State) {
         let now = &chip.now;
         let only_outputs = chip.register(9) == 4;
@@ -256,7 +256,8 @@ impl Learning {
     }
 }
 
-/// Returns how likely a weight is to move, and whether it may; from an input if `lane` is 0, from a neuron if it is 1.
+/// Returns a signed measure of how likely a weight moves up or down, and whether it may move. `n` is 0 for weights from
+/// inputs, 1 for weights from neurons; `lane` is the receiving neuron among sixteen.
 fn likely(
     chip: &ReckOn,
     n: usize,

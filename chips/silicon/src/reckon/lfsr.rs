@@ -1,7 +1,7 @@
-//! The chip's sources of random numbers: linear-feedback shift registers that give many bits in each clock.
+//! The chip's random generators: linear-feedback shift registers that produce many bits in each clock cycle.
 
-/// A register of `width` bits with the sequence `s[n] = s[n - width] ^ s[n - tap]`, which gives `bits` bits in each
-/// clock.
+/// A shift register of `width` bits with the sequence `s[n] = s[n - width] ^ s[n - tap]`. It produces `bits` bits of
+/// the sequence in each clock cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Lfsr {
     width: i32,
@@ -10,10 +10,11 @@ pub(super) struct Lfsr {
     state: u32,
 }
 
-/// The bits of a clock; the first is bit 0 of the first word.
+/// The bits of one clock cycle; the first is bit 0 of the first word.
 pub(super) type Bits = [u64; 8];
 
-/// Length of the part of the sequence that is computed: up to 25 bits before this clock's, and 512 from there on.
+/// Length of the part of the sequence that is computed: up to 25 bits before this clock cycle's first bit, up to 512
+/// bits of this clock cycle, and up to 25 bits after them.
 const LENGTH: usize = 26 + 512 + 26;
 const NOW: i32 = 26;
 
@@ -26,7 +27,7 @@ impl Lfsr {
         self.state = state & ((1 << self.width) - 1);
     }
 
-    /// Returns the position in the sequence of a bit of the state; 0 is the first bit of this clock.
+    /// Returns the position in the sequence of bit `bit` of the state. Position 0 is the first bit of this clock cycle.
     fn place(&self, bit: i32) -> i32 {
         match (self.bits, bit) {
             (_, bit) if bit < self.tap => bit,
@@ -47,7 +48,7 @@ impl Lfsr {
         s
     }
 
-    /// Returns the bits of this clock.
+    /// Returns the bits that the generator produces in this clock cycle.
     pub(super) fn bits(&self) -> Bits {
         let s = self.sequence(self.bits);
         let mut bits = [0; 8];
@@ -57,7 +58,7 @@ impl Lfsr {
         bits
     }
 
-    /// Returns the bits of this clock as a number; there must be at most 32.
+    /// Returns the bits of this clock cycle as a number, for generators of at most 32 bits.
     pub(super) fn word(&self) -> u32 {
         self.bits()[0] as u32
     }

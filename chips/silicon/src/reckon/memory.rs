@@ -1,13 +1,14 @@
-//! A memory of weights that stores only what was written: a microcontroller has no room for all of it.
+//! A memory that stores its words only up to the last word written, because a microcontroller that runs the model has
+//! no room for all words.
 
 use alloc::vec::Vec;
 use core::iter::repeat_n;
 use core::ops::Index;
 
-/// Words of 128 bits, all 0 until they are written.
+/// A memory of 128-bit words, which are all 0 until they are written.
 #[derive(Clone, Debug)]
 pub struct Memory {
-    /// The words up to the last that is not 0.
+    /// The words from the start to the last one written; the words after them are 0.
     words: Vec<u128>,
     length: usize,
 }
@@ -20,7 +21,7 @@ impl Memory {
     /// Writes a word.
     ///
     /// # Panics
-    /// Panics if there is no such word.
+    /// Panics if `at` is not below the number of words.
     pub fn set(&mut self, at: usize, word: u128) {
         assert!(at < self.length, "a memory of {} words has no word {at}", self.length);
         if at >= self.words.len() {
@@ -32,7 +33,7 @@ impl Memory {
         self.words[at] = word;
     }
 
-    /// Returns all words.
+    /// Returns all words, in order, including those that were never written.
     pub fn iter(&self) -> impl Iterator<Item = u128> {
         self.words.iter().copied().chain(repeat_n(0, self.length - self.words.len()))
     }

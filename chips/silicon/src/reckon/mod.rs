@@ -1,6 +1,7 @@
-//! A model of `ReckOn`, clock by clock: its SPI, controllers, neurons, traces, learning and sources of random numbers.
+//! A model of `ReckOn`, exact to the clock cycle: its SPI, controllers, neurons, traces, learning and random
+//! generators.
 //!
-//! It was written from the chip's public register-transfer code, of which nothing is copied.
+//! It was written from the chip's public register-transfer code; nothing is copied from it.
 
 mod board;
 mod chip;

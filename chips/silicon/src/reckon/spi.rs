@@ -1,37 +1,36 @@
 //! The SPI slave of `ReckOn`. A frame is a header of 32 bits, followed by as many 32-bit words as the header says. The
-//! slave has no chip select, and counts clocks from reset.
+//! slave has no chip select, and counts clock pulses from reset.
 
-/// Flags of the writes that the core is asked for: first the memories in the order of their codes, then the nine seeds.
-/// This one is the parameters of a pair of neurons.
+/// Flag in [`SpiSlave::writing`]: write the parameters of a pair of neurons.
 pub(super) const PROG_NEURON: u16 = 1;
-/// The parameters of an output neuron.
+/// Flag in [`SpiSlave::writing`]: write the potential of an output.
 pub(super) const PROG_OUTPUT: u16 = 1 << 1;
-/// The weights of inputs.
+/// Flag in [`SpiSlave::writing`]: write weights from inputs.
 pub(super) const PROG_INPUT_WEIGHTS: u16 = 1 << 2;
-/// The recurrent weights.
+/// Flag in [`SpiSlave::writing`]: write weights between neurons.
 pub(super) const PROG_RECURRENT_WEIGHTS: u16 = 1 << 3;
-/// The weights of outputs.
+/// Flag in [`SpiSlave::writing`]: write weights to outputs.
 pub(super) const PROG_OUTPUT_WEIGHTS: u16 = 1 << 4;
-/// The first of nine seeds.
+/// Flag in [`SpiSlave::writing`]: write the seed of the first random generator; the flags of the other eight follow.
 pub(super) const PROG_SEED: u16 = 1 << 5;
 
-/// Number of registers; the highest is 104.
+/// Number of registers; the highest register number is 104.
 pub(super) const REGISTERS: usize = 105;
 
-/// The state of the slave, which only SCK advances.
+/// The state of the slave, which changes with SCK only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SpiSlave {
     count: u32,
     header: u32,
     shift_in: u32,
     shift_out: u32,
-    /// Address of the word that the core is asked for.
+    /// Address of the memory word that the chip's core is to access.
     pub(super) address: u16,
-    /// The word to write.
+    /// The word that the core is to write.
     pub(super) data: u32,
-    /// Flags of the writes that the core is asked for.
+    /// Flags of the writes that the core is to make, the `PROG_` constants.
     pub(super) writing: u16,
-    /// Flags of the reads that the core is asked for: the memories in the order of their codes.
+    /// Flags of the reads that the core is to make: bit `n - 1` is for the memory with code `n`.
     pub(super) reading: u8,
     registers: [u32; REGISTERS],
 }
@@ -52,7 +51,7 @@ impl Default for SpiSlave {
     }
 }
 
-/// Returns the number of bits in a register; 0 if there is no such register.
+/// Returns the number of bits in a register; 0 if the chip has no such register.
 const fn width(register: usize) -> u32 {
     match register {
         0 | 2 | 3 | 8 | 10 | 11 | 21 | 23 | 25..=27 | 30..=33 => 1,
@@ -88,7 +87,7 @@ const fn reset_value(register: usize) -> Option<u32> {
 }
 
 impl SpiSlave {
-    /// Resets the slave.
+    /// Resets the slave, and all registers that have a reset value.
     pub(super) fn reset(&mut self) {
         (self.count, self.header, self.shift_out) = (0, 0, 0);
         (self.writing, self.reading) = (0, 0);
@@ -104,18 +103,18 @@ impl SpiSlave {
         self.registers[register]
     }
 
-    /// Sets a register directly, for tests that do not use the bus.
+    /// Sets a register directly. Bits beyond its width are dropped.
     pub(super) fn set_register(&mut self, register: usize, value: u32) {
         self.registers[register] = value & ((1_u64 << width(register)) - 1) as u32;
     }
 
-    /// Returns the level of MISO, without the request of a target.
+    /// Returns the level that the slave gives MISO; `read` is the last word that the core read.
     pub(super) const fn output(&self, read: u32) -> bool {
         let is_first = self.header >> 31 == 1 && self.count & 31 == 0 && self.count >> 5 != 0;
         (if is_first { read } else { self.shift_out }) >> 31 == 1
     }
 
-    /// Raises SCK, with MOSI at `bit`.
+    /// Raises SCK, with MOSI at `bit`. Writes a register if its word is complete.
     pub(super) fn rise(&mut self, bit: bool, is_reset: bool) {
         let word = self.shift_in << 1 | u32::from(bit);
         let is_register = self.header >> 28 == 0 && self.count & 31 == 31 && self.count >> 5 != 0;

@@ -20,10 +20,10 @@ use std::path::{Path, PathBuf};
 
 /// Describe a log and advise a bank for it: one scheme for all channels, its parameters, and the reasons.
 ///
-/// Each scheme is tuned briefly on each channel, with some blocks of the log held out. A scheme qualifies if it comes
-/// as near to each signal as asked, both on the tuned and on the held-out blocks. Of those that qualify, the one with
-/// the fewest bytes a second on the crate's link is advised. With --loop-bandwidth a scheme must also have flown a
-/// simulated drone well while frames were lost.
+/// Each scheme is tuned briefly on each channel, with some blocks of the log held out. A scheme qualifies if its RMSE
+/// is at most --max-rmse on the tuned blocks, and at most 1.25 times that on the held-out blocks. Of the schemes that
+/// qualify, the one that needs the fewest bytes a second on the link is advised. With --loop-bandwidth, a scheme must
+/// also have flown a simulated drone well while frames were lost.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -44,17 +44,17 @@ pub(crate) struct Advise {
     #[arg(long, value_name = "SAMPLES")]
     max_latency: Option<f64>,
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate.
-    /// Codes that are too late for it, or that cannot keep up with the signal, are not advised
+    /// Codes whose latency is too long for this bandwidth, or that cannot follow the signal, are not advised
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
     /// Share of frames that the link loses, in percent, 0 to 10. With --loop-bandwidth, a code is not advised if a
-    /// simulated drone flew badly on it at this loss
+    /// simulated drone flew badly with it at this loss
     #[arg(long, value_name = "PERCENT", default_value_t = AdviseRequest::FRAME_LOSS)]
     frame_loss: f64,
-    /// Core whose measured costs count: M0 or M4F
+    /// Core whose measured costs count: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
-    /// Stop after this many seconds in all; the advice then depends on the machine's speed. Ctrl-C stops as well
+    /// Stop after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
     #[arg(long, value_parser = lab::input::above_zero)]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel
@@ -63,11 +63,11 @@ pub(crate) struct Advise {
     /// Seed of the search
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Draw one channel's signal, spikes and reconstruction with the advised scheme, `.svg` or `.png`
+    /// Draw one channel's signal, spikes and reconstruction with the advised scheme, as `.svg` or `.png`
     #[arg(long)]
     picture: Option<PathBuf>,
-    /// Write the advised bank as a flight's file (TOML), for `emit`, `encode`, `listen`, Python and a firmware's build
-    /// script
+    /// Write the advised bank as a flight file (`flight.toml`), which `emit`, `encode`, `listen`, Python and a
+    /// firmware's build script read
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print the whole report as JSON
@@ -78,7 +78,7 @@ pub(crate) struct Advise {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if the log or the options are invalid, or if no channel can be judged.
+/// Returns an error if the log or the options are invalid, or if no scheme can be advised for any channel.
 pub(crate) fn run(options: &Advise) -> Result<()> {
     let recordings = Recording::read_all(&options.input.to_lab()?.or_all()?)?;
     if options.picture.is_some() && recordings.len() > 1 {
@@ -110,7 +110,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     let watch = Watch { is_stopped: &|| stop.is_due(), tell: &tell };
     let all = advise(&request, &watch)?;
     let is_wanted = request.recordings.len() > 1 || options.output.is_some();
-    let has_rate = request.recordings.iter().all(|own| own.rate.is_some());
+    let has_rate = request.recordings.iter().all(|recording| recording.rate.is_some());
     let bank = if is_wanted && (has_rate || options.output.is_some()) {
         Some(BankAdvice::new(&request, &all, &watch)?)
     } else {
@@ -118,8 +118,8 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     };
     bar.finish_and_clear();
     if options.json {
-        let told = serde_json::json!({ "channels": all, "bank": bank });
-        answer(serde_json::to_string_pretty(&told)? + "\n")?;
+        let report = serde_json::json!({ "channels": all, "bank": bank });
+        answer(serde_json::to_string_pretty(&report)? + "\n")?;
     } else {
         let pages = all.iter().map(Advice::page).chain(bank.as_ref().map(BankAdvice::page));
         answer(pages.collect::<String>())?;
@@ -146,7 +146,8 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     Ok(())
 }
 
-/// Draws a recording through the scheme that is advised for it.
+/// Draws the recording, its spikes and its reconstruction with the scheme advised for it, and writes the picture to
+/// `path`.
 fn draw_advised(
     options: &Advise,
     path: &Path,

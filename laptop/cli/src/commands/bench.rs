@@ -1,4 +1,5 @@
-//! `spikewire bench`: the paper's Tables I and II.
+//! `spikewire bench`: reproduces Tables I and II of Dupeyroux et al. (2022), the paper that many of the schemes come
+//! from.
 
 use crate::options::answer;
 use anyhow::{Result, bail};
@@ -7,14 +8,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lab::bench::{self, paper};
 use std::time::Instant;
 
-/// Reproduce Tables I and II of the paper, cell by cell; fails if a cell differs from the paper's.
+/// Reproduce Tables I and II of the paper, Dupeyroux et al. (2022), cell by cell; fails if a cell differs from the
+/// printed one.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire bench
   spikewire bench --tests 100 --cases 3 --json")]
 pub(crate) struct Bench {
-    /// Signals per case; the paper has 1000, and fewer of them detect only larger differences
+    /// Signals per case; the paper has 1000, and a smaller number detects only larger differences
     #[arg(long, default_value_t = paper::TESTS)]
     tests: usize,
     /// Number of cases to run, 1 to 5, starting with the shortest signals

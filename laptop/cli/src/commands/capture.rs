@@ -1,4 +1,4 @@
-//! `spikewire capture`: copies what a board writes to RTT, byte for byte, through a debug probe.
+//! `spikewire capture`: copies the bytes that a board writes to an RTT channel, read through a debug probe.
 
 use anyhow::Result;
 use clap::Args;
@@ -22,7 +22,7 @@ pub(crate) struct Capture {
     /// Address of RTT's control block, such as 0x20000000; default: all RAM is searched
     #[arg(long, value_parser = address)]
     pub address: Option<u64>,
-    /// Stop after this many seconds; Ctrl-C stops as well
+    /// Stop after this many seconds; Ctrl-C stops too
     #[arg(long)]
     pub seconds: Option<f64>,
     /// File to write the bytes to; default: standard output
@@ -52,17 +52,17 @@ pub(crate) fn run(options: &Capture) -> Result<()> {
     Ok(rtt::with_channel(&Board { chip, probe, channel, address }, |channel| {
         let mut output = Output::to(options.output.as_deref())?;
         let captured = rtt::capture(channel, &mut output, || stop.is_due());
-        // What came before a channel failed is kept.
+        // Bytes received before the channel failed are kept.
         output.finish()?;
         eprintln!("{} bytes", captured.bytes);
         captured.end
     })?)
 }
 
-/// Stands in for the command in a build without it, and says how to build with it.
+/// Replaces the command in a build without the feature `capture`.
 ///
 /// # Errors
-/// Always returns an error.
+/// Always returns an error, which says how to build with the feature.
 #[cfg(not(feature = "capture"))]
 pub(crate) fn run(_: &Capture) -> Result<()> {
     anyhow::bail!(

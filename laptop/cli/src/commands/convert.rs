@@ -12,9 +12,9 @@ use std::path::PathBuf;
 
 /// Convert events from one format to another.
 ///
-/// FORMAT is `link`, `edvs:e0` to `edvs:e4` (the number is the camera's time format), `es` (Event Stream), `evt2` (a
-/// .raw file), `eieio` (datagrams one after the other) or `csv` (`tick,address,polarity`). Options follow after a
-/// comma. `link,period=5000,channels=6,jitter=5` makes frames short. `edvs:e2,up=0` encodes a rise as 0.
+/// FORMAT is `link` (spikewire's own frames), `edvs:e0` to `edvs:e4` (the number is the camera's time format), `es`
+/// (Event Stream), `evt2` (a .raw file), `eieio` (consecutive datagrams) or `csv` (`tick,address,polarity`). Options
+/// follow after a comma. `link,period=5000,channels=6,jitter=5` makes frames short. `edvs:e2,up=0` encodes a rise as 0.
 /// `eieio,base=0x70000,step=1000,signed=1` sets the key of address 0, the length of a time step in µs, and two keys for
 /// each address, the first for down and the second for up.
 #[derive(Args, Debug)]
@@ -43,7 +43,7 @@ pub(crate) struct Convert {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if the input cannot be read or the output cannot be written.
+/// Returns an error if the input cannot be read or is not of the format `--from`, or if the output cannot be written.
 pub(crate) fn run(options: &Convert) -> Result<()> {
     let Convert { input, from, to, output, stream } = options;
     let mut port = Port::open(input, None)?;

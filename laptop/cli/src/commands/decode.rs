@@ -16,11 +16,11 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Decode a file of spikes that `encode` wrote, or a log of the toolbox's messages; neither needs another file. Of a data
-/// set, decode a file of its `events`.
+/// Decode a file of spikes that `encode` wrote, a Parquet file of spikes that `dataset` wrote, or a ROS log with messages
+/// `spyke_msgs`, of the toolbox by Dupeyroux et al. (2022). The scheme and its parameters are read from the file itself.
 ///
-/// Writes `index,value`; with several channels, one column for each, under its name. Recorded times follow as
-/// `time_us`: exact at events and at gaps, evenly spaced between them.
+/// Writes the columns `index,value`; with several channels, one column for each, under its name. If times were
+/// recorded, the column `time_us` follows: exact at events and at gaps, evenly spaced between them.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -32,7 +32,7 @@ pub(crate) struct Decode {
     /// spikes from standard input
     #[arg(default_value = "-")]
     spikes: PathBuf,
-    /// Read what is whole of a log that is cut short or damaged
+    /// Read the undamaged part of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
     /// CSV file to write, `index,value` and `time_us` if times were recorded; default: standard output
@@ -48,7 +48,7 @@ const BUFFER: usize = 1 << 18;
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if the file of spikes is invalid or the output cannot be written.
+/// Returns an error if the file of spikes is invalid, or if the output cannot be written.
 pub(crate) fn run(options: &Decode) -> Result<()> {
     let Decode { spikes, output, accept_cut, is_restored } = options;
     if let Some(output) = output {
@@ -97,7 +97,7 @@ fn decode(
     file: &str,
     open: impl FnOnce() -> lab::Result<Output>,
 ) -> Result<()> {
-    /// Number of events or times that are decoded at once.
+    /// Number of events or sample times collected before they are decoded.
     const BATCH: usize = 4096;
     let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;
@@ -108,7 +108,7 @@ fn decode(
                 if let Some(time) = time {
                     decoding.timeline.learn(event.sample, time);
                 }
-                // Events of one sample stay together.
+                // The events of one sample must be decoded in one batch.
                 let is_next = events.last().is_some_and(|last| last.sample < event.sample);
                 let decoded = if events.len() >= BATCH && is_next {
                     decoding.advance(event.sample, &mut events)
@@ -148,9 +148,9 @@ struct Decoding {
     is_single: bool,
     is_timed: bool,
     timeline: Timeline,
-    /// Number of the next sample to write, counted as in the file.
+    /// Index of the next sample to write, counting those that the encoder skipped.
     next: u64,
-    /// Number of samples before `next` that the encoder never saw.
+    /// Number of samples before `next` that the encoder skipped because a value was missing.
     skipped: u64,
     columns: Vec<Vec<f64>>,
     line: Vec<u8>,
@@ -192,7 +192,8 @@ impl Decoding {
         })
     }
 
-    /// Decodes all samples before `end`; takes their events out of `events` and leaves it empty.
+    /// Decodes and writes all samples before index `end`. `events` holds the events before `end`, and is empty
+    /// afterwards.
     fn advance(&mut self, end: u64, events: &mut Vec<Event>) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         for event in events.iter_mut() {
@@ -214,7 +215,7 @@ impl Decoding {
         Ok(())
     }
 
-    /// Writes `count` samples that the encoder never saw, and that therefore have no value.
+    /// Writes `count` rows with NaN, for samples that the encoder skipped because a value was missing.
     fn skip(&mut self, count: u64) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         self.skipped += count;
@@ -258,7 +259,7 @@ impl Decoding {
     }
 }
 
-/// Returns the names of the columns: `value` for one channel, or the recording's names for several.
+/// Returns the names of the value columns: `value` for one channel, or the recording's column names for several.
 fn names(header: &Header) -> Vec<String> {
     let count = header.channels.len();
     if count == 1 {

@@ -1,4 +1,4 @@
-//! `spikewire emit`: writes source code for firmware, from a flight's file or from files of parameters.
+//! `spikewire emit`: writes source code for firmware, from a flight file (`flight.toml`) or from files of parameters.
 
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
@@ -9,27 +9,28 @@ use lab::output::Output;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Write source code for firmware, from a flight's file or from files of parameters.
+/// Write source code for firmware, from a flight file (`flight.toml`) or from files of parameters.
 #[derive(Args, Debug)]
 pub(crate) struct Emit {
     #[command(subcommand)]
-    what: What,
+    language: Language,
 }
 
 #[derive(Subcommand, Debug)]
-enum What {
+enum Language {
     Rust(Rust),
     C(C),
 }
 
-/// Write both ends of a flight in Rust: the module `flight`, for `include!`, as a firmware's build script makes it.
+/// Write sender and receiver of a flight in Rust: the module `flight`, for `include!`, the same as a firmware's build
+/// script makes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
   spikewire advise flight.ulg --loop-bandwidth 4 -o flight.toml
   spikewire emit rust --flight flight.toml -o src/flight.rs")]
 struct Rust {
-    /// The flight's file, TOML
+    /// Flight file (`flight.toml`)
     #[arg(long, value_name = "FILE")]
     flight: PathBuf,
     /// File to write the module to; default: standard output
@@ -37,8 +38,8 @@ struct Rust {
     output: Option<PathBuf>,
 }
 
-/// Write a crate that builds a C library of exactly these codecs, with their parameters in flash; or of both ends of
-/// flights.
+/// Write a crate that builds a C library: either of the codecs in the given files, with their parameters in flash, or
+/// of the senders and receivers of flights.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -53,7 +54,8 @@ struct C {
     /// Files of parameters (TOML), as `tune --emit toml` writes them
     #[arg(required_unless_present = "flight", value_name = "FILE")]
     params: Vec<PathBuf>,
-    /// Flights' files (TOML), in place of files of parameters: makes the bank, writer and receiver of each
+    /// Flight files (`flight.toml`), in place of files of parameters: makes the bank, writer and receiver of each
+    /// flight
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "params")]
     flight: Vec<PathBuf>,
     /// Directory to create for the crate; must not exist yet
@@ -69,14 +71,14 @@ struct C {
 /// # Errors
 /// Returns an error if an input file is invalid, or if the output cannot be written.
 pub(crate) fn run(options: &Emit) -> Result<()> {
-    let C { params, flight, output, spikewire } = match &options.what {
-        What::Rust(Rust { flight, output }) => {
+    let C { params, flight, output, spikewire } = match &options.language {
+        Language::Rust(Rust { flight, output }) => {
             let text = rust(&Flight::read(flight)?)?;
             let mut output = Output::open(output.as_deref(), flight)?;
             output.write_all(text.as_bytes())?;
             return Ok(output.finish()?);
         }
-        What::C(c) => c,
+        Language::C(c) => c,
     };
     if !flight.is_empty() {
         let flights = flight.iter().map(|path| Ok((codec_name(path)?, Flight::read(path)?)));
@@ -89,7 +91,8 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
     Ok(c_crate(&codecs.collect::<Result<Vec<_>>>()?, output, spikewire.as_deref())?)
 }
 
-/// Returns the name in C, made from the file's name without its ending: `gyro-x.toml` gives `gyro_x`.
+/// Returns the name of a codec in C: the file's name without its extension, in lower case, with `_` for other
+/// characters. `Gyro-x.toml` gives `gyro_x`.
 fn codec_name(path: &Path) -> Result<String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let is_word = |letter: char| letter.is_ascii_alphanumeric();

@@ -13,8 +13,9 @@ use std::path::PathBuf;
 
 /// Encode channels of a recording: writes `index,address,polarity` and, if the recording has times, `time_us`.
 ///
-/// With several columns the address tells them apart: the neurons of the second column are numbered on from those of
-/// the first. All columns share the given parameters; parameters that are calibrated are calibrated for each column.
+/// With several columns, each has a range of addresses of its own: the neurons of the second column are numbered after
+/// those of the first. All columns share the given parameters; parameters that are calibrated are calibrated for each
+/// column.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -26,13 +27,14 @@ Examples:
 pub(crate) struct Encode {
     #[command(flatten)]
     coding: Coding,
-    /// Flight's file (TOML) that `advise -o` wrote: encodes its channels as the flight's sender does
+    /// Flight file (`flight.toml`) that `advise -o` wrote: encodes the file's channels exactly as the sender on the
+    /// drone does
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
     #[command(flatten)]
     input: InputOptions,
-    /// File to write: spikes as `.csv`, `.txt` or without an ending, or messages of the toolbox as `.bag` (ROS 1) or
-    /// `.mcap` (ROS 2); default: standard output
+    /// File to write: spikes as `.csv`, `.txt` or without an extension, or ROS messages `spyke_msgs` as `.bag` (ROS 1)
+    /// or `.mcap` (ROS 2); default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
 }

@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 ///
 /// VIDEO is YUV4MPEG2 (`.y4m`, or `-`), pictures (`.png`, `.jpg`, `.pgm`, as files or a directory, in the order of
 /// their names), or any format that an installed `ffmpeg` reads. Only the brightness counts. A pixel sends an event
-/// when its brightness differs from what it last sent by `--threshold` grey levels, or its logarithm by `--contrast`.
-/// The first frame sends nothing.
+/// when its brightness differs by `--threshold` grey levels from the last brightness that it sent, or when the
+/// logarithm of its brightness differs by `--contrast`. The first frame sends nothing.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -28,13 +28,13 @@ pub(crate) struct Frames {
     /// Video file, or several pictures
     #[arg(required = true)]
     video: Vec<PathBuf>,
-    /// Threshold in grey levels, 1 to 254; the paper's figure uses 1 and 10
+    /// Threshold in grey levels, 1 to 254
     #[arg(long, conflicts_with = "contrast")]
     threshold: Option<u8>,
-    /// Contrast threshold, in natural logarithm as for an event camera: 0.2 means 22 % brighter
+    /// Contrast threshold, as a difference of natural logarithms: 0.2 means 22 % brighter
     #[arg(long)]
     contrast: Option<f64>,
-    /// Contrast threshold for pixels that get darker; default: the same as for brighter ones
+    /// Contrast threshold for pixels that get darker; default: --contrast
     #[arg(long, requires = "contrast")]
     contrast_off: Option<f64>,
     /// Maximum number of events of one pixel in a frame, 1 to 255
@@ -43,7 +43,7 @@ pub(crate) struct Frames {
     /// Number of frames for which a pixel stays silent after a frame in which it sent events
     #[arg(long, default_value_t = 0)]
     refractory: u8,
-    /// Maximum number of events in a frame; the rest is sent in later frames, and counted
+    /// Maximum number of events in a frame; those beyond it are counted, and sent in later frames
     #[arg(long)]
     budget: Option<u32>,
     /// Spread the events of a pixel over the time since the previous frame, which is divided into --most parts
@@ -89,9 +89,12 @@ pub(crate) fn run(options: &Frames) -> Result<()> {
     }
 }
 
-/// Converts a contrast to levels of the logarithmic scale.
+/// Converts a contrast, a difference of natural logarithms, to steps of 1/1024.
+///
+/// # Errors
+/// Returns an error, which names `option`, if the result is outside 1 to 5673, the step from black to white.
 fn levels(option: &str, contrast: f64) -> Result<u16> {
-    /// Number of levels for a factor of e. `MOST` is the highest useful contrast in levels: that from black to white.
+    /// Number of levels for a difference of 1 in the natural logarithm.
     const SCALE: f64 = 1024.0;
     const MOST: f64 = 5673.0;
     let levels = (SCALE * contrast).round();
@@ -194,7 +197,8 @@ fn encoder<C: PixelCode>(
     })
 }
 
-/// Makes a progress bar of frames, with their total if it is known. It is hidden unless standard error is a terminal.
+/// Returns a progress bar that counts frames, with the total if it is known. The bar is hidden unless standard error is
+/// a terminal.
 fn bar(frames: Option<u64>) -> Result<ProgressBar> {
     if !io::stderr().is_terminal() {
         return Ok(ProgressBar::hidden());

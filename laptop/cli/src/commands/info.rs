@@ -12,8 +12,8 @@ use lab::output::Output;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// List a log's topics with their fields, rates and gaps, and what the logger missed; or a table's columns, rows, rate
-/// and gaps.
+/// List a log's topics with their fields, rates and gaps, and the data that the logger lost; or a table's columns,
+/// rows, rate and gaps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -23,10 +23,10 @@ pub(crate) struct Info {
     /// MCAP file, Betaflight's blackbox, or a table in CSV, JSON lines, Parquet or `NumPy`'s arrays, also compressed; `-` is
     /// standard input
     log: PathBuf,
-    /// Report time steps that are longer than this many usual steps
+    /// Report time steps longer than this multiple of the usual step
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
     gap: f64,
-    /// Read what is whole of a log that is cut short or damaged
+    /// Read the undamaged part of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
 }
@@ -70,15 +70,19 @@ fn write_table(name: &str, table: &Summary, output: &mut impl Write) -> Result<(
     if let Some(note) = rollover.note() {
         writeln!(output, "  {note}")?;
     }
-    let numbers = columns.iter().filter(|own| own.text.is_none());
-    let numbers: Vec<&str> = numbers.map(|own| own.name.as_str()).collect();
+    let numbers = columns.iter().filter(|column| column.text.is_none());
+    let numbers: Vec<&str> = numbers.map(|column| column.name.as_str()).collect();
     writeln!(output, "  {}", numbers.join(", "))?;
-    for own in columns {
-        if let Some((line, text)) = &own.text {
-            writeln!(output, "  {}: no signal, as line {line} has `{text}`", own.name)?;
-        } else if own.missing > 0 {
-            let rows = if own.missing == 1 { "row" } else { "rows" };
-            writeln!(output, "  {}: missing or not finite in {} {rows}", own.name, own.missing)?;
+    for column in columns {
+        if let Some((line, text)) = &column.text {
+            writeln!(output, "  {}: no signal, as line {line} has `{text}`", column.name)?;
+        } else if column.missing > 0 {
+            let rows = if column.missing == 1 { "row" } else { "rows" };
+            writeln!(
+                output,
+                "  {}: missing or not finite in {} {rows}",
+                column.name, column.missing
+            )?;
         }
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! `spikewire listen`: shows what a board sends, as events or as decoded values, while it arrives.
+//! `spikewire listen`: prints what a board sends, as events or as decoded values, while the bytes arrive.
 
 use crate::inputs::StreamOptions;
 use crate::live::Live;
@@ -23,10 +23,10 @@ use std::path::PathBuf;
 /// Listen to a board: write the events that it sends, or with `--scheme` the values that they encode.
 ///
 /// Formats have the names that `convert` uses. Values need the format `link`, and are decoded by the same receiver that
-/// runs on boards. A value marked `exact` equals, bit for bit, that of a decoder on the sender. It is exact: for a
-/// temporal code, from a keyframe on until something is lost; for a rate code, once as many samples as its filter has
-/// taps have arrived; for a population code, from the next spike on. A temporal code gives one value for each event.
-/// The other codes give one for each sample and channel, from the channel's first event on.
+/// runs on boards. A value marked `exact` equals, bit for bit, the value that a decoder on the sender has. Values of a
+/// temporal code are exact from a keyframe until data is lost; those of a rate code, once a filter's length of samples
+/// has arrived without loss; those of a population code, from the first spike after a loss. A temporal code gives one
+/// value for each event. The other codes give one for each sample and channel, from the channel's first event on.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -42,13 +42,13 @@ pub(crate) struct Listen {
     /// Speed in bits a second if the input is a serial port (8 data bits, no parity, 1 stop bit)
     #[arg(long)]
     baud: Option<u32>,
-    /// Stop after this many seconds; Ctrl-C stops as well
+    /// Stop after this many seconds; Ctrl-C stops too
     #[arg(long, requires = "baud")]
     seconds: Option<f64>,
-    /// Format of the bytes
+    /// Format of the input
     #[arg(long, value_name = "FORMAT", default_value = "link")]
     from: Format,
-    /// Format to write
+    /// Format of the output
     #[arg(long, value_name = "FORMAT", default_value = "csv")]
     to: Format,
     /// File to write events or values to; default: standard output
@@ -56,16 +56,17 @@ pub(crate) struct Listen {
     output: Option<PathBuf>,
     #[command(flatten)]
     stream: StreamOptions,
-    /// Decode a link's frames by this scheme; must be the sender's
+    /// Decode the link's frames with this scheme, which must be the sender's
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type of the sender: f32, i16, i32, or fixed point such as q16.16 or q8.8; default: f32
     #[arg(long)]
     sample: Option<SampleType>,
-    /// File of the sender's parameters (TOML), as `tune --emit toml` writes it; options on the command line override it
+    /// File of the sender's parameters (TOML), as written by `tune --emit toml`; options on the command line override
+    /// it
     #[arg(long, value_name = "FILE", value_parser = crate::options::read)]
     params: Option<Coding>,
-    /// Flight's file (TOML) that `advise -o` wrote, and from which the sender was made
+    /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
     flight: Option<PathBuf>,
     /// Length in µs of the sender's sub-timesteps; only for schemes that have them
@@ -79,7 +80,7 @@ fn is_recorded(parameter: &Parameter) -> bool {
     parameter.is_recorded
 }
 
-/// The parameters that a decoder needs.
+/// The scheme parameters that a decoder needs. Parameters that only an encoder needs are not offered as options.
 #[derive(Clone, Debug)]
 struct DecoderOptions(Asked);
 
@@ -101,12 +102,12 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
         }
         options.check_formats("--flight")?;
         let flight = Flight::read(path)?;
-        let mut heard = Ok(());
+        let mut listened = Ok(());
         flight::with_receiver(&flight, |values| {
-            heard = listen(options, Some((values, flight.sample)));
+            listened = listen(options, Some((values, flight.sample)));
             Ok(())
         })?;
-        return heard;
+        return listened;
     }
     let sample = options.params.as_ref().map(|params| params.sample);
     let sample = options.sample.or(sample).unwrap_or_default();
@@ -118,12 +119,12 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     };
     let settings = options.settings(scheme, sample)?;
     let slot_ticks = options.slot_ticks(scheme, &settings)?;
-    let mut heard = Ok(());
+    let mut listened = Ok(());
     with_receiver(scheme, sample, &settings, slot_ticks, |values| {
-        heard = listen(options, Some((values, sample)));
+        listened = listen(options, Some((values, sample)));
         Ok(())
     })?;
-    heard
+    listened
 }
 
 fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) -> Result<()> {
@@ -138,7 +139,7 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
     let mut live = Live::new(options.output.is_none());
 
     let mut buffer = vec![0; 1 << 16];
-    let heard = loop {
+    let listened = loop {
         match port.read(&mut buffer) {
             Ok(Bytes::Some(count)) => {
                 let arrival = options.baud.map(|_| stop.tick());
@@ -156,33 +157,39 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
             break Ok(());
         }
     };
-    // What came before a port failed is kept.
+    // Bytes received before the port failed are kept.
     stream.finish(&mut output)?;
     live.clear();
     eprint!("{}", stream.spelled(option));
     match stream.check_format(options.from, port.name()) {
-        // It may yet speak, or at another speed.
+        // A board on a serial port may still be silent, or the baud rate may be wrong: a warning.
         Err(error) if options.baud.is_some() => eprintln!("{}", of_lab(&error)),
         checked => checked?,
     }
     output.finish()?;
-    Ok(heard?)
+    Ok(listened?)
 }
 
 impl Listen {
-    /// Returns the scheme that an option or the file of parameters names.
+    /// Returns the scheme that `--scheme` or the file of `--params` names.
+    ///
+    /// # Errors
+    /// Returns an error if the two name different schemes.
     fn named(&self) -> Result<Option<Scheme>> {
         let Some(params) = &self.params else { return Ok(self.scheme) };
         Ok(Some(agreed(params, self.scheme)?))
     }
 
-    /// Returns the length of the sender's sub-timesteps in µs; `None` if the scheme has none.
+    /// Returns the length of the sender's sub-timesteps in µs; `None` if the scheme has no sub-timesteps.
+    ///
+    /// # Errors
+    /// Returns an error if `--slot-ticks` is missing for a scheme that needs it, or given for one that does not.
     fn slot_ticks(&self, scheme: Scheme, settings: &[Settings]) -> Result<Option<u32>> {
-        // The spikes of a temporal code are all alike, whatever their sub-timestep.
+        // A temporal code decodes a spike the same way in every sub-timestep.
         let has_slots = !scheme.info().has_first_value()
             && settings
                 .first()
-                .map(|own| scheme.shape(own))
+                .map(|settings| scheme.shape(settings))
                 .transpose()?
                 .is_some_and(|shape| shape.slots > 1);
         match self.slot_ticks {
@@ -199,7 +206,8 @@ impl Listen {
         }
     }
 
-    /// Returns an error if the input or output format cannot carry values.
+    /// Checks that the input format can carry values (`link`) and the output format can express them (`csv`). `option`
+    /// is the option that asks for values, for the message.
     fn check_formats(&self, option: &str) -> Result<()> {
         if !matches!(self.from, Format::Link(_)) {
             bail!(
@@ -212,15 +220,16 @@ impl Listen {
         Ok(())
     }
 
-    /// Returns one set of settings that all channels share, or one for each channel.
+    /// Returns either one set of settings that all channels share, or one set for each channel.
     fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
         self.check_formats("--scheme")?;
         let mut asked = match &self.params {
             Some(params) => self.parameters.0.or(&params.asked),
             None => self.parameters.0.clone(),
         };
-        // Any value will do of what is the encoder's alone.
-        for parameter in scheme.info().parameters.iter().filter(|own| own.is_of_encoder) {
+        // A decoder ignores the encoder's own parameters: any valid value will do.
+        for parameter in scheme.info().parameters.iter().filter(|parameter| parameter.is_of_encoder)
+        {
             if asked.get(parameter.name).is_none() {
                 asked.set(parameter.name, parameter.read(parameter.example)?);
             }
@@ -233,8 +242,8 @@ impl Listen {
         let channels = asked.channels(scheme.info())?.unwrap_or(1);
         let mut all = Vec::new();
         for channel in 0..channels {
-            let own = asked.channel(scheme.info(), channel, channels)?;
-            let settings = scheme.resolve(sample, &own, &known)?;
+            let asked = asked.channel(scheme.info(), channel, channels)?;
+            let settings = scheme.resolve(sample, &asked, &known)?;
             if let Some(rounding) = rounding(&settings) {
                 eprintln!("{rounding}");
             }

@@ -1,4 +1,4 @@
-//! The commands, one in each file.
+//! The commands of the program `spikewire`, one in each file.
 
 pub(crate) mod advise;
 pub(crate) mod bench;

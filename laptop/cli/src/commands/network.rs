@@ -1,5 +1,5 @@
-//! `spikewire network`: brings a trained network onto a chip or the flight controller, and reports the cost in
-//! accuracy.
+//! `spikewire network`: converts a trained network for a chip or the flight controller, and reports how much accuracy
+//! the conversion costs.
 
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
@@ -27,11 +27,12 @@ use std::fs;
 use std::io::{self, BufRead, Write, stdin};
 use std::path::{Path, PathBuf};
 
-/// Bring a trained network onto a chip, or onto the flight controller itself: writes Rust constants for
-/// `spikewire-chips` or `spikewire-network`, and reports how much accuracy that costs.
+/// Convert a trained network for a chip, or for the flight controller itself: writes Rust constants for
+/// `spikewire-chips` or `spikewire-network`, and reports how much accuracy the conversion costs.
 ///
-/// A recording's spikes run through the network twice: in double precision, and as the target computes it. A chip's
-/// weights and arithmetic run in its model, clock by clock; the controller's arithmetic is reproduced bit by bit.
+/// The spikes of a recording run through the network twice: in double precision, and in the target's arithmetic. A chip
+/// is simulated clock cycle by clock cycle; the controller's arithmetic is reproduced bit by bit.
+///
 /// NETWORK is a NIR graph or JSON. A NIR graph is an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and others.
 /// It must be a chain of up to three layers, each Linear or Affine followed by LIF, IF or `CubaLIF` (whose currents may
 /// last one step only). A layer may be recurrent, and on `ReckOn` a last layer of Linear and LI, I or `CubaLI` may
@@ -40,29 +41,30 @@ use std::path::{Path, PathBuf};
 /// neuron, then by input; `keep` is the factor by which a step multiplies the potential.
 ///
 /// The controller takes any number of layers, `CubaLIF` with currents of any length, and a last layer of weights alone.
-/// A NIR file does not say in which order its neurons decay, fire and reset: --as and the options after it do.
+/// A NIR file does not contain the order in which neurons decay, fire and reset: --as and the options after it set this
+/// order.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
   spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs
   spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs")]
 pub(crate) struct Network {
-    /// NIR graph, or network in JSON
+    /// Network: a NIR graph, or JSON
     #[arg(value_name = "NETWORK")]
     trained: PathBuf,
-    /// Target: a chip, or `controller`
-    #[arg(long = "on", visible_alias = "chip", default_value = CHIPS[0].name(), value_parser = places())]
-    place: &'static str,
-    /// Scheme that makes the network's inputs: one input for each neuron of each column, or two, up and down, if the
-    /// code has a direction. Without it INPUT holds spikes: a line for each step, with the numbers of the inputs that
-    /// fire, in order
+    /// Target: the name of a chip, or `controller` for the flight controller
+    #[arg(long = "on", visible_alias = "chip", default_value = CHIPS[0].name(), value_parser = targets())]
+    target: &'static str,
+    /// Scheme that encodes the columns of INPUT as the network's inputs. Each neuron of each column is one input, or
+    /// two (up, then down) if the code has polarities. Without --scheme, INPUT holds spikes: one line for each step,
+    /// with the numbers of the inputs that fire, in order
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
-    /// Length of a step in seconds, to convert the network's time constants, such as 1e-4 for snnTorch; default for a
-    /// chip: one sample or sub-timestep of the recording
+    /// Length of a step in seconds, by which the network's time constants are converted, such as 1e-4 for snnTorch;
+    /// default for a chip: one sample or sub-timestep of the recording
     #[arg(long, value_name = "SECONDS", value_parser = above_zero)]
     dt: Option<f64>,
     #[command(flatten)]
@@ -71,38 +73,40 @@ pub(crate) struct Network {
     parameters: SchemeOptions,
     #[command(flatten)]
     rule: RuleOptions,
-    /// Another recording, not used for tuning, on which the network is tested; default: the last third of INPUT
+    /// Recording to test the network on, after it was tuned on INPUT; default: the last third of INPUT, on which the
+    /// network is then not tuned
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
-    /// Tune on the whole recording, and test on nothing
+    /// Tune on the whole of INPUT, without a test on held-out data
     #[arg(long, conflicts_with = "held_out")]
     no_held_out: bool,
-    /// Spikes of the network's outputs in the training framework, a line for each step of INPUT. Both the chip and the
-    /// way in which the file is read are compared with them
+    /// Spikes of the network's outputs in the training framework, one line for each step of INPUT. The outputs of the
+    /// chip, and those of the network in double precision, are compared with these spikes
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
-    /// When tinyODIN's neurons compare with their thresholds: after each spike, as the chip does by itself, or once a
-    /// step, as in training, which takes more events; default: the one that keeps more accuracy
+    /// When tinyODIN's neurons compare their potentials with their thresholds: after each spike (`spike`), as the chip
+    /// does by itself, or once a step (`step`), as in training, which takes more events; default: the one that keeps
+    /// more accuracy
     #[arg(long, value_parser = compares())]
     compare: Option<Compare>,
     /// Rust file to write; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Also write the network as a file of bytes, which the driver loads at run time
+    /// Also write the network as a binary file, which the driver loads at run time
     #[arg(long, value_name = "FILE")]
     bytes: Option<PathBuf>,
-    /// Then run the network on the chip's model, step by step. Each line of standard input is a step, written as a line
-    /// of spikes; the answer is a line with the number of clocks that the chip took, and the outputs that fired. The
-    /// constant is not written unless -o is given
+    /// Then run the network on the chip's model, step by step. Each line of standard input is a step: the numbers of
+    /// the inputs that fire. The answer to each is a line with the number of clock cycles that the chip took, and the
+    /// numbers of the outputs that fired. The Rust file is not written unless -o is given
     #[arg(long)]
     live: bool,
 }
 
-/// Name of the flight controller as a target, beside those of the chips.
+/// Name by which `--on` selects the flight controller rather than a chip.
 const CONTROLLER: &str = "controller";
 
-/// Parses the name of a target.
-fn places() -> impl TypedValueParser<Value = &'static str> {
+/// Parses the value of `--on`: the name of a chip, or [`CONTROLLER`].
+fn targets() -> impl TypedValueParser<Value = &'static str> {
     let names = || CHIPS.iter().map(|chip: &&dyn Chip| chip.name()).chain([CONTROLLER]);
     PossibleValuesParser::new(names())
         .map(move |asked| names().find(|name| *name == asked).unwrap_or_default())
@@ -113,28 +117,28 @@ fn compares() -> impl TypedValueParser<Value = Compare> {
         .map(|asked| if asked == "spike" { Compare::Spike } else { Compare::Step })
 }
 
-/// A network in the numbers of its target.
-enum Placed {
+/// The trained network, converted to the number format of its target.
+enum Converted {
     Chip(&'static dyn Chip, Trained),
     Controller(Model),
 }
 
-impl Placed {
+impl Converted {
     fn read(options: &Network, seconds: Option<f64>) -> Result<Self> {
-        let Network { trained: path, place, dt, rule, .. } = options;
+        let Network { trained: path, target, dt, rule, .. } = options;
         let file = File::read(path)?;
-        if *place == CONTROLLER {
+        if *target == CONTROLLER {
             return Ok(Self::Controller(file.on_controller(&rule.asked(*dt))?));
         }
         ensure!(
             rule.numbers == Numbers::Float,
             "the chips have numbers of their own: --on controller takes others"
         );
-        let chip = CHIPS.iter().find(|chip| chip.name() == *place).context("no such chip")?;
+        let chip = CHIPS.iter().find(|chip| chip.name() == *target).context("no such chip")?;
         Ok(Self::Chip(*chip, file.on_chip(&rule.asked(*dt), seconds)?))
     }
 
-    /// Returns the number of inputs, and the name of the first layer.
+    /// Returns the network's number of inputs, and the name of its first layer.
     fn inputs(&self) -> (usize, &str) {
         match self {
             Self::Chip(_, trained) => (trained.inputs(), &trained.layers[0].name),
@@ -161,8 +165,9 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     };
     let seconds = driven.step_us.map(|step| step * 1e-6);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let placed = Placed::read(options, seconds).map_err(|error| error.context(name.clone()))?;
-    driven.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
+    let converted =
+        Converted::read(options, seconds).map_err(|error| error.context(name.clone()))?;
+    driven.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
         let input = Input { input: path.clone(), ..input.clone() };
         match options.scheme {
@@ -172,7 +177,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     });
     let held_out = held_out.transpose()?;
     if let Some(held_out) = &held_out {
-        held_out.check(placed.inputs(), options.scheme).with_context(|| name.clone())?;
+        held_out.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
     let own =
@@ -181,10 +186,10 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         let (given, steps) = (own.len(), driven.steps.len());
         ensure!(given == steps, "--trained-spikes has {given} steps, and the recording {steps}");
     }
-    // The whole recording, or its first part and the rest.
+    // Without a second recording, the last third of the first is held out.
     let steps = driven.steps.len();
-    // The controller's arithmetic is exact, or nearly so.
-    let on_controller = matches!(placed, Placed::Controller(_));
+    // Nothing is tuned for the controller, whose arithmetic is exact or nearly so.
+    let on_controller = matches!(converted, Converted::Controller(_));
     let holds_out = held_out.is_none() && !options.no_held_out && !on_controller;
     let part = if holds_out { steps - steps / 3 } else { steps };
     let tuned = driven.steps[..part].to_vec();
@@ -204,12 +209,12 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     };
     let (tuned, compare) = (&tuned, options.compare);
     let (progress, numbers) = (&progress, options.rule.numbers);
-    let brought = match &placed {
-        Placed::Chip(chip, trained) => {
+    let brought = match &converted {
+        Converted::Chip(chip, trained) => {
             let chip = *chip;
-            bring(&Request { chip, trained, tuned, held_out, own, compare, progress })
+            bring(&Request { chip, trained, tuned, held_out, framework: own, compare, progress })
         }
-        Placed::Controller(model) => {
+        Converted::Controller(model) => {
             ensure!(
                 own.is_none(),
                 "--trained-spikes is for the chips: the controller's rule is exact"
@@ -233,10 +238,11 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     }
     words::tell(&driven.notes);
     report(&brought);
-    if options.live { live(&*brought.network, placed.inputs().0) } else { Ok(()) }
+    if options.live { live(&*brought.network, converted.inputs().0) } else { Ok(()) }
 }
 
-/// Reads steps from standard input, and writes the network's answer to each.
+/// Simulates the network step by step. Each line of standard input holds the numbers of the inputs that fire; the line
+/// of output for it holds the number of clock cycles, and the numbers of the outputs that fired.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| -> lab::Result<_> {
@@ -256,7 +262,7 @@ fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     Ok(())
 }
 
-/// Parses a line of spikes: the numbers of the inputs that fire in a step.
+/// Parses the numbers of the inputs that fire in a step, separated by blanks.
 fn spikes(line: &str) -> lab::Result<Vec<u16>> {
     let of_word = |word: &str| {
         word.parse().map_err(|_| NetworkKind::NotAnInput { word: word.to_owned() }.into())
@@ -264,23 +270,24 @@ fn spikes(line: &str) -> lab::Result<Vec<u16>> {
     line.split_whitespace().map(of_word).collect()
 }
 
-/// The spikes that drive the network.
+/// Input spikes for the network, from an encoded recording or from a file of spikes.
 struct Driven {
     /// The inputs that fire, for each step.
     steps: Trains,
-    /// Number of inputs. From a file of spikes it is only a lower bound: the highest input that fires, plus one.
+    /// Number of inputs. If the spikes come from a file, a lower bound: the highest input that fires, plus one.
     inputs: usize,
     /// Description of the inputs, for error messages.
     words: String,
     /// Length of a step in µs, if it is known.
     step_us: Option<f64>,
-    /// Settings of the scheme, for each column.
+    /// Settings of the scheme, one for each column; empty if the spikes come from a file.
     settings: Vec<Settings>,
     notes: Vec<Words>,
 }
 
 impl Driven {
-    /// Returns an error if the network has another number of inputs.
+    /// Checks that the network has as many inputs as the recording gives, or at least as many if the spikes come from a
+    /// file. `inputs` and `layer` are the network's number of inputs and the name of its first layer.
     fn check(&self, (inputs, layer): (usize, &str), scheme: Option<Scheme>) -> Result<()> {
         let given = &self.words;
         match scheme {
@@ -295,7 +302,8 @@ impl Driven {
     }
 }
 
-/// Encodes a recording. The scheme has the `known` settings, or is calibrated on the recording.
+/// Encodes the columns of a recording as input spikes. The scheme runs with the `known` settings; without them, it is
+/// calibrated on the recording.
 fn driven(
     options: &Network,
     scheme: Scheme,
@@ -308,7 +316,7 @@ fn driven(
     let first = recordings.first().context("there is no channel")?;
     let (samples, rate) = (first.values.len(), first.rate);
     let mut notes = first.notes();
-    let columns: Vec<Vec<f64>> = recordings.into_iter().map(|own| own.values).collect();
+    let columns: Vec<Vec<f64>> = recordings.into_iter().map(|recording| recording.values).collect();
 
     let mut settings = known.unwrap_or_default().to_vec();
     for (channel, column) in columns.iter().enumerate().skip(settings.len()) {
@@ -316,9 +324,9 @@ fn driven(
         calibrated.observe(column);
         let known = Known { calibrated: Some(&calibrated), first: column, can_calibrate: true };
         let asked = parameters.channel(scheme.info(), channel, columns.len())?;
-        let own = scheme.resolve(*sample, &asked, &known)?;
-        notes.extend(rounding(&own).map(Words::from));
-        settings.push(own);
+        let resolved = scheme.resolve(*sample, &asked, &known)?;
+        notes.extend(rounding(&resolved).map(Words::from));
+        settings.push(resolved);
     }
     ensure!(
         columns.len() == settings.len(),
@@ -359,7 +367,7 @@ fn driven(
     })
 }
 
-/// Reads a file that holds spikes rather than samples.
+/// Reads a file of input spikes: one line for each step, with the numbers of the inputs that fire.
 fn spiking(path: &Path) -> Result<Driven> {
     let name = || path.display().to_string();
     let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", name()))?;
@@ -377,12 +385,14 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// Share of agreeing steps below which the report warns.
+/// Share of steps in which chip and trained network agree, below which the report warns.
 const LOW: f64 = 0.5;
-/// Share of agreeing steps below which the file was probably trained by another rule than it is read by.
+/// Share of steps in which the outputs fire as they did in training, below which the report suggests that the network
+/// was trained by a different rule than `--as`, `--reset` and `--dt` say.
 const READ: f64 = 0.95;
 
-/// Prints on standard error how much accuracy quantising costs.
+/// Prints on standard error how the converted network differs from the trained one, on the tuned and on the held-out
+/// recording.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out, costs, reading } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));

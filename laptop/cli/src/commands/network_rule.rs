@@ -1,48 +1,49 @@
-//! Options that set the rule by which a network's neurons step.
+//! Options for the update rule of a network's neurons: the order of decay, firing and reset, which a NIR file does not
+//! contain.
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lab::network::{Asked, Current, Decay, Fires, Framework, Numbers, Reset};
 
-/// The rule by which a network's neurons step: a NIR file does not contain it.
+/// Options for the update rule of a network's neurons, which a NIR file does not contain.
 #[derive(Args, Debug)]
 pub(crate) struct RuleOptions {
-    /// Framework whose rule the network follows. A NIR file needs this or --reset; on the controller, this or all of
-    /// the options below
+    /// Framework whose update rule the network follows. A NIR file needs this or --reset; on the controller, this or
+    /// all of the options below
     #[arg(long = "as", value_name = "FRAMEWORK", value_parser = of(&FRAMEWORKS))]
     framework: Option<Framework>,
-    /// What a spike does to its neuron's potential: one word for all layers, or one for each layer that fires,
-    /// comma-separated
+    /// Reset mode: the effect of a spike on its neuron's potential. One word for all layers, or one for each layer that
+    /// fires, comma-separated
     #[arg(long = "reset", value_delimiter = ',', value_parser = of(&RESETS))]
     resets: Vec<Reset>,
-    /// Comparison with the threshold by which a neuron fires
+    /// Comparison of a neuron's potential with its threshold: the neuron fires only above the threshold, or also at it
     #[arg(long, value_parser = of(&FIRES))]
     fires: Option<Fires>,
-    /// How a time constant becomes the decay of potentials and currents in a step
+    /// Formula by which a time constant becomes the decay of potentials and currents in a step
     #[arg(long, value_parser = of(&DECAYS))]
     decay: Option<Decay>,
-    /// Which current drives the potential, for neurons that have both
+    /// Synaptic current that drives the potential of a neuron, if the neuron has currents
     #[arg(long, value_parser = of(&CURRENTS))]
     current: Option<Current>,
-    /// Number type on the controller
+    /// Number type of the network on the controller
     #[arg(long, default_value = "f32", value_parser = of(&NUMBERS))]
     pub(crate) numbers: Numbers,
 }
 
 impl RuleOptions {
-    /// Returns the rule asked for, with `dt` as the length of a step in seconds.
+    /// Collects the options in a request to the library. `dt` is the length of a step in seconds.
     pub(crate) fn asked(&self, dt: Option<f64>) -> Asked {
         let &Self { framework, fires, decay, current, .. } = self;
         Asked { framework, resets: self.resets.clone(), fires, decay, current, dt }
     }
 }
 
-/// The reset that may also be written `zero`.
+/// Name of the reset mode that has the alias `zero`.
 const ZERO: &str = "to-value";
 
 type Choices<T> = [(&'static str, T, &'static str)];
 
-/// Makes a parser for an option whose value is the name of one of these choices.
+/// Returns a parser that maps each name in `choices` to its value; the third field of a choice is its help.
 fn of<T: Copy + Send + Sync + 'static>(
     choices: &'static Choices<T>,
 ) -> impl TypedValueParser<Value = T> {

@@ -1,4 +1,4 @@
-//! `spikewire plot`: draws signal and reconstruction over spikes.
+//! `spikewire plot`: draws a signal, its spikes and its reconstruction.
 
 use super::score::chosen;
 use crate::inputs::InputOptions;
@@ -13,31 +13,33 @@ use lab::trial::{Recording, Trial};
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// Draw signal and reconstruction over spikes, as in the paper's first figure.
+/// Draw signal and reconstruction above the spikes, in the layout of the first figure in the paper, Dupeyroux et al.
+/// (2022).
 ///
-/// A scheme without parameters runs with the paper's settings, as all do with `--all`. A long recording is thinned to
-/// what the picture can show. The decoded curve is drawn without the delay of a rate code's look-ahead, which the panel
-/// states.
+/// A scheme without parameters runs with the paper's settings; with `--all`, every scheme does. A long recording is
+/// decimated to the resolution of the picture. The curve decoded from a rate code is drawn without the code's latency,
+/// which the panel states.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
   spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
-    /// Draw panels A-G for the paper's schemes with the paper's settings, and H with their efficiency
+    /// Draw the paper's figure: panels A-G for the paper's schemes, with the paper's settings, and panel H for their
+    /// efficiency
     #[arg(long, conflicts_with_all = ["scheme", "params"])]
     all: bool,
     #[command(flatten)]
     coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    /// Samples to show, such as `1000..1400`; the samples outside are encoded too
+    /// Range of samples to show, such as `1000..1400`; samples outside it are encoded too
     #[arg(long)]
     range: Option<String>,
-    /// Unit of the signal, such as `rad/s`; default: the one in the column's name, such as `gyro_x (rad/s)`
+    /// Unit of the signal, such as `rad/s`; default: the unit in the column's name, such as `gyro_x (rad/s)`
     #[arg(long)]
     unit: Option<String>,
-    /// Picture to write, `.svg` or `.png`
+    /// Picture to write, as `.svg` or `.png`
     #[arg(short, long)]
     output: PathBuf,
 }
@@ -54,7 +56,7 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     let (schemes, sample, parameters) = chosen(coding)?;
     let recording = Recording::read(&input.to_lab()?)?;
     let shown = shown(range.as_deref(), recording.values.len())?;
-    // Of the population codes the paper draws GRF.
+    // The paper's figure has one population code, GRF.
     let is_drawn = |scheme: &Scheme| !options.all || scheme.info().is_drawn;
     let mut trials = Vec::new();
     let mut refused = Vec::new();

@@ -1,4 +1,5 @@
-//! `spikewire score`: counts a scheme's spikes, and measures how near to the signal they decode.
+//! `spikewire score`: counts a scheme's spikes, and measures how closely the values decoded from them follow the
+//! signal.
 
 use crate::inputs::InputOptions;
 use crate::options::{Coding, answer};
@@ -13,13 +14,13 @@ use lab::trial::{Recording, Trial};
 use serde::Serialize;
 use std::io::Write;
 
-/// Score one scheme on one channel of a recording, or without `--scheme` all schemes.
+/// Score one scheme on one channel of a recording, or all schemes if `--scheme` is not given.
 ///
-/// A scheme without parameters runs with the paper's settings. When all are scored, a scheme that cannot encode the
-/// recording gets a row with the reason.
+/// A scheme without parameters runs with the settings of Dupeyroux et al. (2022). When all schemes are scored, one that
+/// cannot encode the recording gets a table row with the reason.
 ///
-/// Efficiency is the percentage of samples without a spike. RMSE is in the signal's unit; it compares each decoded
-/// value with the sample that it belongs to, so a rate code's latency does not count. SNR is in dB.
+/// Efficiency is the percentage of samples without a spike. RMSE is in the signal's unit; each decoded value is
+/// compared with the sample that it encodes, so that a rate code's latency does not count. SNR is in dB.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -35,12 +36,12 @@ pub(crate) struct Score {
     json: bool,
 }
 
-/// The outcome of one scheme.
+/// Result of scoring one scheme.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum Scored {
     Figures(Box<Figures>),
-    /// The scheme cannot encode this recording; holds the reason.
+    /// The scheme cannot encode this recording; `refused` is the reason.
     Refused {
         scheme: String,
         refused: String,
@@ -67,12 +68,12 @@ pub(crate) fn run(options: &Score) -> Result<()> {
         });
     }
     if let [Scored::Refused { refused, .. }, ..] = &scored[..]
-        && scored.iter().all(|own| matches!(own, Scored::Refused { .. }))
+        && scored.iter().all(|outcome| matches!(outcome, Scored::Refused { .. }))
     {
         bail!("no scheme takes this recording: {refused}");
     }
     tell(&recording.notes());
-    let figures = scored.iter().filter_map(|own| match own {
+    let figures = scored.iter().filter_map(|outcome| match outcome {
         Scored::Figures(figures) => Some(figures),
         Scored::Refused { .. } => None,
     });
@@ -92,7 +93,9 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     Ok(())
 }
 
-/// Returns the scheme named, with the given parameters or else the paper's; or all schemes with the paper's parameters.
+/// Returns the schemes to run, and their sample type and parameters. A scheme that the user named runs with the
+/// parameters given, or with the paper's if none are given. Without a name, all schemes run with the paper's
+/// parameters.
 ///
 /// # Errors
 /// Returns an error if parameters are given without a scheme.
@@ -125,9 +128,9 @@ fn print_table(scored: &[Scored]) -> Result<()> {
         output,
         "|---------------------|--------:|-------------:|-----------:|--------:|---------:|------------|"
     )?;
-    for own in scored {
+    for outcome in scored {
         let Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, brief, .. } =
-            match own {
+            match outcome {
                 Scored::Figures(figures) => figures.as_ref(),
                 Scored::Refused { scheme, refused } => {
                     let empty = "-";

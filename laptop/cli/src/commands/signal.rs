@@ -1,4 +1,4 @@
-//! `spikewire signal`: writes a signal of the paper's benchmark, to experiment with.
+//! `spikewire signal`: writes the test signal of the benchmark in Dupeyroux et al. (2022) as a table.
 
 use crate::options::whole;
 use anyhow::Result;
@@ -8,7 +8,8 @@ use lab::output::{Output, is_table};
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Write a signal of the paper's benchmark as a CSV table `time_us,signal`, 100 samples a second.
+/// Write the test signal of the paper's benchmark, Dupeyroux et al. (2022), as a CSV table `time_us,signal`, 100
+/// samples a second.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -25,7 +26,7 @@ pub(crate) struct Signal {
     output: Option<PathBuf>,
 }
 
-/// Parses a number of seconds whose samples fit into memory.
+/// Parses a duration in whole seconds, 0 to 1 000 000; a longer signal would not fit into memory.
 fn seconds(text: &str) -> Result<usize, String> {
     const MOST: usize = 1_000_000;
     let seconds = whole(text).ok().filter(|seconds| *seconds <= MOST);

@@ -1,4 +1,4 @@
-//! `spikewire tune`: finds the parameters of a scheme from flight logs.
+//! `spikewire tune`: finds the parameters of a scheme that suit flight logs best.
 
 use crate::inputs::{ChannelOptions, as_file};
 use crate::options::{FREE, answer, augment, given, option_group, whole};
@@ -25,11 +25,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Search a scheme's parameters for a goal: the least RMSE at a given spiking efficiency, the greatest efficiency at a
-/// given RMSE, or the front of both.
+/// given RMSE, or the Pareto front of both.
 ///
-/// Some blocks of each log are held out, and the settings found are scored on them too. The codec that is scored is the
-/// one that flies, in the sample type given. Parameters that are given stay fixed; the others are searched. The default
-/// goal is the least RMSE at the efficiency that the paper's settings reach.
+/// Some blocks of each log are held out, and the settings found are scored on them too. Settings are scored with the
+/// codec that flies, in the sample type given. Parameters that are given stay fixed; the others are searched. The
+/// default goal is the least RMSE at the efficiency that the settings of Dupeyroux et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -39,27 +39,27 @@ Examples:
   spikewire tune flight.csv --scheme sod --spikes 8 --max-rmse 0.1 --emit flight -o flight.toml
   spikewire tune flight.csv --channel gyro_x,gyro_y --scheme all --front front.svg")]
 pub(crate) struct Tune {
-    /// CSV tables or PX4 flight logs; the search tunes on all of them together
+    /// Flight logs or CSV tables; the settings are tuned on all of them together
     #[arg(required = true, value_name = "LOG")]
     inputs: Vec<PathBuf>,
     /// Scheme to tune, or `all`
-    #[arg(long, value_parser = which)]
-    scheme: Which,
+    #[arg(long, value_parser = schemes)]
+    scheme: Schemes,
     /// Sample type of the codec: f32, i16, i32, or fixed point such as q16.16
     #[arg(long, default_value_t)]
     sample: SampleType,
     #[command(flatten)]
     channel: ChannelOptions,
     #[command(flatten)]
-    parameters: Kept,
+    parameters: Fixed,
     /// Goal: least RMSE, with at least this percentage of samples without a spike
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, help_heading = "Goal")]
     min_efficiency: Option<f64>,
     /// Goal: greatest efficiency, with at most this RMSE, in the signal's unit
     #[arg(long, value_name = "RMSE", conflicts_with = "min_efficiency", value_parser = lab::input::above_zero, help_heading = "Goal")]
     max_rmse: Option<f64>,
-    /// Goal: the front, that is all settings that no other beats in both RMSE and efficiency; drawn to this `.svg` or
-    /// `.png`
+    /// Goal: the Pareto front, all settings that no other settings beat in both RMSE and efficiency; drawn to this
+    /// `.svg` or `.png`
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["min_efficiency", "max_rmse", "emit"], help_heading = "Goal")]
     front: Option<PathBuf>,
     /// Maximum RAM of a channel's encoder, in bytes
@@ -74,17 +74,17 @@ pub(crate) struct Tune {
     /// Maximum number of events a second
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
-    /// Core whose measured costs count: M0 or M4F
+    /// Core whose measured costs count: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
-    /// Share of the blocks that is held out; 0 holds out nothing
+    /// Share of the blocks that is held out, 0 for none
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
     /// Number of blocks of equal length into which each log is cut
     #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
-    /// Stop after this many seconds in all and keep the best settings so far, which then depend on the machine's speed;
-    /// Ctrl-C stops as well
+    /// Stop after this many seconds in total, and keep the best settings so far, which then depend on the machine's
+    /// speed; Ctrl-C stops too
     #[arg(long, value_parser = lab::input::above_zero, help_heading = "Search")]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel
@@ -93,13 +93,14 @@ pub(crate) struct Tune {
     /// Seed of the search; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>, help_heading = "Search")]
     seed: u64,
-    /// Search even if the log is a bad guide: only noise, never in the air, full of holes, or clipped
+    /// Search even if the log is a bad guide: nothing but noise, never in the air, full of gaps, or clipped
     #[arg(long, help_heading = "Search")]
     anyway: bool,
     /// Also report the RMSE below this frequency, such as `40Hz`
     #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     below: Option<f64>,
-    /// Write the settings as a constant in Rust, a file for --params, or a flight's file of all channels
+    /// Form in which to write the settings: a constant in Rust, a file for --params, or a flight file (`flight.toml`)
+    /// of all channels
     #[arg(long)]
     emit: Option<Emit>,
     /// File to write the settings to; default: standard output
@@ -110,21 +111,21 @@ pub(crate) struct Tune {
     json: bool,
 }
 
-/// One scheme, or all.
+/// The value of `--scheme`: one scheme, or `all`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Which {
+enum Schemes {
     One(Scheme),
     All,
 }
 
-fn which(name: &str) -> Result<Which> {
+fn schemes(name: &str) -> Result<Schemes> {
     if name == "all" {
-        return Ok(Which::All);
+        return Ok(Schemes::All);
     }
     let names: Vec<&str> = Scheme::all().map(Scheme::name).collect();
     let scheme = Scheme::named(name)
         .with_context(|| format!("there are {}, and `all`", names.join(", ")))?;
-    Ok(Which::One(scheme))
+    Ok(Schemes::One(scheme))
 }
 
 /// Parses a frequency in Hz: `40Hz`, `40 Hz` or `40`.
@@ -133,32 +134,33 @@ fn hertz(text: &str) -> lab::Result<f64> {
     lab::input::above_zero(number)
 }
 
-/// The form in which settings are written.
+/// The value of `--emit`: the form in which settings are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Emit {
     /// A constant with parameters and taps, which compiles without std
     Rust,
     /// A file of parameters, for --params
     Toml,
-    /// A flight's file of all channels
+    /// A flight file (`flight.toml`) of all channels
     Flight,
 }
 
-/// The parameters that the user gave, and that the search leaves as they are.
+/// Parameters given on the command line, which the search keeps fixed.
 #[derive(Clone, Debug)]
-struct Kept(Asked);
+struct Fixed(Asked);
 
-option_group!(Kept, |command| augment(command, is_kept), |matches| given(matches, is_kept));
+option_group!(Fixed, |command| augment(command, is_fixable), |matches| given(matches, is_fixable));
 
-/// Returns whether the search leaves a parameter as it is given. It does for all but the seed: the search has its own.
-fn is_kept(parameter: &Parameter) -> bool {
+/// Returns whether an option can fix this parameter. `seed` cannot be fixed, because `--seed` is the seed of the
+/// search.
+fn is_fixable(parameter: &Parameter) -> bool {
     parameter.name != "seed"
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if the logs or options are invalid, or if no settings keep to the limits.
+/// Returns an error if the logs or options are invalid, or if no settings satisfy the limits.
 pub(crate) fn run(options: &Tune) -> Result<()> {
     let mut request = options.request()?;
     request.check()?;
@@ -175,7 +177,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
     let watch = Watch { is_stopped: &|| stop.is_due(), tell: &tell };
     let all = tune(&request, &watch)?;
     bar.finish_and_clear();
-    let (mut panels, mut emitted, mut told) = (Vec::new(), String::new(), Vec::new());
+    let (mut panels, mut emitted, mut results) = (Vec::new(), String::new(), Vec::new());
     for Tuned { channel, rows, curves, missed, notes } in all {
         for words in notes {
             eprintln!("{words}");
@@ -192,15 +194,15 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
         if !curves.is_empty() {
             panels.push(Tune::panel(&channel, curves));
         }
-        told.push((channel, rows));
+        results.push((channel, rows));
     }
     if let Some(picture) = &options.front {
         draw_fronts(picture, &options.inputs[0], &panels)?;
         return Ok(());
     }
-    options.tell(&told)?;
+    options.tell(&results)?;
     if options.emit == Some(Emit::Flight) {
-        emitted = options.flight(&request, &told)?;
+        emitted = options.flight(&request, &results)?;
     }
     if options.emit.is_some() {
         let mut output = Output::open(options.output.as_deref(), &options.inputs[0])?;
@@ -211,14 +213,14 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// Makes the request to the library, except for its logs.
+    /// Converts the options to a request to the library, without the logs.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
-            Which::One(scheme) => vec![scheme],
-            Which::All if !self.parameters.0.is_empty() => {
+            Schemes::One(scheme) => vec![scheme],
+            Schemes::All if !self.parameters.0.is_empty() => {
                 bail!("--scheme all searches all parameters; with one scheme those given stay")
             }
-            Which::All => Scheme::all().collect(),
+            Schemes::All => Scheme::all().collect(),
         };
         let mut fixed = self.parameters.0.clone();
         let free_taps = fixed.word("filter") == Some(FREE);
@@ -253,7 +255,7 @@ impl Tune {
         })
     }
 
-    /// Reads the channels of all logs.
+    /// Reads the chosen channels of each log: an entry for each log, with a recording for each channel.
     fn logs(&self) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
         for input in &self.inputs {
@@ -272,20 +274,28 @@ impl Tune {
     fn emitted(&self, scheme: Scheme, cut: &Cut, row: &Row) -> Result<String> {
         let comments = row.comments(&cut.name);
         match self.emit {
-            // A flight's file is of all channels together.
+            // A flight file is written once, for all channels.
             None | Some(Emit::Flight) => Ok(String::new()),
             Some(Emit::Rust) => Ok(emit::rust(&comments, &cut.name, scheme, &row.settings)?),
             Some(Emit::Toml) => Ok(emit::toml(&comments, scheme, &row.settings)),
         }
     }
 
-    /// Returns the text of a flight's file with the settings found.
-    fn flight(&self, request: &TuneRequest, told: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<String> {
-        let rows: Vec<(&str, Scheme, &Row)> = told
+    /// Returns the text of a flight file (`flight.toml`) with the settings found for each channel.
+    ///
+    /// # Errors
+    /// Returns an error if the first log has no sample rate, or if the channels do not make a flight.
+    fn flight(
+        &self,
+        request: &TuneRequest,
+        results: &[(Cut, Vec<(Scheme, Row)>)],
+    ) -> Result<String> {
+        let rows: Vec<(&str, Scheme, &Row)> = results
             .iter()
             .filter_map(|(cut, rows)| rows.first().map(|(scheme, row)| (&*cut.name, *scheme, row)))
             .collect();
-        let rate = request.logs.first().and_then(|log| log.first()).and_then(|own| own.rate);
+        let rate =
+            request.logs.first().and_then(|log| log.first()).and_then(|recording| recording.rate);
         let flight =
             of_rows(&rows, self.sample, rate.context("a flight needs the rate of its log")?)?;
         let comments = rows.iter().flat_map(|(name, _, row)| row.comments(name));
@@ -296,10 +306,10 @@ impl Tune {
         Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
     }
 
-    /// Prints the tables: on standard error if the settings go to standard output, else on standard output.
-    fn tell(&self, told: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
+    /// Prints the tables on standard output, or on standard error if the settings themselves go to standard output.
+    fn tell(&self, results: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
         if self.json {
-            let channels: serde_json::Map<String, serde_json::Value> = told
+            let channels: serde_json::Map<String, serde_json::Value> = results
                 .iter()
                 .map(|(cut, rows)| {
                     let rows: Vec<&Row> = rows.iter().map(|(_, row)| row).collect();
@@ -310,7 +320,7 @@ impl Tune {
         }
         let is_to_stdout =
             self.emit.is_some() && self.output.as_deref().is_none_or(|path| path == Path::new("-"));
-        for (cut, rows) in told {
+        for (cut, rows) in results {
             let text = texts(cut, rows, &self.core, self.below);
             if is_to_stdout {
                 eprint!("{text}");
@@ -322,11 +332,11 @@ impl Tune {
     }
 }
 
-/// Number of steps of the progress bar.
+/// Length of the progress bar in steps.
 const BAR: u64 = 1000;
 
-/// Returns the position of the progress bar: the larger of the share of settings scored and the share of time spent, as
-/// the search ends with whichever is complete first.
+/// Returns the position of the progress bar, 0 to [`BAR`]. `settings` and `time` are the shares of the search's budgets
+/// that are used up; the larger counts, because either budget ends the search.
 fn position(settings: f64, time: f64) -> u64 {
     (settings.max(time).clamp(0.0, 1.0) * BAR as f64) as u64
 }
@@ -340,7 +350,7 @@ fn texts(cut: &Cut, rows: &[(Scheme, Row)], core: &str, below: Option<f64>) -> S
         count(&cut.held_out)
     );
     let mut text = head;
-    // The rows are printed together.
+    // One table holds the rows of all schemes.
     let rows: Vec<&Row> = rows.iter().map(|(_, row)| row).collect();
     text += &print(&rows, core, below);
     text

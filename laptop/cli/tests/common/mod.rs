@@ -1,10 +1,10 @@
-//! Runs the program, and reads what it writes.
+//! Helpers of the tests: run the program `spikewire`, parse its output, and write and find input files.
 #![allow(dead_code, unreachable_pub, unused_imports, unused_macros)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The outcome of a run.
+/// Exit status, standard output and standard error of a run whose output is text.
 pub struct Ran {
     pub status: i32,
     pub output: String,
@@ -12,13 +12,14 @@ pub struct Ran {
 }
 
 impl Ran {
-    /// Parses the output as JSON.
+    /// Parses standard output as JSON.
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.output).unwrap()
     }
 }
 
-/// Runs `spikewire` with formatted arguments, and fails the test if the run fails.
+/// Runs `spikewire` with formatted arguments and no input, and returns its output. The test fails if the exit status is
+/// not 0.
 macro_rules! ran {
     ($($words:tt)*) => { $crate::common::good(&format!($($words)*), "") };
 }
@@ -30,14 +31,14 @@ pub fn spikewire(arguments: &str, input: &str) -> Ran {
     Ran { status, output: String::from_utf8(output).unwrap(), stderr }
 }
 
-/// The outcome of a run whose output may be binary.
+/// Exit status, standard output and standard error of a run whose output may be binary.
 pub struct RanBytes {
     pub status: i32,
     pub output: Vec<u8>,
     pub stderr: String,
 }
 
-/// Runs `spikewire` as [`spikewire`] does, with bytes in and out.
+/// Runs `spikewire` with arguments separated by blanks, and with the bytes of `input` on standard input.
 pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     use std::io::Write;
     let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
@@ -49,7 +50,7 @@ pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
         .unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let done = std::thread::scope(|scope| {
-        // A program that refuses its options does not read; one with much to say writes meanwhile.
+        // In a thread: the program may end without reading, or fill its output before it has read.
         scope.spawn(move || {
             let _ = stdin.write_all(input);
         });
@@ -62,21 +63,21 @@ pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     }
 }
 
-/// Runs `spikewire` with bytes in and out, and fails the test if the run fails.
+/// Runs `spikewire` with bytes as input and output. The test fails if the exit status is not 0.
 pub fn good_bytes(arguments: &str, input: &[u8]) -> RanBytes {
     let ran = spikewire_bytes(arguments, input);
     assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.stderr);
     ran
 }
 
-/// Runs `spikewire`, and fails the test if the run fails.
+/// Runs `spikewire` with text as input and output. The test fails if the exit status is not 0.
 pub fn good(arguments: &str, input: &str) -> Ran {
     let ran = spikewire(arguments, input);
     assert_eq!(ran.status, 0, "spikewire {arguments}: {}", ran.stderr);
     ran
 }
 
-/// Runs `spikewire`, and fails the test unless it is refused with a message that holds all of `words`.
+/// Runs `spikewire`. The test fails unless the exit status is 2 and standard error contains each of `words`.
 pub fn refused(arguments: &str, input: &str, words: &[&str]) {
     let ran = spikewire_bytes(arguments, input.as_bytes());
     assert_eq!(ran.status, 2, "spikewire {arguments}: {}", ran.stderr);
@@ -89,13 +90,13 @@ pub fn refused(arguments: &str, input: &str, words: &[&str]) {
     }
 }
 
-/// Returns a table of one column `x`.
+/// Returns a CSV table with one column, `x`.
 pub fn table(values: &[f64]) -> String {
     let lines = values.iter().map(|value| format!("{value}\n"));
     "x\n".to_owned() + &lines.collect::<String>()
 }
 
-/// Parses the events of a file of spikes as (index, address, polarity).
+/// Parses the events in the text of a file of spikes, as (index, address, polarity).
 pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
     let lines = spikes.lines().filter(|line| !line.starts_with('#')).skip(1);
     lines
@@ -107,7 +108,7 @@ pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
         .collect()
 }
 
-/// Parses the spikes of one neuron, as one number for each sample.
+/// Parses a file of spikes of one neuron; returns for each sample its spike, 1 or -1, or 0 for none.
 pub fn train(spikes: &str) -> Vec<i32> {
     let samples = spikes.lines().find_map(|line| line.strip_prefix("# samples=")).unwrap();
     let mut train = vec![0; samples.parse().unwrap()];
@@ -117,12 +118,13 @@ pub fn train(spikes: &str) -> Vec<i32> {
     train
 }
 
-/// Parses the values of a decoded file of one channel.
+/// Parses the column of values that `decode` wrote for one channel.
 pub fn values(decoded: &str) -> Vec<f64> {
     decoded.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect()
 }
 
-/// Writes a temporary file with this content; it is deleted together with the directory returned.
+/// Writes a file into a new temporary directory; returns the directory, which is deleted when dropped, and the file's
+/// path.
 pub fn file(name: &str, content: impl AsRef<[u8]>) -> (tempfile::TempDir, String) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join(name);
@@ -130,16 +132,16 @@ pub fn file(name: &str, content: impl AsRef<[u8]>) -> (tempfile::TempDir, String
     (directory, path.display().to_string())
 }
 
-/// Returns the path of a file of the repository's flight data.
+/// Returns the path of a flight recording in the repository's directory `data`.
 pub fn flight(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name).display().to_string()
 }
 
-/// Returns the paths of the flight logs that two published crates carry.
+/// Returns the paths of two PX4 logs, which come with the crates `ulog-rs` and `yule_log`.
 pub fn flight_logs() -> [PathBuf; 2] {
     let metadata = cargo_metadata::MetadataCommand::new()
         .manifest_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
-        // What other systems need was never downloaded.
+        // Dependencies of other platforms may not have been downloaded.
         .other_options(["--offline", "--filter-platform", "host-tuple"].map(str::to_owned))
         .exec()
         .unwrap();

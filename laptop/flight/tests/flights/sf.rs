@@ -1,4 +1,4 @@
-/// Both ends of a flight, written from its file.
+/// Sender and receiver of a flight, generated from its flight file.
 #[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]
 pub mod flight {
     /// Number of channels.
@@ -7,52 +7,52 @@ pub mod flight {
     /// Names of the channels, in the order of a sample.
     pub const NAMES: [&str; CHANNELS] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"];
 
-    /// Counts for one unit of each channel.
+    /// Number of counts in one unit of each channel.
     pub const COUNTS: [f64; CHANNELS] = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
-    /// The code of every channel.
+    /// Type of every channel's scheme.
     pub type Code = spikewire::filter::Filtered<spikewire::filter::Biquad<fixed::types::I8F8>, spikewire::temporal::StepForward<fixed::types::I8F8>>;
 
-    /// Parameters of gyro_x, gyro_y, gyro_z.
+    /// Scheme with the parameters of gyro_x, gyro_y, gyro_z.
     static SCHEME_0: Code = spikewire::filter::Biquad::low_pass(80.0, 1000.0).before(spikewire::temporal::StepForward::new(fixed::types::I8F8::from_bits(26)));
 
-    /// Parameters of accel_x, accel_y, accel_z.
+    /// Scheme with the parameters of accel_x, accel_y, accel_z.
     static SCHEME_1: Code = spikewire::filter::Biquad::low_pass(80.0, 1000.0).before(spikewire::temporal::StepForward::new(fixed::types::I8F8::from_bits(77)));
 
-    /// The scheme of each channel.
+    /// Scheme of each channel.
     pub const SCHEMES: [&Code; CHANNELS] = [&SCHEME_0, &SCHEME_0, &SCHEME_0, &SCHEME_1, &SCHEME_1, &SCHEME_1];
 
-    /// The type of the bank.
+    /// Type of the bank of encoders.
     pub type Bank = spikewire::Bank<[&'static Code; CHANNELS], CHANNELS>;
 
-    /// The encoders, before the first sample.
+    /// Encoders of all channels, in their state before the first sample.
     pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES);
 
-    /// What the schemes do not say of the flight: period, names, units, counts. Both ends compare it.
+    /// Period, names, units and counts as text. The fingerprints that sender and receiver compare include it.
     pub const LABEL: &str = "1000 us; gyro_x [rad/s] 1; gyro_y [rad/s] 1; gyro_z [rad/s] 1; accel_x [m/s²] 1; accel_y [m/s²] 1; accel_z [m/s²] 1";
 
-    /// µs from sample to sample.
+    /// Time from one sample to the next, in µs.
     pub const PERIOD: u16 = 1000;
 
-    /// Samples from one keyframe or heartbeat to the next.
+    /// Number of samples from one keyframe or heartbeat to the next.
     pub const KEYFRAME_EVERY: u32 = 50;
 
-    /// The bits that the parts of an event take on the link.
+    /// Frame format: the number of bits for each part of an event, and the period.
     pub const CODING: spikewire::link::Coding = spikewire::link::Coding::for_channels(6, PERIOD);
 
-    /// The sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.
+    /// Returns the sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.
     #[must_use]
     pub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {
         spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint()).with_label(LABEL)
     }
 
-    /// The most events of a sample that the receiver keeps.
+    /// Maximum number of events of a sample that the receiver stores.
     pub const EVENTS: usize = 0;
 
-    /// The type of the receiver.
+    /// Type of the receiver's half of the link.
     pub type Receiver = spikewire::link::Receiver<[&'static Code; CHANNELS], CHANNELS, EVENTS>;
 
-    /// The receiver's half of the link, before the first frame.
+    /// Returns the receiver's half of the link, before the first frame.
     #[must_use]
     pub fn receiver() -> Receiver {
         Receiver::per_channel(SCHEMES).with_clock_tolerance(20000).with_label(LABEL)

@@ -1,4 +1,4 @@
-//! Advice on a whole bank: one scheme for all channels, ranked by the bytes that its link takes in flight.
+//! Advice on a whole bank: one scheme for all channels, ranked by bytes a second on the link.
 
 use super::flown::{Error, Flown, flown};
 use super::{Advice, AdviseRequest, Tuning};
@@ -18,24 +18,25 @@ use serde::Serialize;
 use spikewire::link::{MAX_FRAME, Session, Transmitter};
 use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 
-/// Sample rate of the slowest control loop that was flown, in Hz.
+/// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
 
-/// Seconds between keyframes if no frame is lost. A receiver that joins late waits up to this long.
-const ALONE: f64 = 1.0;
+/// Seconds between keyframes of a scheme that was not flown in a control loop. A receiver that joins late waits up to
+/// this long.
+const KEYFRAMES: f64 = 1.0;
 
 /// The advice on all channels together.
 #[derive(Debug, Serialize)]
 pub struct BankAdvice {
     /// The possible banks, the advised one first.
     banks: Vec<Bank>,
-    /// The schemes of which no bank can be made, each with the reason.
+    /// The schemes that cannot serve all channels, each with the reason.
     others: Vec<String>,
-    /// The names of the channels that are unfit for tuning; their own advice says why.
+    /// The names of the channels that are unfit for tuning; each channel's own advice says why.
     left_out: Vec<String>,
-    /// Remarks on what neither the log nor the simulator can show.
+    /// Remarks on facts that neither the log nor the simulator can show.
     unknown: Vec<String>,
-    /// Share of frames that are lost, in percent.
+    /// Share of frames that the link loses, in percent.
     frame_loss: f64,
 }
 
@@ -49,9 +50,9 @@ struct Bank {
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
-    /// Whether the scheme flew behind a filter that is not possible at this rate.
+    /// Whether the scheme flew behind a filter that is not possible at the recordings' sample rate.
     lacks_filter: bool,
-    /// Mean error of the simulated drone at this loss of frames.
+    /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code, if it flew.
     flown: Option<Error>,
     channels: Vec<BankChannel>,
     #[serde(skip)]
@@ -66,7 +67,8 @@ struct BankChannel {
 }
 
 impl BankAdvice {
-    /// Finds the schemes that suit all channels fit for tuning, and ranks them by their bytes on the link.
+    /// Finds the schemes that suit all channels, leaving out channels unfit for tuning, and ranks them by bytes on the
+    /// link.
     ///
     /// # Errors
     /// Returns an error if the rate is unknown, or if its period cannot be expressed in whole µs.
@@ -92,7 +94,7 @@ impl BankAdvice {
             let words = format!("bank of {}", scheme.name());
             (watch.tell)(&Progress { done, total: schemes.len(), words });
             let rows: Option<Vec<&Row>> = heard.iter().map(|(own, _)| own.row(*scheme)).collect();
-            // The channel that no setting suits says why, on its own page.
+            // The reason stands on the page of the channel that no setting suits.
             let Some(rows) = rows else { continue };
             match bank(request, *scheme, &heard, &rows, rate, watch)? {
                 Ok(bank) => all.banks.push(bank),
@@ -113,12 +115,12 @@ impl BankAdvice {
         self.banks.first().map(|bank| bank.scheme)
     }
 
-    /// Returns the comments for the flight's file: how the advice was found, and what remains unknown.
+    /// Returns the comments for `flight.toml`: how the advice was found, and what remains unknown.
     pub fn comments(&self) -> Vec<String> {
         self.lines().map(|line| line.trim_start().to_owned()).collect()
     }
 
-    /// Formats the advice for reading.
+    /// Formats the advice as text for people.
     pub fn page(&self) -> String {
         let mut text = "the bank\n".to_owned();
         for line in self.lines() {
@@ -182,7 +184,7 @@ impl BankAdvice {
     }
 }
 
-/// Makes the bank of a scheme, or returns the reason that there is none.
+/// Makes a bank: one scheme for all channels. The inner error is the reason that no bank can be made.
 fn bank(
     request: &AdviseRequest,
     scheme: Scheme,
@@ -193,7 +195,7 @@ fn bank(
 ) -> Result<Result<Bank, String>> {
     let in_loop = request.loop_bandwidth.is_some();
     let flown = flown(scheme.name()).filter(|_| in_loop);
-    let apart = flown.and_then(Flown::keyframes).unwrap_or(ALONE);
+    let apart = flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES);
     let shared = shared(scheme, rows);
     let mut channels = Vec::new();
     let mut parts = Vec::new();
@@ -260,7 +262,7 @@ fn bank(
     }))
 }
 
-/// Lists what neither the log nor the simulator can show.
+/// Lists facts that neither the log nor the simulator can show.
 fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     let mut all = Vec::new();
     if request.loop_bandwidth.is_none() {
@@ -291,8 +293,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// Merges the parameters that all channels of a bank must share: of counts the largest, of words and filters those of
-/// the first channel.
+/// Returns the parameters that all channels of a bank must share: for a count, the largest of the channels' values;
+/// otherwise the first channel's value.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;
@@ -310,8 +312,8 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     shared
 }
 
-/// Returns the number of events, and of bytes on the link. In a control loop each sample's frame is sent at once;
-/// otherwise frames are filled first.
+/// Returns the number of events of all channels, and of their bytes on the link. In a control loop, each sample's frame
+/// is sent at once; otherwise frames are filled first.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

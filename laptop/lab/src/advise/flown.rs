@@ -1,18 +1,19 @@
-//! Flights of simulated drones whose rotors shake the sensor, by code: the figures of `docs/loop.md`, which `cargo
-//! xtask write loop` measures.
+//! Results of flying simulated drones, whose rotors shake the sensor, on each code: the figures of `docs/loop.md`,
+//! measured by `cargo xtask write loop`.
 
 use crate::flight::Filter;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The figures; the file is a symbolic link, so that source packages contain it.
+/// The measured figures, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`, because a source
+/// package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
 /// A code counts as flying if its error is at most this many times the error without a code.
 const WITHIN: f64 = 1.2;
 
-/// Shares of lost frames that were flown, in percent, lowest first.
+/// Shares of lost frames in the simulated flights, in percent, lowest first.
 pub(crate) const LOSSES: [f64; 2] = [1.0, 10.0];
 
 #[derive(Deserialize)]
@@ -20,37 +21,38 @@ struct Figures {
     banks: BTreeMap<String, Flown>,
 }
 
-/// Flights of a code, in the bank whose settings were found by flying.
+/// Flights of a code, with the settings that were found by flying.
 #[derive(Deserialize)]
 pub(crate) struct Flown {
-    /// Corner of the low-pass before the code, in Hz.
+    /// Corner frequency of the low-pass before the code, in Hz; `None` without a low-pass.
     low_pass: Option<f32>,
-    /// Time between keyframes, in ms.
+    /// Time between keyframes, in ms; `None` if the code needs none.
     keyframe_ms: Option<f64>,
     /// Flights of one drone and controller, with 1 % of the frames lost.
     here: Flights,
+    /// Flights of the drone and controller of `here`, with 10 % of the frames lost.
     #[serde(rename = "every tenth frame lost")]
     tenth: Flights,
-    /// Flights of several drones and controllers, at several rates.
+    /// Flights of several drones and controllers at several sample rates. A key names simulator, controller and rate.
     everywhere: BTreeMap<String, Flights>,
 }
 
 #[derive(Deserialize)]
 struct Flights {
-    /// The manoeuvres in which the drone was lost, one entry for each flight.
+    /// The manoeuvres in which the drone was lost, one entry for each lost flight.
     lost: Vec<String>,
     #[serde(rename = "flights")]
     count: usize,
-    /// Mean error in degrees; `None` if all flights were lost.
+    /// Mean attitude error in degrees; `None` if all flights were lost.
     error: Option<f64>,
 }
 
-/// The mean errors of a simulated drone, in degrees.
+/// The mean attitude errors of a simulated drone, in degrees.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Error {
-    /// With the code.
+    /// Error of the flights with the code.
     pub(crate) coded: f64,
-    /// Without a code.
+    /// Error of the flights without a code.
     pub(crate) plain: f64,
 }
 
@@ -62,12 +64,12 @@ fn without_a_code() -> Option<&'static Flown> {
     BANKS.get("without a code")
 }
 
-/// Returns the flights of the scheme of this name, if it was flown.
+/// Returns the flights of the scheme named `scheme`, if it was flown.
 pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
     BANKS.get(scheme)
 }
 
-/// Returns the reason not to fly the scheme of this name with this percentage of its frames lost, if there is one.
+/// Returns the reason not to fly the scheme named `scheme` with `loss` percent of its frames lost, if there is one.
 pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
     let Some(own) = flown(scheme) else {
         return Some("was not flown with rotors that shake the sensor".to_owned());
@@ -97,17 +99,17 @@ pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
 }
 
 impl Flown {
-    /// Returns the filter before the code.
+    /// Returns the filter that the flights had before the code.
     pub(crate) fn filter(&self) -> Option<Filter> {
         self.low_pass.map(|corner| Filter::LowPass { corner })
     }
 
-    /// Returns the time between keyframes, in seconds.
+    /// Returns the time between keyframes in the flights, in seconds.
     pub(crate) fn keyframes(&self) -> Option<f64> {
         self.keyframe_ms.map(|own| own * 1e-3)
     }
 
-    /// Returns the mean errors with this percentage of the frames lost.
+    /// Returns the mean errors of the flights with `loss` percent of the frames lost.
     pub(crate) fn error(&self, loss: f64) -> Option<Error> {
         let at = |own: &Self| {
             if loss > LOSSES[0] { own.tenth.error } else { own.here.error }
@@ -115,7 +117,8 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of the errors to those of `other`, over the places in which both flew.
+    /// Returns the mean ratio of the errors to those of `other`, over the entries of `everywhere` in which both have an
+    /// error.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere
@@ -132,7 +135,7 @@ mod tests {
     use crate::scheme::Scheme;
 
     #[test]
-    fn what_flew_is_a_scheme_with_figures() {
+    fn a_scheme_without_objection_has_figures() {
         assert!(without_a_code().is_some());
         let flies = Scheme::all().filter(|own| objection(own.name(), LOSSES[0]).is_none());
         let mut count = 0;
@@ -151,9 +154,9 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_flown_or_was_lost_is_told() {
-        let told = objection("bernoulli", 1.0).unwrap();
-        assert!(told.contains("not flown") || told.contains("lost "), "{told}");
+    fn a_scheme_not_flown_or_lost_is_objected_to() {
+        let words = objection("bernoulli", 1.0).unwrap();
+        assert!(words.contains("not flown") || words.contains("lost "), "{words}");
         for (name, own) in BANKS.iter().filter(|(_, own)| !own.here.lost.is_empty()) {
             assert!(
                 objection(name, 1.0).unwrap().starts_with("lost "),

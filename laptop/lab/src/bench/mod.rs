@@ -1,4 +1,4 @@
-//! The paper's benchmark: Tables I and II, cell by cell.
+//! The benchmark of the paper that compares the codes: runs the cases of its Tables I and II, cell by cell.
 
 pub mod paper;
 mod recipe;
@@ -17,7 +17,7 @@ use statistics::Statistics;
 /// Maximum number of signals in a case. Each has its own random generator.
 pub const MOST_TESTS: usize = 1_000_000;
 
-/// One case of the benchmark: the results of all its tests, by scheme.
+/// The results of all tests of one case, by scheme.
 pub struct CaseResult {
     /// Duration of the signals, in seconds.
     pub seconds: usize,
@@ -27,8 +27,8 @@ pub struct CaseResult {
     pub rmse: [Statistics; COLUMNS],
 }
 
-/// Runs the first `cases` cases, with `tests` signals in each. Each signal has its own random generator, so that the
-/// results do not depend on the number of cores.
+/// Runs the first `cases` cases, with `tests` signals in each, and passes each signal's number of samples to `tick`.
+/// Each signal has its own random generator, which makes the results independent of the number of cores.
 pub fn run(cases: usize, tests: usize, seed: u64, tick: impl Fn(u64) + Sync) -> Vec<CaseResult> {
     let cases = CASES.iter().take(cases).enumerate();
     cases.map(|(case, &seconds)| run_case(case, seconds, tests, seed, &tick)).collect()

@@ -1,28 +1,28 @@
-//! The figures of the paper's tables.
+//! The figures of Tables I and II, as the paper prints them.
 
-/// Durations of the signals, in seconds.
+/// Durations of the signals of each case, in seconds.
 pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];
 
-/// Number of signals in a case.
+/// Number of signals in each case.
 pub const TESTS: usize = 1000;
 
 /// The schemes for which the tables have figures, in the order of their columns.
 pub const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
 
-/// One of the two tables.
+/// One of the paper's two tables.
 pub struct Table {
     /// Title of the table.
     pub title: &'static str,
-    /// Means by case and scheme.
+    /// Means, by case and scheme.
     pub means: [[f64; 6]; 5],
-    /// Standard deviations by case and scheme.
+    /// Standard deviations, by case and scheme.
     pub deviations: [[f64; 6]; 5],
-    /// Number of decimals printed.
+    /// Number of decimals that the paper prints.
     pub decimals: usize,
 }
 
 impl Table {
-    /// Returns the largest difference between a printed figure and the unrounded one.
+    /// Returns the largest difference between a printed figure and the unrounded figure: half of the last decimal.
     pub fn rounding(&self) -> f64 {
         0.5 * 10_f64.powi(-(self.decimals as i32))
     }
@@ -61,8 +61,8 @@ pub const RMSE: Table = Table {
     deviations: [
         [0.39, 0.24, 0.01, 0.04, 0.05, 0.03],
         [0.68, 0.54, 0.01, 0.02, 0.03, 0.01],
-        // 0.06 stands out of its column. The comments of the toolbox's Benchmark.m, which hold the same
-        // tables to four decimals, have 0.0059 here.
+        // 0.06 does not fit its column. The comments of the toolbox's Benchmark.m, which hold the same tables to four
+        // decimals, have 0.0059 here.
         [1.17, 0.86, 0.00, 0.01, 0.02, 0.06],
         [2.00, 1.57, 0.00, 0.00, 0.01, 0.00],
         [2.98, 2.17, 0.00, 0.00, 0.01, 0.00],

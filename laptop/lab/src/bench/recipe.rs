@@ -6,7 +6,8 @@ use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
 use spikewire::{Calibration, Code, ConfigError, Output, Spike, Start};
 
-/// Number of columns: the schemes of the tables, then GRF and GRF with slots, for which the paper gives no figures.
+/// Number of columns: the schemes of the paper's tables, then GRF and GRF with slots, for which the paper gives no
+/// figures.
 pub(super) const COLUMNS: usize = 8;
 
 /// The efficiency and error of a scheme on a signal.
@@ -30,7 +31,7 @@ const BETA: f32 = 1.5;
 /// Runs all schemes over a signal, in the order of the columns.
 ///
 /// # Panics
-/// Panics if the signal is shorter than a window, or never moves; no signal of the benchmark is such.
+/// Panics if the signal is shorter than a window, or constant. The benchmark's signals are neither.
 #[expect(clippy::expect_used, reason = "the signals are the benchmark's own")]
 pub(super) fn run(signal: &[f32]) -> [Outcome; COLUMNS] {
     try_run(signal).expect("the benchmark's signals rise and fall")
@@ -54,7 +55,8 @@ fn try_run(signal: &[f32]) -> Result<[Outcome; COLUMNS], ConfigError> {
     ])
 }
 
-/// Runs temporal contrast: primed so that the first difference counts twice, decoded from 0 in steps of two thresholds.
+/// Runs temporal contrast. The encoder is primed such that the first difference counts twice; decoding starts from 0,
+/// in steps of two thresholds.
 fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, ConfigError> {
     let threshold = TemporalContrast::from_calibration(calibration, CONTRAST_FACTOR)?.threshold();
     let scheme = TemporalContrast::try_new(threshold)?.try_with_step(2.0 * threshold)?;
@@ -65,7 +67,7 @@ fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, C
     Ok(step_outcome(signal, &scheme, &before, 0.0))
 }
 
-/// Runs the moving window: primed with the first window, decoded from the first sample.
+/// Runs the moving window. The encoder is primed with the first window; decoding starts from the first sample.
 fn moving_window(signal: &[f32]) -> Outcome {
     let window = signal.get(..WINDOW).unwrap_or_default();
     step_outcome(signal, &MOVING_WINDOW, window, first(signal))
@@ -79,7 +81,8 @@ fn first(signal: &[f32]) -> f32 {
     signal.first().copied().unwrap_or_default()
 }
 
-/// Decodes a step code as the toolbox does: the first value is set, and steps are added from the second spike on.
+/// Runs a step code as the toolbox does: the encoder is primed with `past`, the first decoded value is `start`, and
+/// steps are added from the second spike on.
 fn step_outcome<P>(signal: &[f32], scheme: &P, past: &[f32], start: f32) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Spike>,
@@ -103,7 +106,8 @@ where
     outcome(signal, count(&spikes), error)
 }
 
-/// Runs a rate code as the toolbox does: its loops end one sample early, so no window contains the last sample.
+/// Runs a rate code as the toolbox does, whose loops end one sample early: no window contains the last sample, and the
+/// last spike is set to `last`.
 fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,

@@ -1,4 +1,4 @@
-//! Compares the cells of the paper's tables with those measured here.
+//! Compares the paper's tables with the cells measured here.
 
 use super::CaseResult;
 use super::paper::{EFFICIENCY, MISPRINT, RMSE, SCHEMES, TESTS, Table};
@@ -7,9 +7,10 @@ use serde::Serialize;
 use serde_json::{Value, json as object};
 use std::fmt::Write;
 
-/// Largest difference of a mean from the paper's, in standard errors. A deviation may differ by the share
-/// `DEVIATION_PART`.
+/// Largest difference of a measured mean from the paper's that counts as agreement, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
+/// Largest difference of a measured standard deviation from the paper's that counts as agreement, as a share of the
+/// paper's.
 const DEVIATION_PART: f64 = 0.15;
 
 /// A measured cell, and the paper's figures for it.
@@ -18,7 +19,7 @@ struct Cell {
     ours: Statistics,
     paper_mean: f64,
     paper_deviation: f64,
-    /// Difference of the means beyond the paper's rounding, in standard errors of that difference.
+    /// Difference of the means beyond the paper's rounding, in standard errors of the difference.
     standard_errors: f64,
     mean_agrees: bool,
     deviation_agrees: bool,
@@ -32,14 +33,14 @@ impl Cell {
         let error = ours.error_against(TESTS);
         let off = ours.mean - mean;
         let beyond = (off.abs() - table.rounding()).max(0.0).copysign(off);
-        // With few tests the deviation itself is uncertain, by 1 in √(2 (N - 1)).
+        // With few tests the deviation itself is uncertain, by a share of 1 / √(2 (N - 1)).
         let few = STANDARD_ERRORS / (2.0 * (ours.count as f64 - 1.0)).sqrt();
         let part = if ours.count < TESTS { DEVIATION_PART.max(few) } else { DEVIATION_PART };
         Self {
             ours,
             paper_mean: mean,
             paper_deviation: deviation,
-            // Adding 0 takes the sign off a 0.
+            // Adding 0 turns -0 into 0.
             standard_errors: beyond / error + 0.0,
             mean_agrees: beyond.abs() <= STANDARD_ERRORS * error,
             deviation_agrees: (ours.deviation - deviation).abs()
@@ -49,7 +50,7 @@ impl Cell {
     }
 }
 
-/// Returns all cells of a table, by case and scheme.
+/// Compares all cells of a table with the paper's, by case and scheme.
 fn cells(table: &Table, cases: &[CaseResult]) -> Vec<Vec<Cell>> {
     let is_rmse = table.title == RMSE.title;
     let of = |case: &CaseResult| if is_rmse { case.rmse } else { case.efficiency };
@@ -60,7 +61,7 @@ fn cells(table: &Table, cases: &[CaseResult]) -> Vec<Vec<Cell>> {
     cases.iter().enumerate().map(row).collect()
 }
 
-/// Formats the tables as Markdown, followed by the number of cells that agree.
+/// Formats both tables as Markdown, followed by the number of cells that agree with the paper.
 pub fn print(cases: &[CaseResult]) -> String {
     let mut text = String::new();
     let mut all = Vec::new();
@@ -95,7 +96,8 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// Returns the largest difference that sampling error could hide, as a share of the paper's mean, and its cell.
+/// Returns the largest difference that sampling error could hide, as a share of the paper's mean, and the name of its
+/// cell.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {
@@ -108,7 +110,7 @@ fn unseen(cases: &[CaseResult]) -> (f64, String) {
     all.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
-/// Lists the cells that differ from the paper's, except for the misprint.
+/// Lists the cells that differ from the paper's, except for the paper's misprint.
 pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     let mut names = Vec::new();
     for (table, quantity) in [(&EFFICIENCY, "efficiency"), (&RMSE, "RMSE")] {
@@ -130,9 +132,9 @@ pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     names
 }
 
-/// Selects the measured figure of a cell, and the paper's.
+/// Returns one figure of a cell, first as measured and then as printed in the paper.
 type Figures = fn(&Cell) -> [f64; 2];
-/// Selects the measured figure of a column for which the paper has none.
+/// Returns the measured figure of a column that the paper does not have.
 type Figure = fn(&Statistics) -> f64;
 
 fn write_table(
@@ -190,7 +192,7 @@ fn write_table(
     writeln!(text)
 }
 
-/// Returns the cells as JSON.
+/// Returns the cells of both tables as JSON.
 pub fn json(cases: &[CaseResult], seed: u64) -> Value {
     let table = |table: &Table| -> Value {
         let cells = cells(table, cases);

@@ -4,16 +4,16 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
 
-/// The waveform `2 sin(2πT) - 0.5 cos(0.5πT) + 0.75 sin(10πT)` at T = 0.01, 0.02, ...
+/// The waveform `2 sin(2πT) - 0.5 cos(0.5πT) + 0.75 sin(10πT)` at T = 0.01 s, 0.02 s, ...
 pub struct Waveform {
     values: Vec<f64>,
 }
 
-/// Samples a second.
+/// Sample rate of the signals, in Hz.
 pub const RATE: usize = 100;
 
 impl Waveform {
-    /// Computes a waveform of this many seconds.
+    /// Computes the first `seconds` seconds of the waveform.
     pub fn new(seconds: usize) -> Self {
         let at = |step: usize| {
             let t = step as f64 / RATE as f64;
@@ -22,7 +22,7 @@ impl Waveform {
         Self { values: (1..=seconds * RATE).map(at).collect() }
     }
 
-    /// Returns the waveform with `- 0.5 U(0,1)` added. Each `number` has its own random generator.
+    /// Returns the waveform with the noise `- 0.5 U(0,1)` added. Each `number` has its own random generator.
     pub fn with_noise(&self, seed: u64, number: u64) -> Vec<f32> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(number);

@@ -1,20 +1,20 @@
-//! Mean and standard deviation over tests.
+//! Mean and standard deviation of a figure over the tests of a case.
 
 use serde::Serialize;
 
-/// The mean and deviation of one cell of a table.
+/// The mean and standard deviation of one cell of a table.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Statistics {
     /// The mean.
     pub mean: f64,
-    /// The sample standard deviation (divided by N-1).
+    /// The sample standard deviation, with divisor N - 1.
     pub deviation: f64,
     /// The number of tests.
     pub count: usize,
 }
 
 impl Statistics {
-    /// Computes the statistics of these values.
+    /// Computes the statistics of two or more values.
     pub fn new(values: impl ExactSizeIterator<Item = f64> + Clone) -> Self {
         let count = values.len();
         let mean = values.clone().sum::<f64>() / count as f64;
@@ -22,7 +22,7 @@ impl Statistics {
         Self { mean, deviation: (squares / (count as f64 - 1.0)).sqrt(), count }
     }
 
-    /// Returns the standard error of the difference between this mean and one over `others` tests of the same
+    /// Returns the standard error of the difference between this mean and the mean of `others` tests with the same
     /// deviation.
     pub fn error_against(&self, others: usize) -> f64 {
         self.deviation * (1.0 / self.count as f64 + 1.0 / others as f64).sqrt()

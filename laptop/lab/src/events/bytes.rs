@@ -1,4 +1,4 @@
-//! Formats that are a plain sequence of events: eDVS, Event Stream, EVT2.
+//! Reads and writes event formats that are a plain sequence of events: eDVS, Event Stream, EVT2.
 
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
@@ -13,9 +13,9 @@ pub(super) struct Reader<D> {
     hooks: Hooks<D>,
 }
 
-/// Steps that only some formats need.
+/// Steps of reading that only some formats need.
 pub(super) struct Hooks<D> {
-    /// Returns an error if the bytes were of another format.
+    /// Returns an error if the bytes read were of a format other than the decoder's.
     pub check: fn(&D) -> Result<()>,
     /// Sets the time of the following events, for a format whose events have none.
     pub set_arrival: Option<fn(&mut D, Tick)>,
@@ -48,7 +48,7 @@ impl<D: EventDecoder> EventReader for Reader<D> {
     }
 }
 
-/// Writes events with the encoder of one format, and reads them back to count those that come out different.
+/// Writes events with the encoder of one format, and reads them back to count those whose time the format changes.
 pub(super) struct Writer<E, D> {
     encoder: E,
     decoder: D,
@@ -91,7 +91,7 @@ impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
         }
     }
 
-    /// Writes the header, if it is not written yet.
+    /// Writes the header, unless it is already written.
     fn begin(&mut self, output: &mut dyn Write) -> Result<()> {
         let header = std::mem::take(&mut self.header);
         self.decoder.decode(header).for_each(drop);

@@ -1,4 +1,4 @@
-//! Tables of events, `tick,address,polarity`; comments hold all other items, such as keyframes.
+//! Tables of events as CSV, `tick,address,polarity`. Comment lines hold all other items, such as keyframes.
 
 use super::{EventReader, EventWriter, EventsKind, Item, Known, Tally};
 use crate::error::At;
@@ -10,19 +10,20 @@ use std::io::Write;
 pub(super) const HEADER: &str = "tick,address,polarity";
 const VALUES: &str = "tick,address,value,known";
 
-/// Reads a table of events, or a file of spikes with times.
+/// Reads a table of events, or a file of spikes that have times.
 pub(super) struct Reader {
     file: String,
-    /// The unfinished line, and the number of lines finished.
+    /// The bytes of the unfinished line.
     line: Vec<u8>,
+    /// Number of finished lines.
     number: u64,
     columns: Option<Columns>,
     events: u64,
-    /// Number of ticks of more than 32 bits.
+    /// Number of ticks that did not fit in 32 bits.
     long_ticks: u64,
     is_file_of_spikes: bool,
-    /// Number of events according to the end of a file of spikes.
-    told_events: Option<u64>,
+    /// Number of events that the last line of a file of spikes declares.
+    declared_events: Option<u64>,
 }
 
 /// Indices of the columns in a line.
@@ -43,17 +44,17 @@ impl Reader {
             events: 0,
             long_ticks: 0,
             is_file_of_spikes: false,
-            told_events: None,
+            declared_events: None,
         }
     }
 
-    /// Reads a comment, and returns the item in it; `None` if the comment is not one of ours.
+    /// Reads a comment without its `#`. Returns the item in it, or `None` if it holds no item.
     fn note(&mut self, note: &str) -> Result<Option<Item>> {
         match note.split_once('=') {
             Some(("spikewire", _)) => self.is_file_of_spikes = true,
             Some(("events", count)) if self.is_file_of_spikes => {
                 let no_count = |_| EventsKind::NotACount { text: count.to_owned() };
-                self.told_events = Some(count.parse().map_err(no_count)?);
+                self.declared_events = Some(count.parse().map_err(no_count)?);
             }
             _ => {}
         }
@@ -109,7 +110,7 @@ impl EventReader for Reader {
         if self.columns.is_none() {
             return Err(EventsKind::Empty.at(&self.file));
         }
-        match self.told_events {
+        match self.declared_events {
             None if self.is_file_of_spikes => Err(EventsKind::NoEnd.at(&self.file)),
             Some(said) if said != self.events => {
                 Err(EventsKind::OtherCount { events: self.events, said }.at(&self.file))
@@ -147,7 +148,7 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// Parses the item in a comment; `None` if the comment is not one of ours.
+/// Parses a comment without its `#`; returns `None` if it holds no item.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     let text = || value.to_owned();
@@ -196,7 +197,7 @@ fn name_of(kind: SampleKind) -> String {
     }
 }
 
-/// Writes a table of events, or of values of a sample type.
+/// Writes a table of events, or of decoded values if `values` is their sample type.
 pub(super) struct Writer {
     values: Option<SampleType>,
     has_begun: bool,
@@ -224,7 +225,7 @@ impl Writer {
         self.line.push(b',');
     }
 
-    /// Writes a number with the fewest digits that read back as the same bits, in `f32` and in fixed point.
+    /// Appends a number to the line, with the fewest digits that read back as the same bits in the sample type.
     fn value(&mut self, value: f64) {
         let mut digits = zmij::Buffer::new();
         let text = match self.values {

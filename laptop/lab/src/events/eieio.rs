@@ -1,4 +1,5 @@
-//! EIEIO datagrams: their payloads one after the other, as a recording holds them.
+//! EIEIO, the datagrams of SpiNNaker boards: reads and writes their payloads one after the other, as recordings hold
+//! them.
 
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
@@ -8,19 +9,19 @@ use spikewire_cameras::format::eieio;
 use std::io::Write;
 use std::num::NonZeroU32;
 
-/// How a board's keys and time stamps map to addresses and ticks.
+/// The mapping of a board's keys and time stamps to addresses and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
     /// The key of address 0.
     pub base: u32,
     /// Length of a time step, in µs.
     pub step: NonZeroU32,
-    /// Whether an address has two keys, the first for down and the second for up.
+    /// Whether an address has two keys, the first for polarity down and the second for up.
     pub is_signed: bool,
 }
 
 impl Board {
-    /// Returns the key of an event; `None` if the address has none.
+    /// Returns the key of an event, or `None` if no key stands for the event.
     fn key(self, event: Event) -> Option<u32> {
         let address = u32::from(event.address);
         match (self.is_signed, event.polarity) {
@@ -32,7 +33,7 @@ impl Board {
         }
     }
 
-    /// Returns the event of a key at this tick; `None` if the key is not one of this board's.
+    /// Returns the event that `key` stands for at `tick`, or `None` if the key is not one of the board's.
     fn event(self, key: u32, tick: Tick) -> Option<Event> {
         let key = key.checked_sub(self.base)?;
         let (address, polarity) = match (self.is_signed, key & 1) {
@@ -48,7 +49,7 @@ const MAX_KEYS: usize = 255;
 /// Length of the longest datagram, in bytes.
 const LONGEST: usize = 2 + 4 + 4 * MAX_KEYS;
 
-/// Reads datagrams.
+/// Reads EIEIO datagrams.
 pub(super) struct Reader {
     board: Board,
     waiting: Vec<u8>,
@@ -61,7 +62,8 @@ impl Reader {
         Self { board, waiting: Vec::new(), time: Tick::from_micros(0), skipped: 0 }
     }
 
-    /// Reads whole datagrams from the front of the buffer, and skips bytes that cannot begin one.
+    /// Reads whole datagrams from the front of the buffer, and skips bytes that cannot begin one. At the end of the
+    /// recording, a partial datagram is skipped too.
     fn datagrams(&mut self, is_end: bool, items: &mut Vec<Item>) {
         let Self { board, waiting, time, skipped } = self;
         let mut bytes = waiting.as_slice();
@@ -90,7 +92,7 @@ impl Reader {
     }
 }
 
-/// Returns whether a datagram of the kinds that are written may begin with these bytes.
+/// Returns whether a datagram of a kind that [`eieio`] decodes could begin with `bytes`.
 fn begins(bytes: &[u8]) -> bool {
     let padded: Vec<u8> = bytes.iter().copied().chain([0; LONGEST]).collect();
     bytes.len() < 2 || eieio::decode(&padded).is_some()
@@ -113,7 +115,7 @@ impl EventReader for Reader {
     }
 }
 
-/// Writes a datagram for each time step.
+/// Writes a datagram for each time step; several if a step has more than [`MAX_KEYS`] events.
 pub(super) struct Writer {
     board: Board,
     drops: bool,

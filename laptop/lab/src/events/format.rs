@@ -1,4 +1,4 @@
-//! Formats of events, by name.
+//! Event formats by name: parses `evt2` or `edvs:e2,up=0`, and makes the format's reader and writer.
 
 use super::bytes::{self, Hooks};
 use super::eieio::{self, Board};
@@ -12,12 +12,12 @@ use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
-/// A format and its settings.
+/// An event format and its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// The crate's link.
+    /// Frames of the crate's own link.
     Link(Coding),
-    /// eDVS, with the way in which its events carry time.
+    /// eDVS, with the encoding of its events' times.
     Edvs(Edvs, EdvsTime),
     /// Event Stream, in a file `.es`.
     EventStream,
@@ -25,12 +25,12 @@ pub enum Format {
     Evt2,
     /// EIEIO datagrams.
     Eieio(Board),
-    /// A table of events.
+    /// A table of events in CSV.
     Csv,
 }
 
 impl Format {
-    /// Makes a reader of the format; `file` is the name in errors.
+    /// Makes a reader of the format; `file` is the name of the input in errors.
     pub fn reader(self, file: &str) -> Box<dyn EventReader> {
         match self {
             Self::Link(_) => Box::new(LinkReader::new(None)),
@@ -88,12 +88,12 @@ impl Format {
     }
 }
 
-/// Makes a writer of decoded values of a sample type.
+/// Makes a writer of a table of decoded values; `sample` is their sample type.
 pub fn values_writer(sample: SampleType) -> Box<dyn EventWriter> {
     Box::new(csv::Writer::new(Some(sample)))
 }
 
-/// Writes the format's name without its settings.
+/// Writes the format's name without its settings, such as `edvs:e2`.
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -159,7 +159,7 @@ fn edvs(time: EdvsTime, settings: &mut Settings) -> Result<Format> {
     Ok(Format::Edvs(edvs, time))
 }
 
-/// The `key=value` pairs that have not been read yet.
+/// The `key=value` pairs of a format's text that have not been read yet.
 struct Settings<'a>(Vec<(&'a str, &'a str)>);
 
 impl<'a> Settings<'a> {
@@ -171,7 +171,7 @@ impl<'a> Settings<'a> {
         Ok(Self(pairs.collect::<Result<_, _>>()?))
     }
 
-    /// Reads the number of this key, decimal or hexadecimal with `0x`; `otherwise` if there is none.
+    /// Removes and returns the number of `key`, decimal or hexadecimal with `0x`; `otherwise` if the key is missing.
     fn number<N: TryFrom<u32>>(&mut self, key: &str, otherwise: N) -> Result<N> {
         let Some(place) = self.0.iter().position(|pair| pair.0 == key) else {
             return Ok(otherwise);
@@ -186,7 +186,7 @@ impl<'a> Settings<'a> {
         number.ok_or_else(|| EventsKind::OutOfRange { key, text }.into())
     }
 
-    /// Reads the 0 or 1 of this key; `otherwise` if there is none.
+    /// Removes and returns the 0 or 1 of `key`; `otherwise` if the key is missing.
     fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
         match self.number::<u32>(key, otherwise.into())? {
             bit @ 0..=1 => Ok(bit == 1),

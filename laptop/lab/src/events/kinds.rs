@@ -1,11 +1,11 @@
-//! Reasons that a stream of events cannot be read or written.
+//! Reasons for which a stream of events cannot be read or written.
 
 use crate::error::room;
 use catalogue::kinds;
 use spikewire_cameras::format::FormatError;
 
 kinds! {
-    /// The reason that a stream of events cannot be read or written.
+    /// The reason for which a stream of events cannot be read or written.
     pub enum EventsKind by spell of subject {
         // Formats by name.
         NoFormat { name: String } => ("no format `{name}`; there are {}", super::format::NAMES),
@@ -16,18 +16,18 @@ kinds! {
         PeriodOrJitter { text: String } => ("{text}: the period must be above 0 µs, the jitter at most 15 bits"),
         Step { text: String } => ("{text}: the step must be above 0 µs"),
         TimesOfEdvs => ("edvs: how it sends times must follow, edvs:e0 to edvs:e4"),
-        // Other bytes than the format's.
+        // Bytes of a format other than the expected one.
         NotAnEventStream => ("not an Event Stream of version 2 and of generic events"),
         OtherFormat { format: String, what: &'static str, bytes: u64 } =>
             ("no {format} {what} in the {bytes} bytes; are they of another format?"),
-        // Events without a word in a format.
+        // Events that a format cannot express.
         NoWord { event: u64, error: FormatError } => ("event {event}: {error}; {} goes on", spell("drop")),
         NoDirection { event: u64, address: u16 } => (
             "event {event} at address {address}: a key of 32 bits has no direction; signed=1 gives an address two keys, \
              {} goes on",
             spell("drop")
         ),
-        // Tables.
+        // Tables of events.
         Empty => ("empty; a table of events starts with `{}`", super::csv::HEADER),
         NoHeader { text: String } =>
             ("`{text}`, where `{}` should stand (or `time_us` for `tick`)", super::csv::HEADER),

@@ -1,4 +1,4 @@
-//! Reads and writes the crate's link.
+//! Reads and writes the frames of the crate's link.
 
 use super::{EventReader, EventWriter, Item, LinkTally, Tally};
 use crate::Result;
@@ -6,29 +6,29 @@ use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Se
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// Decodes the frames of a link to values.
+/// A decoder of link frames to values.
 pub trait Values {
-    /// Decodes a frame. Appends a value for each keyframe and event, or for each sample that has ended.
+    /// Decodes a frame, and appends to `items` a value for each keyframe and event, or for each sample that has ended.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
-    /// Appends the values of the last sample, after the last frame.
+    /// Appends the values of the last sample. Call it after the last frame.
     fn finish(&mut self, items: &mut Vec<Item>);
 
     /// Adds the decoders' counts to those of the link.
     fn count(&self, tally: &mut LinkTally);
 }
 
-/// Reads a link, as events or as decoded values.
+/// Reads link frames as events, or as decoded values.
 pub struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
-    /// Number of zeros that were appended here and that the reader skipped.
+    /// Number of zeros that `finish` appended to the input and that the reader skipped.
     padding: u64,
     values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,
 }
 
 impl<'a> LinkReader<'a> {
-    /// Makes a reader of values if there is a decoder for them, or else of events.
+    /// Makes a reader that decodes with `values`, or that reads events if `values` is `None`.
     pub fn new(values: Option<Box<dyn Values + 'a>>) -> Self {
         Self { reader: Reader::new(), padding: 0, values, tally: LinkTally::default() }
     }
@@ -43,8 +43,8 @@ impl EventReader for LinkReader<'_> {
         }
     }
 
-    /// Pads with zeros: a frame whose length was damaged holds back the frames after it until the longest possible
-    /// frame has arrived.
+    /// Appends zeros to the input. Without them, a frame whose length was damaged would hold back the frames after it,
+    /// because the reader would wait for the longest possible frame.
     fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
         self.read(&[0; MAX_FRAME], items)?;
         self.padding = MAX_FRAME as u64;
@@ -71,7 +71,7 @@ impl EventReader for LinkReader<'_> {
     }
 }
 
-/// Appends the content of a frame, in the order in which it holds.
+/// Appends the items of a frame, in the order in which they happened.
 fn take(
     received: &Received<'_>,
     is_first: bool,
@@ -88,7 +88,7 @@ fn take(
         tally.after_loss += 1;
         items.push(Item::LostEvents);
     }
-    // What is heard from the middle on did not begin there.
+    // If the first frame received is from the middle of a session, the sender did not start there.
     if *is_start && (!is_first || frame.is_first()) {
         tally.restarts += 1;
         items.push(Item::Restart);
@@ -107,20 +107,20 @@ fn take(
     tally.impossible += u64::from(!events.is_complete());
 }
 
-/// Writes a link, with frames as long as they may be.
+/// Writes link frames, each as long as possible.
 pub(super) struct Writer {
     framer: Framer,
     coding: Coding,
-    /// Keyframes that wait to be written, all of one tick and sample type.
+    /// Keyframes that wait to be written, all of the same tick and sample type.
     keyframes: Vec<Keyframe>,
-    /// Tick of the next item, as far as it is known.
+    /// Tick of the latest keyframe, for an empty frame that reports a loss.
     tick: Tick,
-    /// Number of restarts.
+    /// Number of sender restarts so far, which numbers the sessions.
     starts: u32,
     /// Whether no frame of this session has been written yet.
     is_fresh: bool,
     events: Vec<Event>,
-    /// Whether a frame must still report a loss or restart.
+    /// Whether a loss or a restart is still to be reported in a frame.
     owes_mark: bool,
 }
 
@@ -142,7 +142,7 @@ impl Writer {
         }
     }
 
-    /// Writes all frames. If a loss or restart is still to be reported, writes an empty frame for it.
+    /// Writes all waiting items. If a loss or restart is still to be reported, writes an empty frame that reports it.
     fn all_frames(&mut self, output: &mut dyn Write) -> Result<()> {
         self.frames(true, output)?;
         if std::mem::take(&mut self.owes_mark) {
@@ -152,7 +152,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Writes full frames, and with `with_last` also the last one, to which items could still be added.
+    /// Writes the frames that are full; with `with_last` also the last frame, which has room for more items.
     fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
         let Self { framer, keyframes, events, owes_mark, is_fresh, .. } = self;
         let mut buffer = [0; MAX_FRAME];
@@ -181,7 +181,7 @@ impl Writer {
     }
 }
 
-/// Puts items into a frame until it is full, and returns their number.
+/// Passes items to `put`, which adds them to a frame, until the frame is full. Returns the number of items added.
 fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usize {
     items.iter().map(put).take_while(Result::is_ok).count()
 }

@@ -1,6 +1,7 @@
 //! Reads and writes streams of events in every format, in constant memory.
 //!
-//! The codecs of the formats are in the crate; this module moves bytes, and counts what a format cannot hold.
+//! `spikewire` and `spikewire-cameras` have the formats' codecs; this module moves bytes through them, and counts what
+//! a format cannot hold.
 
 mod bytes;
 mod csv;
@@ -24,30 +25,30 @@ use crate::Result;
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// One item of a stream; items come in the order of the stream.
+/// One item of a stream of events, in the order in which the items were sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Item {
     /// A spike.
     Event(Event),
-    /// The value that the sender's encoder held.
+    /// A value that the sender's encoder held, from which a decoder can resume.
     Keyframe(Keyframe),
-    /// The tick of a sample, and the first address of its bank. Only codes without keyframes send it; it says that all
-    /// events before it have been sent.
+    /// A sign of life from a sender whose code has no keyframes: the tick of a sample, and the first address of the
+    /// sender's bank. All events before this item have been sent.
     Heartbeat(Tick, u16),
     /// The value of a decoder after an event or keyframe.
     Value {
-        /// Tick of the event or keyframe.
+        /// Tick of the event or keyframe that gave the value.
         tick: Tick,
-        /// Address of the decoder.
+        /// First address of the decoded channel.
         address: u16,
-        /// The value, in the recording's unit.
+        /// The decoded value, in the recording's unit.
         value: f64,
         /// How certain the value is.
         known: Known,
     },
-    /// Frames were lost on the link; holds their number.
+    /// Frames were lost on the link, as many as the number says.
     LostFrames(u32),
-    /// Events were lost by the sender.
+    /// The sender lost events before it could send them.
     LostEvents,
     /// The sender restarted.
     Restart,
@@ -56,11 +57,11 @@ pub enum Item {
 /// How certain a decoded value is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// The value is that of a keyframe.
+    /// The value comes from a keyframe.
     Keyframe,
     /// The value equals that of the sender's own decoder, bit for bit.
     Exact,
-    /// The value may be off: something was lost since the last keyframe, or there was no keyframe yet.
+    /// The value may differ from the sender's: events were lost since the last keyframe, or no keyframe has come yet.
     Estimate,
 }
 
@@ -69,10 +70,10 @@ pub trait EventReader {
     /// Reads bytes, which may be cut anywhere, and appends the items that they complete.
     ///
     /// # Errors
-    /// Returns an error if the bytes are of another format.
+    /// Returns an error if the bytes belong to a different format.
     fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()>;
 
-    /// Ends the input; appends items that were held back.
+    /// Ends the input, and appends items that were held back.
     ///
     /// # Errors
     /// See [`read`](Self::read).
@@ -80,7 +81,7 @@ pub trait EventReader {
         Ok(())
     }
 
-    /// Returns counts of everything that is not an event.
+    /// Returns the counts of everything in the stream that is not an event.
     fn tally(&self) -> Tally;
 
     /// Sets the time of arrival of the next bytes, for a format whose events have no times.
@@ -95,7 +96,7 @@ pub trait EventWriter {
     /// Returns an error if the format cannot express the item, or if the output cannot be written.
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()>;
 
-    /// Writes the items that were kept.
+    /// Writes the items that were kept for later.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.

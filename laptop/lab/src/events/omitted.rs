@@ -1,36 +1,36 @@
-//! Counts of what a format cannot hold.
+//! Counts of items that an event format cannot hold.
 
 use super::Item;
 use spikewire::Tick;
 
-/// Counts of items that were left out, and of events that will be read back with another time.
+/// Counts of items that a writer left out, and of events whose time the format changes.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Omitted {
     dropped: u64,
     retimed: u64,
     furthest: u32,
-    /// Number of keyframes and losses left out.
+    /// Number of items left out that are not events: keyframes, heartbeats and losses.
     others: u64,
 }
 
 impl Omitted {
-    /// Counts an event that the format cannot express.
+    /// Counts an event that was dropped because the format cannot express it.
     pub(super) fn drop_event(&mut self) {
         self.dropped += 1;
     }
 
-    /// Counts an event if it will be read back with another time.
+    /// Counts an event if `read`, its time when read back, differs from its time `event`.
     pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());
     }
 
-    /// Counts an item that is not an event.
+    /// Counts an item left out that is not an event. A restart does not count.
     pub(super) fn leave_out(&mut self, item: Item) {
         self.others += u64::from(item != Item::Restart);
     }
 
-    /// Formats the counts as notes; `what` names what the dropped events lack in this format.
+    /// Formats the counts as notes. `what` names the thing that dropped events lack in the format, such as a key.
     pub(super) fn notes(self, what: &str) -> Vec<String> {
         let Self { dropped, retimed, furthest, others } = self;
         let all = [

@@ -1,4 +1,4 @@
-//! Converts bytes of one format to bytes of another.
+//! Converts bytes of one event format to bytes of another.
 
 use super::{EventReader, EventWriter, EventsKind, Format, Item, Tally};
 use crate::Result;
@@ -7,11 +7,11 @@ use spikewire::Tick;
 use std::fmt;
 use std::io::Write;
 
-/// A reader, a writer, and counts of the items between them.
+/// A reader connected to a writer, with counts of the items that pass between them.
 pub struct Stream<'a> {
     reader: Box<dyn EventReader + 'a>,
     writer: Box<dyn EventWriter>,
-    /// The tick that is subtracted from all, if the output is to start at 0.
+    /// The tick that is subtracted from all ticks, if the output is to start at 0.
     zero: Zero,
     items: Vec<Item>,
     bytes: u64,
@@ -30,7 +30,7 @@ enum Zero {
 }
 
 impl<'a> Stream<'a> {
-    /// Connects a reader to a writer. Ticks stay as they are, or are moved so that the first is 0.
+    /// Connects a reader to a writer. Keeps ticks as they are or, with `from_zero`, shifts them so that the first is 0.
     pub fn new(
         reader: Box<dyn EventReader + 'a>,
         writer: Box<dyn EventWriter>,
@@ -50,7 +50,8 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Converts bytes, which may be cut anywhere, with their time of arrival if it is known.
+    /// Converts bytes, which may be cut anywhere. `arrival` is their time of arrival, for formats whose events have no
+    /// times.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read, or if their items cannot be written.
@@ -60,14 +61,14 @@ impl<'a> Stream<'a> {
         arrival: Option<Tick>,
         output: &mut dyn Write,
     ) -> Result<()> {
-        /// Maximum number of bytes that are read at once, so that their items take little memory.
+        /// Maximum number of bytes that are read at once, which bounds the memory of their items.
         const PIECE: usize = 1 << 14;
         if let Some(tick) = arrival {
             self.reader.set_arrival(tick);
         }
         for piece in bytes.chunks(PIECE) {
             self.bytes += piece.len() as u64;
-            // What came before an error is still written.
+            // Items before an error are still written.
             let read = self.reader.read(piece, &mut self.items);
             self.write(output)?;
             read?;
@@ -75,7 +76,7 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Ends the stream after its last bytes.
+    /// Ends the stream after its last bytes, and writes the items that were held back.
     ///
     /// # Errors
     /// See [`push`](Self::push).
@@ -136,25 +137,25 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Returns the number of events, or of decoded values, for each address.
+    /// Returns the number of events, or of decoded values, for each address from 0 to 65535.
     pub fn addresses(&self) -> &[u64] {
         &self.addresses
     }
 
-    /// Returns the number of events, or of decoded values.
+    /// Returns the total number of events and decoded values.
     pub fn count(&self) -> u64 {
         self.events + self.values
     }
 
-    /// Returns the number of bytes read.
+    /// Returns the number of bytes read so far.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Checks that the bytes were of this format.
+    /// Checks whether the bytes read were of `format`; `file` is the input's name in the error.
     ///
     /// # Errors
-    /// Returns an error if bytes were skipped and there was neither an event nor a frame.
+    /// Returns an error if bytes were skipped and neither an event nor a frame was found.
     pub fn check_format(&self, format: Format, file: &str) -> Result<()> {
         let Tally { skipped, link, .. } = self.tally();
         let frames = link.map_or(0, |link| link.frames);
@@ -167,7 +168,7 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Describes in a sentence how many items were written, in how many bytes.
+    /// Returns the sentence that says how many bytes were written, and how many for each item.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),
@@ -178,13 +179,13 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Returns counts of everything that was not an event.
+    /// Returns the counts of everything in the stream that is not an event.
     pub fn tally(&self) -> Tally {
         self.reader.tally()
     }
 }
 
-/// Writes the notes for the user at the end of the stream.
+/// Writes notes for the user about the stream up to now, a line each.
 impl fmt::Display for Stream<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.word(f, quoted)

@@ -4,7 +4,7 @@ use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
 use std::fmt;
 
-/// Counts kept by a reader.
+/// Counts that a reader of events keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Number of bytes that belong to no item.
@@ -13,49 +13,50 @@ pub struct Tally {
     pub is_cut: bool,
     /// Number of ticks of more than 32 bits.
     pub long_ticks: u64,
-    /// The counts of a link; `None` for other formats.
+    /// Counts of a reader of link frames; `None` for other formats.
     pub link: Option<LinkTally>,
 }
 
-/// Counts of a link's reader.
+/// Counts that a reader of link frames keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkTally {
-    /// Frames that arrived whole.
+    /// Number of frames that arrived whole.
     pub frames: u64,
     /// Number of frames that never arrived.
     pub lost: u64,
-    /// Number of places at which frames are missing.
+    /// Number of gaps in the sequence of frames; each is one or more lost frames.
     pub gaps: u64,
-    /// Number of checksums that did not match.
+    /// Number of frames whose checksum did not match.
     pub bad_checksums: u64,
     /// Number of frames that arrived twice.
     pub repeated: u64,
-    /// Number of frames before which the sender lost events.
+    /// Number of frames that say that the sender lost events before them.
     pub after_loss: u64,
     /// Number of times that the sender started.
     pub restarts: u64,
-    /// Number of keyframes.
+    /// Number of keyframes received.
     pub keyframes: u64,
     /// Number of frames with events that no sender can emit.
     pub impossible: u64,
     /// Number of events and keyframes whose address has no decoder.
     pub outside: u64,
-    /// Number of keyframes of another sample type.
+    /// Number of keyframes whose sample type is not the decoder's.
     pub misfits: u64,
-    /// Number of keyframes for a scheme that uses none.
+    /// Number of keyframes received although the scheme uses none.
     pub unused_keyframes: u64,
-    /// How keyframes compare with the values decoded just before them.
+    /// Comparison of keyframes with the values decoded just before them.
     pub held: Held,
-    /// The reason that no value is exact, if values are decoded.
+    /// The reason that no value is exact, if values are decoded and none is.
     pub withheld: Option<Withheld>,
 }
 
-/// Comparisons of keyframes with what the decoder held, for codes whose decoder should hold the same value already.
+/// Comparison of keyframes with the values that the decoder held when they came, for codes whose decoder should already
+/// hold the keyframe's value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
     /// Number of keyframes that followed an exact value.
     pub compared: u64,
-    /// Number of keyframes that differed from that exact value.
+    /// Number of keyframes that followed an exact value and differed from it.
     pub contradicted: u64,
 }
 

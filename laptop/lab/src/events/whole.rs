@@ -1,22 +1,22 @@
-//! Reads and writes whole recordings of events in memory.
+//! Reads and writes whole streams of events in memory.
 
 use super::{EventsKind, Format, Item};
 use crate::Result;
 use spikewire::Event;
 
-/// The events of a stream.
+/// The events of a whole stream.
 #[derive(Clone, Debug, Default)]
 pub struct Events {
-    /// The events, in their order.
+    /// The events, in the order of the stream.
     pub events: Vec<Event>,
     /// Notes on losses and on everything that is not an event.
     pub notes: Vec<String>,
 }
 
-/// Reads all events in bytes of a format, given by name: `es`, `evt2`, `link`, `edvs:e2`…
+/// Reads all events from bytes in a format, given by name: `es`, `evt2`, `link`, `edvs:e2`…
 ///
 /// # Errors
-/// Returns an error if the format is unknown, or if the bytes are of another format.
+/// Returns an error if the format is unknown, or if the bytes belong to a different format.
 pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     let format: Format = format.parse()?;
     let mut reader = format.reader("the bytes");
@@ -37,7 +37,8 @@ pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     Ok(Events { events: items.iter().filter_map(event).collect(), notes })
 }
 
-/// Writes events as bytes of a format, given by name. Returns the bytes, and notes on what the format could not hold.
+/// Writes events as bytes of a format, given by name. Returns the bytes, and notes on items that the format could not
+/// hold.
 ///
 /// # Errors
 /// Returns an error if the format is unknown, or if it cannot express an event.

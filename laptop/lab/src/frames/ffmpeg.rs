@@ -1,4 +1,4 @@
-//! Reads other video containers by running `ffmpeg`.
+//! Reads videos that are neither YUV4MPEG2 nor pictures by running `ffmpeg`.
 
 use super::FramesKind;
 use super::video::{Rate, Video};
@@ -10,8 +10,8 @@ use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::thread::JoinHandle;
 
-/// Pixel format requested: 8 bits of full-range brightness. Sources that are grey or of full range pass unchanged;
-/// limited range is expanded as [`Y4m`] expands it.
+/// Pixel format that `ffmpeg` is asked for: 8 bits of full-range brightness. Grey and full-range sources pass
+/// unchanged; a limited range is expanded, as by [`Y4m`].
 const GREY: &str = "gray";
 
 /// The frames into which `ffmpeg` converts a file.
@@ -23,7 +23,7 @@ pub(super) struct Converted {
 }
 
 impl Converted {
-    /// Starts the program named by the variable `FFMPEG`, or else `ffmpeg` on the path.
+    /// Starts `ffmpeg`, or the program named by the environment variable `FFMPEG`, on a file.
     ///
     /// # Errors
     /// Returns an error if `ffmpeg` is missing or cannot read the file.
@@ -51,7 +51,7 @@ impl Converted {
             let mut text = Vec::new();
             let mut errors = errors;
             let _ = errors.by_ref().take(1 << 16).read_to_end(&mut text);
-            // The rest is of no use, but must not block it.
+            // More text is of no use, but left unread it would block `ffmpeg`.
             let _ = io::copy(&mut errors, &mut io::sink());
             String::from_utf8_lossy(&text).trim().to_owned()
         }));
@@ -69,7 +69,8 @@ impl Converted {
     }
 }
 
-/// Returns the messages of `ffmpeg`, in one line.
+/// Returns all messages of `ffmpeg`, joined to one line. Waits for the program's end; a second call returns an empty
+/// text.
 fn words(said: &mut Option<JoinHandle<String>>) -> String {
     let text = said.take().and_then(|said| said.join().ok()).unwrap_or_default();
     text.lines().collect::<Vec<_>>().join("; ")

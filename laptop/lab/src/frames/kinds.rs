@@ -1,11 +1,11 @@
-//! Reasons that a video cannot be read or written.
+//! Reasons for which a video cannot be read or written.
 
 use crate::error::room;
 use catalogue::kinds;
 use spikewire_cameras::format::FormatError;
 
 kinds! {
-    /// The reason that a video, its events or its preview cannot be read or written.
+    /// The reason for which a video, its events or its preview cannot be read or written.
     pub enum FramesKind by spell of subject {
         NoFfmpeg { program: String } => (
             "neither YUV4MPEG2 nor a picture, and {program} is not there to read it; install it, or name it in FFMPEG, \

@@ -1,4 +1,4 @@
-//! A video that is a sequence of pictures, one in each file.
+//! Reads a sequence of picture files as a video, a frame from each file.
 
 use super::FramesKind;
 use super::video::{Rate, Video};
@@ -6,7 +6,7 @@ use crate::Result;
 use image::{DynamicImage, GrayImage};
 use std::path::{Path, PathBuf};
 
-/// Pictures in the order of their names, or in the order given.
+/// Picture files in the order of the frames, all of one size.
 pub(super) struct Pictures {
     files: Vec<PathBuf>,
     first: PathBuf,
@@ -14,7 +14,7 @@ pub(super) struct Pictures {
     index: usize,
 }
 
-/// Returns whether a file's name is that of a picture.
+/// Returns whether a file's name has the ending of a picture.
 pub(super) fn is_picture(path: &Path) -> bool {
     const ENDINGS: [&str; 6] = ["png", "jpg", "jpeg", "pgm", "ppm", "pnm"];
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -35,7 +35,7 @@ fn read(path: &Path) -> Result<GrayImage> {
 }
 
 impl Pictures {
-    /// Opens pictures, which must all have the size of the first.
+    /// Opens picture files, which must all have the size of the first.
     ///
     /// # Errors
     /// Returns an error if the first picture cannot be read.

@@ -1,4 +1,5 @@
-//! Draws a video and its events in the paper's layout: the frame, then a panel for each threshold.
+//! Draws a video and its events side by side, in the layout of the paper's figures: the frame, then a panel for each
+//! threshold.
 
 use super::FramesKind;
 use super::video::Rate;
@@ -12,26 +13,26 @@ use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Number of greys, which are the first colours of the palette; the colours of events follow.
+/// Number of greys, which are the first colours of the palette. The three colours of the events panels follow.
 const GREYS: u16 = 253;
 const UP: u8 = 253;
 const DOWN: u8 = 254;
 const PAPER: u8 = 255;
 /// Margin around and between the panels, in pixels.
 const GAP: usize = 6;
-/// Maximum width in pixels. Small videos are enlarged by a whole factor up to this width.
+/// Maximum width of the picture, in pixels. Small videos are enlarged by a whole factor up to this width.
 const WIDEST: usize = 1080;
 
-/// Default frame to show: about a second into a video.
+/// Index of the frame that a still picture shows by default: about a second into a video.
 const USUAL: u64 = 30;
 
-/// A picture of one frame, or an animation.
+/// A picture of one frame and its events, or an animation of all frames.
 pub struct Preview {
     panels: Vec<DynamicFrameEncoder<Intensity>>,
     size: (usize, usize),
     scale: usize,
     canvas: Vec<u8>,
-    /// Last frame to show.
+    /// Index of the last frame to draw.
     last: u64,
     file: Kind,
 }
@@ -42,10 +43,11 @@ enum Kind {
 }
 
 impl Preview {
-    /// Opens the file, `.png` or `.gif`, with a panel for each threshold in grey levels.
+    /// Opens the preview's file, `.png` or `.gif`. Each of `thresholds`, in grey levels, gets a panel; `last` is the
+    /// index of the last frame to draw.
     ///
     /// # Errors
-    /// Returns an error if the name has another ending, or if a threshold is 0 or 255.
+    /// Returns an error if the file's name has a different ending, or if a threshold is 0 or 255.
     pub fn open(
         path: &Path,
         input: &Path,
@@ -84,7 +86,7 @@ impl Preview {
         Ok(Self { panels, size, scale, canvas, last, file })
     }
 
-    /// Draws the next frame of the video.
+    /// Draws frame `index` of the video, unless it is beyond the last one to draw.
     ///
     /// # Errors
     /// Returns an error if the picture cannot be written.
@@ -122,7 +124,7 @@ impl Preview {
         (self.panels.len() + 1) * (self.scale * self.size.0 + GAP) + GAP
     }
 
-    /// Fills a panel, with a colour for each pixel.
+    /// Fills a panel; `colour` returns the palette index for each pixel of the frame, counted row by row.
     fn fill(&mut self, panel: usize, colour: impl Fn(usize) -> u8) {
         let (columns, scale, (width, height)) = (self.columns(), self.scale, self.size);
         let left = GAP + panel * (scale * width + GAP);
@@ -135,7 +137,7 @@ impl Preview {
         }
     }
 
-    /// Finishes the file and moves it to its place.
+    /// Finishes the file, and renames it from its temporary name to its final one.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -161,7 +163,7 @@ impl Preview {
     }
 }
 
-/// Returns red, green and blue of each colour: greys, ink for brighter, red for darker, and paper.
+/// Returns red, green and blue of each colour: the greys, then dark ink for brighter, red for darker, and white.
 fn palette() -> Vec<u8> {
     let greys = (0..GREYS).flat_map(|grey| [(grey * 255 / (GREYS - 1)) as u8; 3]);
     greys.chain([0x2b, 0x2f, 0x36, 0xc2, 0x3b, 0x4e, 0xff, 0xff, 0xff]).collect()

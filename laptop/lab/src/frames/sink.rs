@@ -1,4 +1,4 @@
-//! Writes pixel events to files.
+//! Writes pixel events to files in an event format.
 
 use super::FramesKind;
 use crate::Result;
@@ -11,7 +11,7 @@ use spikewire_cameras::frame::PixelEvent;
 use std::io::Write;
 use std::path::Path;
 
-/// A file of events, in the format that the ending of its name says.
+/// A file of pixel events, in the format that the ending of its name says.
 pub struct Sink {
     output: Output,
     format: Kind,
@@ -27,8 +27,8 @@ impl Sink {
     /// Opens the file and writes its header.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be written, if its ending is unknown, or if its format cannot express so
-    /// large a picture.
+    /// Returns an error if the file cannot be written, if its ending is unknown, or if its format cannot express a
+    /// picture of this size.
     pub fn open(path: &Path, input: &Path, (width, height): (u16, u16)) -> Result<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let format = match ending.as_str() {
@@ -69,7 +69,7 @@ impl Sink {
         }
     }
 
-    /// Finishes the file, moves it to its place, and returns its length in bytes.
+    /// Finishes the file, renames it from its temporary name to its final one, and returns its length in bytes.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.

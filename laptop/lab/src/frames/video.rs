@@ -1,4 +1,4 @@
-//! Videos, independent of their file format.
+//! Videos of any file format, as sequences of grey frames.
 
 use super::{FramesKind, ffmpeg, pictures, y4m};
 use crate::{Error, Result};
@@ -9,10 +9,10 @@ use std::str::FromStr;
 
 /// A sequence of grey frames of one size.
 pub trait Video {
-    /// Returns the numbers of columns and rows.
+    /// Returns the number of columns and the number of rows.
     fn size(&self) -> (u16, u16);
 
-    /// Returns the frame rate, if the video contains it.
+    /// Returns the frame rate, if the file contains it.
     fn rate(&self) -> Option<Rate>;
 
     /// Returns the number of frames, if it is known in advance.
@@ -21,11 +21,11 @@ pub trait Video {
     /// Reads the next frame into the buffer, row by row; returns false at the end.
     ///
     /// # Errors
-    /// Returns an error if the frame cannot be read or has another size.
+    /// Returns an error if the frame cannot be read, or if its size is not that of the first.
     fn next(&mut self, frame: &mut Vec<u8>) -> Result<bool>;
 }
 
-/// Frames a second, as a fraction.
+/// A frame rate as a fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rate {
     frames: u64,
@@ -33,12 +33,12 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// Makes the rate of `frames` in `seconds`; `None` if either is 0.
+    /// Makes the rate of `frames` frames in `seconds` seconds; `None` if either is 0.
     pub fn new(frames: u64, seconds: u64) -> Option<Self> {
         (frames > 0 && seconds > 0).then_some(Self { frames, seconds })
     }
 
-    /// Returns the time of a frame, in µs.
+    /// Returns the time of a frame, counted from 0, in µs.
     pub fn micros(self, frame: u64) -> u64 {
         (u128::from(frame) * 1_000_000 * u128::from(self.seconds) / u128::from(self.frames)) as u64
     }
@@ -47,7 +47,7 @@ impl Rate {
 impl FromStr for Rate {
     type Err = Error;
 
-    /// Parses `25`, `29.97` or `30000/1001`.
+    /// Parses frames a second, such as `25`, `29.97` or `30000/1001`.
     fn from_str(text: &str) -> Result<Self> {
         let rate = if let Some((frames, seconds)) = text.split_once('/') {
             frames.parse().ok().zip(seconds.parse().ok())

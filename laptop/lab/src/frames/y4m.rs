@@ -1,7 +1,7 @@
 //! Reads the brightness of YUV4MPEG2 videos, in full range: black is 0 and white 255.
 //!
-//! Grey videos are taken to have full range, and those with colour the limited one, 16 to 235, unless their header says
-//! `XCOLORRANGE=FULL`.
+//! Grey videos are read as full range, and colour videos as limited range, 16 to 235, unless a colour video's header
+//! says `XCOLORRANGE=FULL`.
 
 use super::FramesKind;
 use super::video::{Rate, Video};
@@ -14,10 +14,10 @@ use y4m::{Decoder, Error};
 /// The first bytes of a YUV4MPEG2 file.
 pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
 
-/// Maximum length of the header, in bytes; the decoder accepts no longer one.
+/// Maximum length of the header in bytes; the decoder has the same limit.
 const LONGEST_HEADER: usize = 1024;
 
-/// Counts the bytes read through it.
+/// A reader that counts the bytes read through it.
 struct Counting<R> {
     reader: R,
     bytes: Rc<Cell<u64>>,
@@ -31,10 +31,11 @@ impl<R: Read> Read for Counting<R> {
     }
 }
 
-/// The bytes of the header, up to its end or that of the file, followed by the frames.
+/// A reader of the header, which is in memory, and then of the frames.
 type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
 
-/// Reads the header and checks its numbers of columns and rows, as the decoder multiplies them unchecked.
+/// Reads the header and checks its numbers of columns and rows, because the decoder multiplies them unchecked. Returns
+/// a reader of the header and the frames.
 fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
     let mut header = Vec::new();
     while !header.ends_with(b"\n") && header.len() < LONGEST_HEADER {
@@ -56,24 +57,25 @@ fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
     Ok(Cursor::new(header).chain(reader))
 }
 
-/// A video of 8 bits a pixel.
+/// A YUV4MPEG2 video of 8 bits a pixel.
 pub(super) struct Y4m<R: Read> {
     decoder: Decoder<Whole<R>>,
     is_limited: bool,
     name: String,
     size: (u16, u16),
-    /// Number of bytes read so far, and number up to the end of the last frame.
+    /// Number of bytes read so far.
     bytes: Rc<Cell<u64>>,
+    /// Number of bytes up to the end of the last frame read.
     end: u64,
     index: u64,
     frames: Option<u64>,
 }
 
 impl<R: Read> Y4m<R> {
-    /// Reads the header; `length` is the file's length in bytes, which gives the number of frames.
+    /// Reads the header; `length` is the file's length in bytes if known, which gives the number of frames.
     ///
     /// # Errors
-    /// Returns an error if the file is of another format, or if its pixels have more than 8 bits.
+    /// Returns an error if the file is not YUV4MPEG2, or if its pixels have more than 8 bits.
     pub(super) fn open(reader: R, name: String, length: Option<u64>) -> Result<Self> {
         let bytes = Rc::new(Cell::new(0));
         let counting = Counting { reader, bytes: Rc::clone(&bytes) };
@@ -108,7 +110,7 @@ fn full_range(limited: u8) -> u8 {
     ((above * 255 + STEPS / 2) / STEPS) as u8
 }
 
-/// Returns the number of bytes that a frame's brightness and colours take.
+/// Returns the number of bytes that the brightness of a frame takes, and the number that its colours take.
 fn colours<R: Read>(decoder: &Decoder<R>) -> (u64, u64) {
     use y4m::Colorspace;
     let (width, height) = (decoder.get_width() as u64, decoder.get_height() as u64);

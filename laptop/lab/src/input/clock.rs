@@ -1,19 +1,20 @@
-//! Estimates the rate of a recording, and finds unusual steps in its times.
+//! Estimates the sample rate of a recording, and finds unusual steps in its times.
 
 use std::fmt;
 
-/// The kind of an unusual step in time.
+/// The kind of an unusual step from one sample's time to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The step is too long.
     Gap,
     /// The step goes back: samples are out of order.
     Backward,
-    /// The step goes back so far that the clock must have restarted, as after a reboot: a new segment begins.
+    /// The step goes back so far that the recorder's clock must have restarted, as after a reboot: a new segment
+    /// begins.
     Restart,
 }
 
-/// An unusual step in time.
+/// An unusual step from one sample's time to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// The kind of the step.
@@ -50,9 +51,9 @@ impl fmt::Display for Jump {
 pub struct Clock {
     usual_step: f64,
     longest_step: f64,
-    /// Longest step back that still counts as disorder; a longer one is a restart.
+    /// Longest step back, in µs, that still counts as disorder; a longer one is a restart.
     longest_back: f64,
-    /// Number of samples for each step forward; more than 1 if most times repeat the one before.
+    /// Number of samples for each step forward: 1, or more if samples come in batches that share a time.
     samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
@@ -60,24 +61,26 @@ pub struct Clock {
     backward: Listed<Step>,
     restarts: Listed<Step>,
     repeated: u64,
-    /// The earliest and the latest time of this segment; `before` is the length of the segments before it, in µs.
+    /// The earliest and the latest time of the current segment, in µs.
     span: Option<(i64, i64)>,
+    /// Total length of the segments before the current one, in µs.
     before: i64,
-    /// The last times, up to [`RUN`] steps of them; `run_step` is the step between samples in the run before.
+    /// The latest times in µs, over at most [`RUN`] steps.
     run: Vec<i64>,
+    /// Time between samples in µs, as measured when the rate last jumped.
     run_step: f64,
     jumps: Listed<Jump>,
     is_timed: bool,
 }
 
-/// Number of steps over which a rate is measured.
+/// Number of steps over which a rate is measured at a time.
 const RUN: usize = 64;
-/// How far back a clock must step to count as restarted, in usual steps.
+/// Longest step back that still counts as disorder, in usual steps; a longer one is a restart of the recorder's clock.
 const RESTART: f64 = 10.0;
-/// Factor by which a rate must change to be reported.
+/// Factor by which the sample rate must change to be reported.
 const JUMP: f64 = 1.5;
 
-/// The number of unusual things of one kind, and the first few of them.
+/// Findings of one kind, such as gaps: their number, and the first few of them.
 #[derive(Clone, Debug)]
 struct Listed<T> {
     count: u64,
@@ -91,7 +94,8 @@ impl<T> Default for Listed<T> {
 }
 
 impl Clock {
-    /// Takes the usual step from the first times, or else from `rate`. Steps above `steps` usual ones count as gaps.
+    /// Makes a clock whose usual step is that of `first_times` or, without times, that of `rate` in samples a second. A
+    /// step longer than `steps` usual ones counts as a gap.
     pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
         let are_sorted = !is_disordered(first_times);
         let usual = if are_sorted {
@@ -123,17 +127,17 @@ impl Clock {
         }
     }
 
-    /// Returns the rate in samples a second, if it is known.
+    /// Returns the sample rate in Hz, if it is known.
     pub fn rate(&self) -> Option<f64> {
         (self.usual_step > 0.0).then(|| 1e6 / self.usual_step * self.samples_a_step)
     }
 
-    /// Returns the length of all segments in seconds, without the unknown time between them.
+    /// Returns the total length of all segments in seconds, without the unknown time between segments.
     pub fn seconds(&self) -> f64 {
         self.before.saturating_add(self.segment()) as f64 * 1e-6
     }
 
-    /// Returns the usual time between samples, in µs, as far as it is known.
+    /// Returns the usual time between samples in µs, or 0 if it is unknown.
     pub fn period(&self) -> i64 {
         (self.usual_step / self.samples_a_step).round() as i64
     }
@@ -157,7 +161,7 @@ impl Clock {
         self.span.map_or(0, |(first, last)| last.saturating_sub(first))
     }
 
-    /// Takes the next times, and returns the unusual steps among them.
+    /// Adds the next times, in µs, and returns the unusual steps among them.
     pub fn observe(&mut self, times: &[i64]) -> Vec<Step> {
         let mut steps = Vec::new();
         for &time in times {
@@ -174,12 +178,12 @@ impl Clock {
                 };
                 if let Some(kind) = kind {
                     let step = Step { kind, after: self.seen - 1, microseconds };
-                    let told = match kind {
+                    let findings = match kind {
                         Kind::Gap => &mut self.gaps,
                         Kind::Backward => &mut self.backward,
                         Kind::Restart => &mut self.restarts,
                     };
-                    told.take(step);
+                    findings.take(step);
                     steps.push(step);
                 }
                 if kind == Some(Kind::Restart) {
@@ -202,14 +206,14 @@ impl Clock {
         steps
     }
 
-    /// Measures the rate of a run. Only a change of both its median and its mean counts: a gap moves the mean alone,
-    /// and steps that alternate between two lengths move the median alone.
+    /// Measures the rate of a run, and notes a jump if both the median and the mean of its steps have changed. A gap
+    /// changes only the mean, and steps that alternate between two lengths change only the median.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {
             return;
         };
-        // Batches too long for a run to hold several of them.
+        // Samples come in batches so long that a run holds too few of them.
         if samples > 8.0 {
             return;
         }
@@ -245,7 +249,7 @@ impl<T: fmt::Display> fmt::Display for Listed<T> {
     }
 }
 
-/// Writes a report on the times.
+/// Writes the findings for the user: gaps, jumps of the rate, restarts, steps back and repeated times.
 impl fmt::Display for Clock {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_timed {
@@ -278,8 +282,8 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Returns whether samples are out of order: more than two times step back, and more than a tenth of the times that
-/// change.
+/// Returns whether times are out of order: more than two of their steps go back, and more than a tenth of the steps
+/// that are not 0.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();
@@ -287,9 +291,9 @@ fn is_disordered(times: &[i64]) -> bool {
     back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
 }
 
-/// Returns the median of the steps forward, and the number of samples for each step.
+/// Returns the median of the steps forward in µs, and the number of samples for each such step: 1 unless times repeat.
 ///
-/// Returns `None` if there are too few steps among many repeated times.
+/// Returns `None` if no time is later than the one before, or if times repeat and fewer than three steps go forward.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));
@@ -316,7 +320,7 @@ mod tests {
         assert!(steps.iter().all(|step| step.kind == Kind::Backward) && steps.len() == 158);
         assert_eq!(clock.rate(), Some(160.0));
         assert!((clock.seconds() - 0.99375).abs() < 1e-9);
-        // Nothing is known of the rate where all but one have the same time.
+        // If all times but one are equal, the rate is unknown.
         let mut same = vec![7; 160];
         same[159] = 8;
         assert_eq!(Clock::new(&same, None, 1.5).rate(), None);
@@ -335,8 +339,8 @@ mod tests {
     }
 
     #[test]
-    fn rates_that_jump_for_a_while_are_told() {
-        let told = |steps: &[(usize, i64)]| {
+    fn rates_that_jump_for_a_while_are_reported() {
+        let jumps_of = |steps: &[(usize, i64)]| {
             let steps = steps.iter().flat_map(|&(count, step)| std::iter::repeat_n(step, count));
             let mut time = 0;
             let times: Vec<i64> = steps
@@ -347,17 +351,17 @@ mod tests {
                 .collect();
             let mut clock = Clock::new(&times, None, 1.5);
             clock.observe(&times);
-            clock.to_string().split_once("; ").map(|(_, told)| told.to_owned())
+            clock.to_string().split_once("; ").map(|(_, jumps)| jumps.to_owned())
         };
         let jumps = "the rate jumps 2 times: 2000.00 Hz from about sample 320, 1000.00 Hz from about sample 512";
-        assert_eq!(told(&[(321, 1000), (200, 500), (300, 1000)]).as_deref(), Some(jumps));
+        assert_eq!(jumps_of(&[(321, 1000), (200, 500), (300, 1000)]).as_deref(), Some(jumps));
         let slower = "the rate jumps 1 times: 400.00 Hz from about sample 640";
-        assert_eq!(told(&[(640, 1000), (100, 2500)]).as_deref(), Some(slower));
-        // Not for a while, not by much, and a gap.
+        assert_eq!(jumps_of(&[(640, 1000), (100, 2500)]).as_deref(), Some(slower));
+        // Without a jump: a change that is too short, a change that is too small, and a gap.
         for steady in
             [[(500, 1000), (20, 500)], [(500, 1000), (200, 1400)], [(500, 1000), (1, 1_000_000)]]
         {
-            assert_eq!(told(&[steady[0], steady[1], (300, 1000)]), None, "{steady:?}");
+            assert_eq!(jumps_of(&[steady[0], steady[1], (300, 1000)]), None, "{steady:?}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Reads columns of a CSV table.
+//! Reads columns of a CSV table as channels.
 
 mod overview;
 
@@ -20,13 +20,13 @@ use std::collections::VecDeque;
 use std::io::{self, BufReader, Cursor, Read};
 use std::rc::Rc;
 
-/// Names of columns that hold counts rather than samples; the user may still choose one.
+/// Names of columns that hold counts rather than samples; such a column is read only if the user names it.
 const COUNTS: [&str; 8] =
     ["index", "sample", "i", "", "unnamed: 0", "loopiteration", "lineno", "header.seq"];
-/// Number of rows that are examined before the first is read.
+/// Number of rows that are examined first, to find the header and the format of the times.
 const AHEAD: usize = 64;
 
-/// The columns read from a table, and those with the times, if there are any.
+/// A CSV table that is being read: the chosen columns, and those with the times, if there are any.
 pub(super) struct Table {
     rows: Rows,
     /// Number of comments below the header.
@@ -34,8 +34,9 @@ pub(super) struct Table {
     /// A note on where the table is cut.
     cut: Rc<Cell<Option<String>>>,
     ahead: VecDeque<ByteRecord>,
-    /// The current row, and whether it is one of those examined in advance.
+    /// The current row.
     record: ByteRecord,
+    /// Whether the current row is one of the first rows, which were read in advance.
     was_ahead: bool,
     file: String,
     columns: Vec<Column>,
@@ -53,11 +54,11 @@ struct Column {
     name: String,
 }
 
-/// The column with the times.
+/// The column with the times, and the format of its fields.
 struct Time {
     column: Column,
     reading: Reading,
-    /// The column with nanoseconds, if `column` has whole seconds.
+    /// The column with the nanoseconds that belong to whole seconds in `column`, if there is one.
     nanoseconds: Option<Column>,
     has_decimal_commas: bool,
 }
@@ -181,7 +182,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Finds the column of the times, and returns what its name says about them.
+    /// Finds the column with the times, and the format of times that the column's name suggests.
     fn time_column(
         &self,
         names: &[String],
@@ -207,7 +208,7 @@ impl Table {
         Ok(times.into_iter().next())
     }
 
-    /// Decides how the times are read, and adds notes on that.
+    /// Decides the format of the times in `column`, whose name suggests `says`, and adds a note on it for the user.
     fn read_times(
         &mut self,
         column: Column,
@@ -217,7 +218,7 @@ impl Table {
     ) {
         let first = self.first(column.index);
         let says = options.time_unit.map_or(says, Named::In);
-        // What is no time is told where it stands.
+        // If no format fits, the first field that is not a time becomes an error with its line.
         let fallback = Reading::Numbers(options.time_unit.unwrap_or(TimeUnit::S));
         let reading = Reading::new(says, &first, self.has_decimal_commas).unwrap_or(fallback);
         let how = match reading {
@@ -239,12 +240,12 @@ impl Table {
         self.time = Some(time);
     }
 
-    /// Returns the first values of a column.
+    /// Returns the fields of a column in the rows that are examined first.
     fn first(&self, index: usize) -> Vec<&[u8]> {
         self.ahead.iter().filter_map(|record| record.get(index)).map(<[u8]>::trim_ascii).collect()
     }
 
-    /// Goes to the next row; returns false at the end.
+    /// Goes to the next row; returns false at the end of the table.
     fn advance(&mut self) -> Result<bool> {
         let record = self.ahead.pop_front();
         self.was_ahead = record.is_some();
@@ -299,7 +300,7 @@ impl Table {
         Place::spot(&self.file, Spot::Column(self.line(), column.name.clone()))
     }
 
-    /// Returns the line at which the current row begins.
+    /// Returns the line at which the current row begins, counted from 1.
     fn line(&self) -> u64 {
         let record = &self.record;
         if self.was_ahead { line(record) } else { self.rows.line(record) }
@@ -307,7 +308,7 @@ impl Table {
 }
 
 impl Time {
-    /// Reads the time of a row, in ps.
+    /// Reads the time of a row in ps; returns `None` if a field is not a time.
     fn read(&self, record: &ByteRecord) -> Option<i128> {
         let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
         let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;
@@ -360,17 +361,18 @@ pub(super) fn is_missing(field: &[u8]) -> bool {
     WORDS.iter().any(|word| field.eq_ignore_ascii_case(word.as_bytes()))
 }
 
-/// The rows of a table.
+/// The rows of a table, and the lines at which they begin.
 struct Rows {
     reader: Reader<Box<dyn Read>>,
-    /// Whether lines end in CR and LF; the reader counts the LF as part of the next line.
+    /// Whether lines end in CR and LF. If so, the CSV reader counts the LF as part of the next line.
     is_of_windows: bool,
     /// Number of lines above the first of the file.
     above: u64,
 }
 
 impl Rows {
-    /// Continues a table whose first lines are in `start`; counts the comments in the rest.
+    /// Makes a reader of the rows in `start` and of those in `input`. Comment lines are counted in `count`. `above` is the
+    /// number of lines above the first of the file.
     fn new(
         start: Start,
         input: impl Read + 'static,
@@ -379,7 +381,7 @@ impl Rows {
         count: &Rc<Cell<u64>>,
     ) -> Self {
         let is_of_windows = start.is_of_windows();
-        // With it the last line ends as the others do; an empty line is none.
+        // With an end of line appended, the last line ends as all others do; an empty line is not a row.
         let end: &[u8] = if is_of_windows { b"\r\n" } else { b"\n" };
         count.set(start.is_followed_by_comment().into());
         let rest = Comments { input, before: b'\n', count: count.clone() };
@@ -395,14 +397,14 @@ impl Rows {
         Self { reader, is_of_windows, above }
     }
 
-    /// Reads the next row; returns false at the end.
+    /// Reads the next row; returns false at the end of the table.
     fn next(&mut self, record: &mut ByteRecord, file: &str) -> Result<bool> {
         let read = self.reader.read_byte_record(record);
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the line at which the last row begins, counted back from where the reader stands: the row's own position is
-    /// that of the comments before it.
+    /// Returns the line at which `record`, the row read last, begins. The line is counted back from the reader's
+    /// position, because the record's own position is that of the comments before it.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
@@ -410,7 +412,7 @@ impl Rows {
     }
 }
 
-/// Counts the lines that begin with `#` while they are read.
+/// A reader that counts the lines beginning with `#` as they are read through it.
 struct Comments<R> {
     input: R,
     /// The last byte read.
@@ -431,7 +433,7 @@ impl<R: Read> Read for Comments<R> {
     }
 }
 
-/// Reads the first rows; each has the line at which it begins as its position.
+/// Reads the rows that are examined first. The position of each record is set to the line at which its row begins.
 fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     let mut records = VecDeque::new();
     let mut record = ByteRecord::new();
@@ -444,7 +446,7 @@ fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     Ok(records)
 }
 
-/// Returns the line of a row that [`ahead`] has read.
+/// Returns the line at which a row begins, for a row that [`ahead`] has read.
 fn line(record: &ByteRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
 }
@@ -458,7 +460,7 @@ fn unreadable(error: csv::Error, line: u64) -> TableKind {
     }
 }
 
-/// Finds the column of nanoseconds that ROS writes beside whole seconds.
+/// Finds the column of nanoseconds that ROS writes beside a column of whole seconds, such as `nsecs` beside `secs`.
 fn nanoseconds(seconds: &Column, names: &[String]) -> Option<Column> {
     let lower = seconds.name.to_lowercase();
     let stem = lower.strip_suffix("secs").or_else(|| lower.strip_suffix("sec"))?;
@@ -499,7 +501,7 @@ fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Colu
     signals.map(|(index, name)| Column { index, name: name.clone() })
 }
 
-/// Lists the first names, and how many more there are: a table may have a million columns.
+/// Lists the first 20 names and the number of the others, because a table may have a million columns.
 pub(super) fn first_of(names: &[String]) -> String {
     const MOST: usize = 20;
     let first = names.get(..MOST).unwrap_or(names).join(", ");
@@ -509,7 +511,7 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// Returns the only column that holds neither times nor counts.
+/// Returns the only column that holds neither times nor counts; an error if there is none or several.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {

@@ -1,5 +1,5 @@
-//! Finds the header of a table: its first line, or a comment above its first row, as `EuRoC`, TUM-VI and `NumPy` write
-//! it.
+//! Finds the header of a table: its first line, or a comment above its first row, where `EuRoC`, TUM-VI and `NumPy`
+//! write it.
 
 use super::csv::is_missing;
 use super::text::name;
@@ -10,7 +10,7 @@ use std::io::{self, BufRead, Read};
 
 /// The comments at the start of a table, and the first line after them.
 pub(super) struct Start {
-    /// The bytes of the comments and of that line, as in the file.
+    /// The bytes of the comments and of the line after them, as in the file.
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
@@ -25,7 +25,7 @@ pub(super) struct Header {
 }
 
 impl Start {
-    /// Reads lines up to the first that is neither a comment nor empty, and the line after it.
+    /// Reads lines up to and including the first that is neither a comment nor empty, and the line after it.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read.
@@ -54,7 +54,7 @@ impl Start {
         self.text[self.next..].starts_with(b"#")
     }
 
-    /// Returns the delimiter that separates most names, if the first line after the comments is the header.
+    /// Returns the delimiter that occurs most often in the first line after the comments.
     pub(super) fn delimiter(&self) -> u8 {
         let (header, row) = (&self.text[self.line..self.next], &self.text[self.next..]);
         match delimiter(header) {
@@ -64,7 +64,8 @@ impl Start {
         }
     }
 
-    /// Returns the last comment that has as many names as the line below has columns, if that line contains a number.
+    /// Returns the header if a comment holds it: the last comment that has as many fields as the line after the
+    /// comments, if that line contains a number and the comment none. `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
@@ -87,7 +88,7 @@ pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let is_number = |field: &[u8]| is_number(field, delimiter);
     let is_name = |(place, field): (usize, &[u8])| {
         let below = rows.get(1).and_then(|row| row.get(place));
-        // pandas leaves the name of an index empty, which stands first.
+        // pandas writes an index as the first column, and leaves its name empty.
         let is_text = if is_missing(field.trim_ascii()) { place == 0 } else { !is_number(field) };
         is_text && below.is_some_and(is_number)
     };
@@ -104,7 +105,7 @@ fn is_aligned(header: &[u8], row: &[u8]) -> bool {
     names.len() > 1 && names.len() == row.len() && row.iter().all(|own| is_number(own, b' '))
 }
 
-/// Splits a line into fields.
+/// Splits a line into the fields of a CSV record.
 fn split(line: &[u8], delimiter: u8) -> ByteRecord {
     if delimiter == b' ' {
         let words = line.split(|byte| byte.is_ascii_whitespace());
@@ -113,12 +114,12 @@ fn split(line: &[u8], delimiter: u8) -> ByteRecord {
     let mut record = ByteRecord::new();
     let mut builder = ReaderBuilder::new();
     let mut reader = builder.has_headers(false).delimiter(delimiter).from_reader(line.trim_ascii());
-    // Memory is always read, and one line has no other length than the first.
+    // Reading from memory cannot fail, and a single record has no record before it to differ from in length.
     let _ = reader.read_byte_record(&mut record);
     record
 }
 
-/// Finds the delimiter that separates most names of a header; `None` if there is none of those that are sure.
+/// Returns the delimiter that occurs most often in a line, outside of quotes; `None` if there is none but blanks.
 fn delimiter(header: &[u8]) -> Option<u8> {
     let mut is_quoted = false;
     let mut counts = [(b',', 0), (b';', 0), (b'\t', 0), (b'|', 0)];
@@ -128,7 +129,7 @@ fn delimiter(header: &[u8]) -> Option<u8> {
             *count += u32::from(!is_quoted && byte == delimiter);
         }
     }
-    // The comma first among equals.
+    // The comma comes last in reverse, and `max_by_key` returns the last of equals.
     let most = counts.into_iter().rev().max_by_key(|&(_, count)| count);
     most.filter(|&(_, count)| count > 0).map(|(found, _)| found)
 }

@@ -1,11 +1,11 @@
-//! Reasons that a recording cannot be read.
+//! Reasons for which a recording cannot be read.
 
 use crate::error::room;
 use catalogue::kinds;
 use flight_logs::Rest;
 
 kinds! {
-    /// The reason that a table of samples cannot be read.
+    /// The reason for which a table of samples cannot be read.
     pub enum TableKind by spell of subject {
         Empty => ("empty; a CSV table starts with a header"),
         NoSamples => ("no samples below the header"),
@@ -44,7 +44,7 @@ kinds! {
 room!(TableKind, Table);
 
 kinds! {
-    /// The reason that a channel of a flight log cannot be read.
+    /// The reason for which a channel of a flight log cannot be read.
     pub enum LogKind by spell of subject {
         Unread { error: flight_logs::Error } => ("{error}{}", match error.kind.rest() {
             None => std::error::Error::source(error).map_or(String::new(), |why| format!(": {why}")),

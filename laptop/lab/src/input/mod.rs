@@ -1,4 +1,4 @@
-//! Reads recordings in chunks: channels of a CSV table or of a log.
+//! Reads recordings in chunks: columns of a CSV table, or fields of a flight log.
 
 mod clock;
 mod csv;
@@ -31,20 +31,20 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 pub use time::TimeUnit;
 
-/// The name that stands for all columns except times and counts.
+/// The name that stands for all columns except those of times and counts.
 const ALL: &str = "all";
 
-/// Number of samples in a chunk.
+/// Maximum number of samples in a chunk.
 pub const CHUNK: usize = 8192;
 
-/// A recording, and how to read it.
+/// The file of a recording, and options for reading it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
     /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`,
     /// telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed. `-` reads a table from
     /// standard input.
     pub input: PathBuf,
-    /// The channel to read.
+    /// The channels to read.
     pub channel: ChannelOptions,
 }
 
@@ -56,35 +56,36 @@ impl Deref for InputOptions {
     }
 }
 
-/// The channel of a recording, and how to read it.
+/// The chosen channels of a recording, and options for reading them.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
-    /// Several columns at once, separated by commas: `gyro_x,gyro_y,gyro_z`, or `all`; for a log `TOPIC.FIELD`.
+    /// Columns of a CSV table, such as `gyro_x`, or `all`; for a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
-    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default a table's is found
-    /// by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a ROS log's is the time at which a
-    /// message was recorded.
+    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
+    /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a log's messages have the time
+    /// at which they were recorded.
     pub time: Option<String>,
     /// Unit of the time column; by default taken from its name, such as `time (us)` or `stamp_ns`, or from its values.
     pub time_unit: Option<TimeUnit>,
     /// Delimiter of columns: `,` `;` `|` `tab` `space`; by default found in the header.
     pub delimiter: Option<Delimiter>,
-    /// Topic of a log; `:1` after it means the second instance of a sensor.
+    /// Topic of a log; the suffix `:1` stands for the second instance of a sensor.
     pub topic: Option<String>,
-    /// Fields of that topic, such as `gyro_rad[0]` or `angular_velocity.x`.
+    /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,
-    /// Several fields at once, separated by commas: `gyro_rad[0],gyro_rad[1]`.
+    /// Further fields of the topic.
     pub fields: Vec<String>,
     /// Samples a second, for a recording without times.
     pub rate: Option<f64>,
-    /// Number of usual steps above which a step in time is reported as a gap.
+    /// Longest step in time that is not yet a gap, in usual steps.
     pub gap: f64,
-    /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise they are
-    /// an error.
+    /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
+    /// row is an error.
     pub skip_non_finite: bool,
-    /// Whether a log that is cut short or damaged is read as far as it is whole, and a table up to its last whole line.
+    /// Whether a log that is cut short or damaged is read without its damaged parts, and a table up to its last whole
+    /// line. Otherwise, damage is an error.
     pub accept_cut: bool,
 }
 
@@ -124,34 +125,34 @@ impl FromStr for Delimiter {
     }
 }
 
-/// Consecutive samples, with their times if the recording has any.
+/// Consecutive samples of all channels, with their times if the recording has any.
 #[derive(Debug, Default)]
 pub struct Chunk {
-    /// The samples of each channel, which may be not finite; all channels have the same number.
+    /// The samples of each channel, NaN or infinite if not finite in the recording. All channels have the same number.
     pub columns: Vec<Vec<f64>>,
-    /// Their times in µs: one for each sample, or none at all.
+    /// The samples' times in µs: one for each row, or none if the recording has no times.
     pub times: Vec<i64>,
 }
 
 impl Chunk {
-    /// Returns the number of samples in a channel.
+    /// Returns the number of samples in each channel.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }
 
-    /// Returns whether there are no samples.
+    /// Returns whether the chunk has no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Removes all samples, and sets the number of channels.
+    /// Removes all samples and times, and sets the number of channels.
     fn clear(&mut self, channels: usize) {
         self.columns.resize(channels, Vec::new());
         self.columns.iter_mut().for_each(Vec::clear);
         self.times.clear();
     }
 
-    /// Moves the samples of another chunk to the end of this one.
+    /// Moves the samples and times of `other` to the end of this chunk.
     pub fn append(&mut self, other: &mut Self) {
         self.columns.resize(other.columns.len(), Vec::new());
         for (column, more) in self.columns.iter_mut().zip(&mut other.columns) {
@@ -171,7 +172,7 @@ impl Chunk {
         rows
     }
 
-    /// Returns the values of the rows that are marked true, by channel.
+    /// Returns, for each channel, its values in the rows that are marked true.
     pub fn kept(&self, rows: &[bool]) -> Vec<Vec<f64>> {
         let kept = |column: &Vec<f64>| {
             column.iter().zip(rows).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
@@ -182,10 +183,10 @@ impl Chunk {
 
 /// A recording that is being read.
 pub trait Source {
-    /// Replaces the chunk's content with the next samples; it stays empty at the end.
+    /// Replaces the chunk's content with the next samples. After the last sample, the chunk is empty.
     ///
     /// # Errors
-    /// Returns an error that names what cannot be read, and its place.
+    /// Returns an error, with its place, if a sample cannot be read.
     fn next(&mut self, chunk: &mut Chunk) -> Result<()>;
 
     /// Reads all remaining samples.
@@ -203,10 +204,10 @@ pub trait Source {
         }
     }
 
-    /// Returns the channels' names, which are those of columns or fields and may contain commas.
+    /// Returns the channels' names: those of columns or fields, which may contain commas.
     fn names(&self) -> Vec<&str>;
 
-    /// Returns the channels' origin, as keys and values for the header of a file of spikes.
+    /// Returns where the channels come from, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
 
     /// Returns notes for the user on how the recording is read, a line each.
@@ -214,10 +215,10 @@ pub trait Source {
 }
 
 impl InputOptions {
-    /// Opens the recording at its start. The times of a clock that wraps around are continued.
+    /// Opens the recording at its start. Times continue to rise where the recorder's clock wraps around.
     ///
     /// # Errors
-    /// Returns an error if the file, column, topic or field is missing, or if it is empty.
+    /// Returns an error if the file, column, topic or field is missing, or if the file is empty.
     pub fn open(&self) -> Result<Box<dyn Source>> {
         Ok(Box::new(rollover::Unwrapped::new(self.open_as_is()?)))
     }
@@ -244,7 +245,7 @@ impl InputOptions {
         Ok(Box::new(self.open_table()?))
     }
 
-    /// Opens a table.
+    /// Opens the recording as a CSV table.
     fn open_table(&self) -> Result<csv::Table> {
         let of_logs = [
             ("topic", self.topic.is_some()),
@@ -267,7 +268,8 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Splits columns of the form `TOPIC.FIELD` into their topic, which must be the same, and the fields.
+    /// Returns the options with columns such as `TOPIC.FIELD` split into their common topic and fields; `None` if a
+    /// column has no such form, if the topics differ, or if a topic or field is chosen already.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
@@ -285,7 +287,7 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// Returns these options, with all columns of a table if none are chosen.
+    /// Returns these options, with all columns of a table chosen if no column is.
     ///
     /// # Errors
     /// Returns an error if the file cannot be opened.
@@ -319,10 +321,10 @@ impl InputOptions {
         self.field.iter().chain(&self.fields).map(String::as_str)
     }
 
-    /// Checks that only one channel is chosen.
+    /// Checks that at most one channel is chosen; `command` is the command's name in the error.
     ///
     /// # Errors
-    /// Returns an error if several are.
+    /// Returns an error if several channels are chosen.
     pub fn single(&self, command: &str) -> Result<()> {
         match self.columns().count().max(self.fields().count()) {
             _ if self.columns().any(|name| name == ALL) => {
@@ -350,7 +352,7 @@ impl InputOptions {
 /// Parses a number that must be above 0 and finite.
 ///
 /// # Errors
-/// Returns an error if the text is not such a number.
+/// Returns an error if the text is not a number, or if the number is not above 0 and finite.
 pub fn above_zero(text: &str) -> Result<f64> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),

@@ -1,6 +1,7 @@
 //! Suggestions for a misspelt name.
 
-/// Lists the names that resemble the one asked for, or all if they are few: ` (did you mean ..?)`.
+/// Returns the words that follow a misspelt name in a message: all names if they are at most eight, or else the three
+/// that resemble `asked` most and the number of all.
 pub fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     const FEW: usize = 8;
     const MOST: usize = 3;

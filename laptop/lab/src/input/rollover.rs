@@ -4,28 +4,32 @@ use super::{Chunk, Source};
 use crate::Result;
 use catalogue::run::Words;
 
-/// Range of a 32-bit clock in µs: of one that counts µs, and of one that counts ms.
+/// Ranges of 32-bit clocks, in µs: of a clock that counts µs, and of one that counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Longest step over which a clock may wrap around, in µs: a second, or four times the step before if that is longer.
+/// Longest step over which a clock may wrap around, in µs, unless [`STEPS`] allows a longer one.
 const SECOND: i64 = 1_000_000;
+/// Longest step over which a clock may wrap around, in multiples of the latest step forward, if that is above
+/// [`SECOND`].
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.
 #[derive(Debug, Default)]
 pub struct Rollover {
     previous: Option<i64>,
-    /// The last step forward.
+    /// The latest step forward, in µs.
     step: i64,
     samples: u64,
-    /// How often the clock wrapped around; `range` is what it lost each time, `first` the sample before the first wrap.
+    /// Number of times that the clock wrapped around.
     count: i64,
+    /// Range of the clock in µs, by which each wrap sets it back.
     range: i64,
+    /// Index of the sample before the first wrap.
     first: u64,
 }
 
 impl Rollover {
-    /// Returns the time of the next sample, in µs, from what the clock shows.
+    /// Returns the continued time of the next sample, in µs. `shown` is the time on the 32-bit clock, in µs.
     pub fn take(&mut self, shown: i64) -> i64 {
         let previous = self.previous.unwrap_or(shown);
         let step = shown.saturating_sub(previous);
@@ -45,7 +49,7 @@ impl Rollover {
                 self.count += 1;
                 self.range = range;
             }
-            // A sample from before it ran over, out of order.
+            // A sample from before the wrap, out of order.
             Some(_) if self.count > 0 => self.count -= 1,
             _ if step > 0 => self.step = step,
             _ => {}

@@ -1,4 +1,4 @@
-//! Opens tables that are compressed, or in another encoding than UTF-8.
+//! Opens tables as text, also if they are compressed or in UTF-16.
 
 use super::TableKind;
 use crate::Result;
@@ -6,7 +6,7 @@ use crate::error::At;
 use flight_logs::Packing;
 use std::io::{self, Cursor, Read};
 
-/// Number of bytes from which the kind of a file is recognised.
+/// Number of bytes at the start of a file by which its kind is recognised.
 const HEAD: usize = 16;
 
 const PARQUET: &str = if cfg!(feature = "datasets") {
@@ -15,7 +15,8 @@ const PARQUET: &str = if cfg!(feature = "datasets") {
     "a Parquet file; export it as CSV"
 };
 
-/// Files that are not tables: their first bytes, the name of the kind, and how to export a table from it.
+/// Kinds of files that are not tables: their first bytes, and words for the user that name the kind and suggest what to
+/// do.
 const OTHERS: [(&[u8], &str); 12] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
@@ -31,7 +32,8 @@ const OTHERS: [(&[u8], &str); 12] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// Reads a file as text in UTF-8, or in another encoding that extends ASCII.
+/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8; text in
+/// other encodings that extend ASCII passes unchanged. `name` is the file's name in errors.
 ///
 /// # Errors
 /// Returns an error if the file is not text.
@@ -55,7 +57,7 @@ pub(super) fn unpacked(
     Ok((head, Box::new(input)))
 }
 
-/// Decodes a name in a table, from UTF-8 or else from Latin-1.
+/// Decodes a name in a table from UTF-8, or from Latin-1 if the bytes are not UTF-8.
 pub(super) fn name(bytes: &[u8]) -> String {
     match str::from_utf8(bytes) {
         Ok(text) => text.trim().to_owned(),
@@ -63,8 +65,8 @@ pub(super) fn name(bytes: &[u8]) -> String {
     }
 }
 
-/// Formats bytes for a message: bytes that are not UTF-8 and control characters are escaped, and only the first of many
-/// are shown.
+/// Formats bytes for a message. Bytes that are not UTF-8 and control characters are escaped; a long text is cut after
+/// 60 characters.
 pub fn shown(bytes: &[u8]) -> String {
     const MOST: usize = 60;
     let mut text = String::new();
@@ -103,7 +105,7 @@ pub(super) fn decode(
         _ => {}
     }
     for (start, what) in OTHERS {
-        // Long names are cut to what was looked at.
+        // Only `HEAD` bytes of the file are known, fewer than some of these starts have.
         if head.starts_with(&start[..start.len().min(HEAD)]) {
             return Err(TableKind::NoTable { what }.at(name));
         }
@@ -114,7 +116,7 @@ pub(super) fn decode(
     Ok(Box::new(input))
 }
 
-/// Reads the first bytes, and returns a reader that starts with them again.
+/// Reads the first bytes, and returns them and a reader that begins with them again.
 fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
     let mut head = Vec::new();
     input.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
@@ -144,8 +146,8 @@ mod encoding {
     }
 }
 
-/// Decodes Latin-1 only. A browser decodes other files before it lends them; the tables of all encodings would make up a
-/// tenth of the page.
+/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them;
+/// the tables of all encodings would make up a tenth of the page.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

@@ -1,4 +1,4 @@
-//! Recognises columns of times and their unit, by their names and values.
+//! Recognises columns of times and their unit, by the columns' names and values.
 
 use super::TableKind;
 use crate::Error;
@@ -6,7 +6,7 @@ use speedate::{DateTime, Duration};
 use std::fmt;
 use std::str::FromStr;
 
-/// The length of a µs in ps.
+/// Number of picoseconds in a microsecond.
 const MICROSECOND: i128 = 1_000_000;
 
 /// A unit of time.
@@ -23,12 +23,12 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// The length of one unit in µs.
+    /// Returns the length of one unit in µs.
     pub(super) fn microseconds(self) -> f64 {
         self.picoseconds() as f64 / MICROSECOND as f64
     }
 
-    /// The length of one unit in ps.
+    /// Returns the length of one unit in ps.
     fn picoseconds(self) -> i128 {
         match self {
             Self::S => MICROSECOND * 1_000_000,
@@ -72,23 +72,23 @@ impl fmt::Display for TimeUnit {
     }
 }
 
-/// What a column's name says about the times in it.
+/// Information in a column's name about the times in the column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Named {
-    /// The times are in this unit.
+    /// The times are in the given unit.
     In(TimeUnit),
-    /// The values decide: whole numbers are in this unit, unless they count from 1970.
+    /// The values decide the unit. Whole numbers too small to count from 1970 are in the given unit.
     Whole(TimeUnit),
-    /// The column has times only if it holds dates.
+    /// The column has times only if its values are dates.
     Dates,
 }
 
-/// Interprets a column's name as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas; `None` if it does not name
-/// a time.
+/// Interprets a column's name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. Returns `None` if the
+/// name is not that of a time.
 pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
-        // PX4's own exports count µs from the start, those of others seconds from 1970.
+        // PX4's own exports count µs from the start; other programs count seconds from 1970.
         "timestamp" => return Some(Named::Whole(TimeUnit::Us)),
         "timeus" => return Some(Named::In(TimeUnit::Us)),
         "timems" => return Some(Named::In(TimeUnit::Ms)),
@@ -96,11 +96,11 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
         "__time" => return Some(Named::In(TimeUnit::S)),
         // `rostopic echo -p`, `rosbag`.
         "%time" | "rosbagtimestamp" | "field.header.stamp" => return Some(Named::In(TimeUnit::Ns)),
-        // An index of pandas.
+        // The index of a pandas table.
         "" | "unnamed: 0" | "index" | "date" | "datetime" | "date_time" => {
             return Some(Named::Dates);
         }
-        // Too short to mean but one thing.
+        // A single letter, which may mean many other things.
         "s" => return None,
         _ => {}
     }
@@ -114,7 +114,8 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
-/// Interprets the name of a column that the user chose as the time.
+/// Interprets the name of a column that the user chose as the time. If the name has no unit, it is seconds, unless the
+/// values say otherwise.
 pub(super) fn of_given(name: &str) -> Named {
     match of_name(name) {
         Some(named @ (Named::In(_) | Named::Whole(_))) => named,
@@ -142,7 +143,7 @@ fn is_time(name: &str) -> bool {
     )
 }
 
-/// Splits the unit off a name: `time (us)`, `time [us]`, `time_us`, `time us`, `stamp.secs`.
+/// Splits the last word, which may be a unit, off a name: `time (us)`, `time [us]`, `time_us`, `time us`, `stamp.secs`.
 fn last_word(name: &str) -> Option<(&str, &str)> {
     let bracketed = |open, close| {
         let (base, word) = name.strip_suffix(close)?.rsplit_once(open)?;
@@ -153,10 +154,10 @@ fn last_word(name: &str) -> Option<(&str, &str)> {
         .or_else(|| name.rsplit_once(['_', ' ', '.', '-', ':']))
 }
 
-/// How a column's values are read as times.
+/// The format of a column's times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// Numbers in this unit.
+    /// Numbers in the given unit.
     Numbers(TimeUnit),
     /// Dates with a time, such as `2024-05-01 12:00:00.005`.
     Dates,
@@ -165,7 +166,8 @@ pub(super) enum Reading {
 }
 
 impl Reading {
-    /// Decides by the first values what the name leaves open; `None` if they are not times.
+    /// Finds the format of a column's times by the information in its name and by its first fields. Returns `None` if
+    /// the fields are not times.
     pub(super) fn new(named: Named, first: &[&[u8]], has_commas: bool) -> Option<Self> {
         let numbers: Option<Vec<f64>> =
             first.iter().map(|field| number(field, has_commas)).collect();
@@ -182,7 +184,7 @@ impl Reading {
         }
     }
 
-    /// Reads a time in ps; numbers may have decimal commas.
+    /// Reads a time in ps; returns `None` if the field is not a time. Numbers may have a decimal comma if `has_commas`.
     pub(super) fn read(self, field: &[u8], has_commas: bool) -> Option<i128> {
         let seconds = |whole: i64| i128::from(whole) * TimeUnit::S.picoseconds();
         match self {
@@ -203,16 +205,16 @@ impl Reading {
     }
 }
 
-/// Converts a time from ps to whole µs, the resolution of all recordings; halves are rounded up.
+/// Converts a time from ps to whole µs, the resolution of all recordings, rounding halves up.
 pub(super) fn microseconds(picoseconds: i128) -> i64 {
     let rounded = picoseconds.saturating_add(MICROSECOND / 2).div_euclid(MICROSECOND);
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// Parses digits with or without a decimal point, in ps. All digits of a time stamp count, while a float keeps only 15.
-/// Returns `None` if there is an exponent or any other character.
+/// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp count, where a float
+/// keeps only 15. Returns `None` if there is an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
-    /// Maximum number of digits that fit.
+    /// Maximum number of digits before the decimal point, which keeps the sum within 128 bits.
     const MOST: usize = 24;
     let (is_negative, digits) = match field {
         [b'-', digits @ ..] => (true, digits),
@@ -244,11 +246,12 @@ pub(super) fn number(field: &[u8], has_commas: bool) -> Option<f64> {
 
 fn text(field: &[u8]) -> Option<&str> {
     let text = str::from_utf8(field).ok()?.trim();
-    // A number alone would pass for seconds.
+    // Without the colon, a plain number would be read as seconds.
     text.contains(':').then_some(text)
 }
 
-/// Guesses the unit: times since 1970 are recognised by their size; others are in seconds if they have fractions.
+/// Guesses the unit of numbers: large ones count from 1970, in a unit that shows in their size; fractions are in
+/// seconds; all others are in `whole`.
 fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     let size = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     match size {
@@ -260,7 +263,8 @@ fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     }
 }
 
-/// Returns a note if the first times, in ps, have steps that no recording of a flight has.
+/// Returns a note if the first times, in ps, are all equal, or if their usual step is shorter or longer than any flight
+/// recorder's.
 pub(super) fn implausible(times: &[i128]) -> Option<String> {
     const SHORTEST: f64 = 1e-3;
     const LONGEST: f64 = 60e6;
@@ -282,7 +286,8 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// The names in the usual exports are tested with the program.
+    /// A name is that of a time if it ends in a unit and the rest means a time. The names in common exports are tested
+    /// with the command-line program.
     #[test]
     fn names_that_are_no_times() {
         let is = |unit| Some(Named::In(unit));
@@ -329,7 +334,8 @@ mod tests {
         assert_eq!(microseconds(duration), 86_400_005_000);
     }
 
-    /// As floats, the first of these would be 48 ns later, on the other side of half a µs.
+    /// All digits of a time stamp count. As a float, 1520530308199447453 ns would be 48 ns later, and be rounded to the
+    /// next µs.
     #[test]
     fn all_digits_of_a_stamp_count() {
         for (text, unit, commas, time) in [

@@ -1,23 +1,23 @@
-//! Summarises times that come one by one: the clock, and how often it wrapped around.
+//! Summarises times that come one by one: length, rate and gaps, and wraps of the recorder's clock.
 
 use super::{CHUNK, Clock, Rollover};
 
-/// Times of a recording that is read once, without storing it.
+/// Summary of the times of a recording that is read once, without storing it.
 pub(super) struct Times {
     gap: f64,
-    /// The first times, from which the usual step is taken.
+    /// The first times, by which the usual step is found.
     first: Vec<i64>,
     clock: Option<Clock>,
     rollover: Rollover,
 }
 
 impl Times {
-    /// Starts without times; steps above `gap` usual ones count as gaps.
+    /// Starts without times. A step above `gap` usual steps will count as a gap.
     pub(super) fn new(gap: f64) -> Self {
         Self { gap, first: Vec::new(), clock: None, rollover: Rollover::default() }
     }
 
-    /// Takes the next time, in µs.
+    /// Adds the next time in µs, as shown on the recorder's clock.
     pub(super) fn observe(&mut self, time: i64) {
         let time = self.rollover.take(time);
         if let Some(clock) = &mut self.clock {
@@ -37,7 +37,7 @@ impl Times {
         clock
     }
 
-    /// Returns the clock with length, rate and gaps, and how often it wrapped around.
+    /// Returns the length, rate and gaps of the times, and how often the recorder's clock wrapped around.
     pub(super) fn finish(mut self) -> (Clock, Rollover) {
         let clock = self.clock.take().unwrap_or_else(|| self.started());
         (clock, self.rollover)

@@ -1,119 +1,125 @@
-//! Brings a trained network onto a chip, and compares it there with the original.
+//! Brings a trained network onto a chip: quantises the network, runs it on the chip's model, and compares it with the
+//! original.
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Number of steps over which outputs are counted.
+/// Number of time steps in a window, over which the spikes of outputs are counted for comparison.
 pub const WINDOW: usize = 20;
 
-/// A network, and the recording with which it is brought onto the chip.
+/// A network to bring onto a chip, and the recordings on which it is tuned and tested.
 pub struct Request<'a> {
-    /// The chip.
+    /// The chip to bring the network onto.
     pub chip: &'a dyn Chip,
-    /// The network.
+    /// The network in double precision.
     pub trained: &'a Trained,
-    /// The spikes on which the chip's numbers are tuned, by step.
+    /// Input spikes of the recording on which the chip's parameters are tuned, by step.
     pub tuned: &'a Trains,
-    /// Spikes on which the result is only tested.
+    /// A recording on which the result is only tested.
     pub held_out: Option<HeldOut<'a>>,
-    /// Spikes of the outputs in the training framework: on the recording, and on the one held out.
-    pub own: Option<(&'a Trains, &'a Trains)>,
-    /// When neurons compare with their thresholds; `None` chooses the way that agrees better with the original.
+    /// The outputs' spikes as the training framework computed them, by step: for the recording tuned on, and for the
+    /// one held out.
+    pub framework: Option<(&'a Trains, &'a Trains)>,
+    /// When neurons compare with their thresholds. `None` tries both ways and chooses the one that agrees better with
+    /// the original.
     pub compare: Option<Compare>,
-    /// Called with the number of parts of the search that are done, and the number in all.
+    /// Called during the search, with the number of finished parts and the total number of parts.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// A recording on which nothing is tuned.
+/// A recording that is only for testing.
 #[derive(Clone, Copy)]
 pub struct HeldOut<'a> {
-    /// The spikes of all its steps.
+    /// Input spikes of all steps, including those before `from`.
     pub steps: &'a Trains,
-    /// First step that counts. The steps before it were tuned on, and are only run to reach the state that follows
-    /// them.
+    /// Index of the first step that counts. The steps before it were tuned on; they are run only to reach the state
+    /// that follows them.
     pub from: usize,
 }
 
-/// A network on a chip, and the accuracy lost by quantising.
+/// The result of bringing a network onto a chip, and the accuracy that quantising costs.
 pub struct Brought {
-    /// The network.
+    /// The quantised network.
     pub network: Box<dyn OnChip>,
-    /// The figures on the recording on which it is tuned.
+    /// Comparison with the original on the recording tuned on.
     pub tuned: Figures,
-    /// The figures on the recording that was held out.
+    /// Comparison with the original on the recording held out.
     pub held_out: Option<Figures>,
-    /// The cost of each part of the chip's arithmetic by itself. The network runs in double precision except for that
-    /// part; the number is the share of active steps in which the same outputs fire as without it. Measured on the
-    /// recording held out, or on the one tuned on if there is none.
+    /// The effect of each part of the chip's arithmetic alone: the network runs in double precision except for that
+    /// part. The number is the share of active steps in which the same outputs fire as in full double precision, on the
+    /// recording held out, or on the one tuned on if none is held out.
     pub costs: Vec<(Cost, f64)>,
-    /// Share of active steps in which double precision fires as the training framework did.
+    /// Share of active steps in which double precision fires as the training framework did; `None` if the framework's
+    /// spikes are not given.
     pub reading: Option<f64>,
 }
 
-/// Comparison of the network in double precision with the chip's model.
+/// Comparison of a network in double precision with the same network on the chip's model.
 pub struct Figures {
-    /// The figures of each layer.
+    /// The comparison of each layer.
     pub layers: Vec<LayerFigures>,
-    /// Number of steps.
+    /// Number of steps compared.
     pub steps: usize,
-    /// Number of steps in which the same outputs fire.
+    /// Number of steps in which the same outputs fire in both.
     pub agreeing: usize,
     /// Number of active steps: those in which an output fires, in double precision or on the chip.
     pub active: usize,
     /// Number of active steps in which the same outputs fire in both.
     pub active_agreeing: usize,
-    /// Number of windows of [`WINDOW`] steps in which an output fires.
+    /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
     pub windows: usize,
-    /// Number of windows in which the same outputs fire most often.
+    /// Number of those windows in which the same outputs fire most often in both.
     pub windows_agreeing: usize,
-    /// Mean number of the chip's clocks in a step.
+    /// Mean number of the chip's clock cycles in a step.
     pub mean_clocks: f64,
-    /// Number of the chip's clocks in the longest step.
+    /// Number of the chip's clock cycles in the longest step.
     pub most_clocks: u64,
-    /// Number of spikes lost on their way into the chip.
+    /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
-    /// Comparison of the outputs that never fire.
+    /// Comparison of the outputs' potentials, for networks whose outputs never fire.
     pub potentials: Option<PotentialFigures>,
 }
 
-/// Comparison of the outputs' potentials in double precision with the chip's model.
+/// Comparison of the outputs' potentials in double precision with those on the chip's model.
 pub struct PotentialFigures {
-    /// Name in the file.
+    /// Name of the output layer in the network's file.
     pub name: String,
     /// Number of outputs.
     pub outputs: usize,
-    /// Number of weights that exceeded the chip's range.
+    /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
-    /// Root mean square of the potentials in double precision.
+    /// Root mean square of the potentials in double precision, in the units of the training.
     pub size: f64,
-    /// Root mean square of the chip's deviation from them.
+    /// Root mean square of the difference between the chip's potentials and those in double precision.
     pub error: f64,
 }
 
-/// Comparison of a layer in double precision with the chip's model.
+/// Comparison of a layer in double precision with the same layer on the chip's model.
 pub struct LayerFigures {
-    /// Name in the file.
+    /// Name of the layer in the network's file.
     pub name: String,
     /// Number of neurons.
     pub neurons: usize,
-    /// Number of weights that exceeded the chip's range.
+    /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
-    /// Number of spikes in double precision.
+    /// Number of spikes in double precision, in all steps.
     pub spikes: usize,
-    /// Number of spikes on the chip.
+    /// Number of spikes on the chip, in all steps.
     pub on_chip: usize,
-    /// Squared distance of van Rossum, summed over all neurons.
+    /// Squared van Rossum distance between the layer's spikes in double precision and on the chip, summed over all
+    /// neurons.
     pub distance: f64,
 }
 
-/// Quantises the network, and runs it on the chip's model.
+/// Quantises the network for the chip, runs it on the chip's model, and compares it with the original.
 ///
 /// # Errors
-/// Returns an error if the network does not fit, or if the chip's model refuses a call.
+/// Returns an error if the network does not fit the chip, if the framework's spikes do not fit the network, or if the
+/// chip's model refuses a call.
 pub fn bring(request: &Request) -> Result<Brought> {
-    let Request { chip, trained, tuned, held_out, own, compare, progress } = *request;
+    let Request { chip, trained, tuned, held_out, framework: own, compare, progress } = *request;
     let mut original = Original::of(trained, tuned);
     let mut other = held_out.map(|held_out| Original::of(trained, held_out.steps));
     let from = held_out.map_or(0, |held_out| held_out.from);
@@ -142,7 +148,8 @@ pub fn bring(request: &Request) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs, reading })
 }
 
-/// Returns the share of steps with the same spikes in both trains, of the steps in which either has a spike.
+/// Returns, of the steps in which either train has a spike, the share in which both have the same. `None` if no step
+/// has a spike.
 fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     let active = one.iter().zip(other).filter(|(one, other)| !one.is_empty() || !other.is_empty());
     let (active, same) = active.fold((0, 0), |(active, same), (one, other)| {
@@ -152,19 +159,19 @@ fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     (active > 0).then(|| f64::from(same as u32) / f64::from(active))
 }
 
-/// A network in double precision: its layers, and the spikes and potentials of a run.
+/// A network in double precision: its layers, and the spikes and potentials of one run.
 pub(super) struct Original {
-    /// Name and number of neurons of each layer that fires.
+    /// Name and number of neurons of each layer whose neurons fire.
     pub layers: Vec<(String, usize)>,
-    /// Name and number of the outputs that never fire.
+    /// Name and number of the outputs, if they never fire.
     pub readout: Option<(String, usize)>,
     pub fired: Vec<Trains>,
-    /// The outputs' potentials, for each step.
+    /// The outputs' potentials, by step; compared only if the outputs never fire.
     pub potentials: Vec<Vec<f64>>,
 }
 
 impl Original {
-    /// Returns the run without the steps before `from`.
+    /// Returns a copy without the steps before `from`.
     fn behind(&self, from: usize) -> Self {
         Self {
             layers: self.layers.clone(),
@@ -174,7 +181,10 @@ impl Original {
         }
     }
 
-    /// Replaces the outputs' spikes by those in the training framework.
+    /// Replaces the spikes of the last layer by those that the training framework computed.
+    ///
+    /// # Errors
+    /// Returns an error if the numbers of steps or outputs differ.
     fn fire(&mut self, own: &Trains) -> Result<()> {
         if let (None, Some(last)) = (&self.readout, self.fired.last_mut()) {
             let (steps, given) = (last.len(), own.len());
@@ -208,7 +218,7 @@ impl Original {
     }
 }
 
-/// Runs the quantised network, and compares it with the original from step `from` on.
+/// Runs the quantised network on the chip's model, and compares it with the original from step `from` on.
 pub(super) fn figures(
     original: &Original,
     network: &dyn OnChip,
@@ -259,7 +269,7 @@ pub(super) fn figures(
                     .map(|(a, b)| a - b),
             ),
         });
-        // Of one output none is the highest.
+        // With a single output, the highest output says nothing.
         if *outputs > 1 {
             figures.compare(&highest(potentials), &highest(&ran.potentials));
         }
@@ -274,7 +284,7 @@ fn root_mean_square(numbers: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(count.max(1))).sqrt()
 }
 
-/// Returns for each step the output with the highest potential; none until an output has one.
+/// Returns for each step the output with the highest potential; no output for steps in which all potentials are 0.
 fn highest(potentials: &[Vec<f64>]) -> Trains {
     let of_step = |step: &Vec<f64>| {
         if step.iter().all(|potential| *potential == 0.0) {
@@ -329,19 +339,20 @@ impl Figures {
         }
     }
 
-    /// Returns how well the network agrees, averaged over steps and windows: 0 to 1.
+    /// Returns how well the network agrees with the original, from 0 to 1: the mean of the shares of agreeing steps and
+    /// windows.
     pub(super) fn holds(&self) -> f64 {
         let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
         f64::midpoint(self.agreement().unwrap_or(0.0), windows)
     }
 
-    /// Returns the share of active steps in which the same outputs fire; `None` if none ever fires.
+    /// Returns the share of active steps in which the same outputs fire; `None` if no output ever fires.
     pub fn agreement(&self) -> Option<f64> {
         (self.active > 0).then(|| self.active_agreeing as f64 / self.active as f64)
     }
 }
 
-/// Returns the outputs that fire most often.
+/// Returns the outputs with the most spikes in these steps; several if they are equal, none if no output fires.
 fn most(steps: &[Vec<u16>]) -> Vec<u16> {
     let mut counts = BTreeMap::new();
     for output in steps.iter().flatten() {

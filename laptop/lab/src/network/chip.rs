@@ -1,4 +1,4 @@
-//! The interface of a chip onto which a network can be brought.
+//! The interface of a target (a chip, or the flight controller) onto which a trained network can be brought.
 
 use super::costs::Cost;
 use super::{ReckOn, TinyOdin, Trained, Trains};
@@ -8,11 +8,12 @@ use std::fmt::{Debug, Display};
 
 /// A chip that a trained network can be brought onto.
 pub trait Chip: Sync {
-    /// Returns the name by which users choose the chip.
+    /// Returns the name of the chip on the command line.
     fn name(&self) -> &'static str;
 
-    /// Finds the numbers with which the chip follows the network best. `fired` is the spikes in double precision, by
-    /// layer and step. Calls `progress` with the number of parts of the search that are done, and the number in all.
+    /// Finds the chip's parameters for the network: those with which its spikes are nearest to the original's. `inputs`
+    /// are the spikes into the network, by step; `fired` are the spikes of each layer in double precision. Calls
+    /// `progress` with the number of finished parts of the search and the total number of parts.
     ///
     /// # Errors
     /// Returns an error if the network does not fit the chip.
@@ -26,31 +27,34 @@ pub trait Chip: Sync {
     ) -> Result<Box<dyn OnChip>>;
 }
 
-/// When a chip's neurons compare with their thresholds, for chips that leave the choice.
+/// When a chip's neurons compare with their thresholds, for chips that allow either.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// After each spike, as the chip does by itself.
+    /// After each spike, as the chip does by default.
     Spike,
-    /// Once a step, as in training; additional events make the chip do so.
+    /// Once a step, as in training. Extra events make the chip do so.
     Step,
 }
 
 /// All chips onto which networks can be brought.
 pub static CHIPS: [&dyn Chip; 2] = [&TinyOdin, &ReckOn];
 
-/// A network as a chip holds it.
+/// A network in the form that a chip or the flight controller stores.
 pub trait OnChip {
-    /// Loads the network into the chip's model with the driver of `spikewire-chips`, and runs it.
+    /// Loads the network into the chip's model with the driver of `spikewire-chips`, and runs it on the input spikes of
+    /// all steps.
     ///
     /// # Errors
     /// Returns an error if the chip refuses a call.
     fn run(&self, inputs: &Trains) -> Result<Ran>;
 
-    /// Loads the network into the chip's model, and runs it on steps as they arrive. Each result is passed to `see`
-    /// before the next step is read, so that later inputs may depend on it. Returns the number of spikes lost.
+    /// Loads the network into the chip's model, and runs it step by step. Passes the result of each step to `see`
+    /// before it reads the inputs of the next one, so that later inputs may depend on the result. Returns the number of
+    /// spikes that were lost on their way into the chip.
     ///
     /// # Errors
-    /// Returns an error if the chip or `see` refuses a step, or if the chip's outputs come steps later.
+    /// Returns an error if the chip or `see` refuses a step, or if the chip's outputs for a step come only in later
+    /// steps.
     fn follow(
         &self,
         _steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
@@ -59,66 +63,69 @@ pub trait OnChip {
         bail!("this chip's outputs come steps later: only tinyODIN answers step by step here")
     }
 
-    /// Returns for each layer the number of weights that exceeded the chip's range; then, if outputs have potentials,
-    /// their number.
+    /// Returns the number of weights that exceeded the chip's range, for each layer; then for the outputs, if they have
+    /// potentials.
     fn clipped(&self) -> Vec<usize>;
 
-    /// Writes Rust source, which compiles without `std` if `spikewire-chips` has its feature `embedded-hal`.
+    /// Returns Rust source that defines the network. It compiles without `std` if `spikewire-chips` has its feature
+    /// `embedded-hal`.
     fn emit(&self, remarks: &Remarks) -> String;
 
-    /// Returns the network as bytes, which the driver loads at run time.
+    /// Returns the network as bytes, which the driver can load at run time.
     ///
     /// # Errors
     /// Returns an error if the chip does not accept the network.
     fn bytes(&self) -> Result<Vec<u8>>;
 
-    /// Returns notes on the network's size on the chip, and on what had to be changed, a line each.
+    /// Returns remarks for the user, a line each: the network's size on the chip, and what had to be changed.
     fn notes(&self) -> Vec<String>;
 
-    /// Returns the parts of the chip's arithmetic that change the network, and whose effect can be measured one by one.
+    /// Returns the parts of the chip's arithmetic that change the network's spikes, and that can be measured one by
+    /// one.
     fn costs(&self) -> Vec<Cost>;
 
-    /// Returns the reason that spikes get lost on their way into the chip.
+    /// Returns the reason for which spikes may be lost on their way into the chip.
     fn loss(&self) -> &'static str;
 
-    /// Describes the duration of a step, given its mean and largest number of clocks.
+    /// Describes the duration of a step for the user. `mean` and `most` are its mean and largest number of clock
+    /// cycles.
     fn effort(&self, mean: f64, most: u64) -> String {
         format!("a step takes the chip {mean:.0} clocks, {most} at most")
     }
 }
 
-/// The result of a run on the chip.
+/// The result of running a network on the chip's model, over all steps.
 pub struct Ran {
-    /// The neurons that fired, by layer and step.
+    /// The neurons that fired, by layer, then by step.
     pub fired: Vec<Trains>,
-    /// The outputs' potentials by step, in the units of the training; empty if the outputs are the last layer's spikes.
+    /// The outputs' potentials by step, in the units of the training; empty if the outputs are spikes.
     pub potentials: Vec<Vec<f64>>,
-    /// Number of the chip's clocks, for each step.
+    /// Number of the chip's clock cycles, for each step.
     pub clocks: Vec<u64>,
-    /// Number of spikes lost on their way into the chip.
+    /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
 }
 
-/// The result of a step on the chip.
+/// The result of one step on the chip's model.
 pub struct Stepped {
-    /// The neurons that fired, by layer.
+    /// The neurons that fired in the step, by layer.
     pub fired: Vec<Vec<u16>>,
-    /// Number of the chip's clocks.
+    /// Number of the chip's clock cycles in the step.
     pub clocks: u64,
 }
 
-/// Remarks for the readers of the generated file.
+/// Remarks that the generated source contains for its readers.
 pub struct Remarks {
-    /// Where the network comes from.
+    /// Name of the file that the network comes from.
     pub source: String,
-    /// What its inputs mean.
+    /// Description of the network's inputs.
     pub inputs: String,
-    /// Length of a step in µs, if it is known.
+    /// Duration of a step in the recording, in µs; `None` if it is not known.
     pub step_us: Option<f64>,
 }
 
 impl Remarks {
-    /// Returns a comma and the duration of `steps` steps in the recording, if it is known.
+    /// Returns the duration of `steps` steps as text that begins with a comma; empty if it is not known.
     pub(super) fn micros(&self, steps: usize) -> String {
         self.step_us.map_or(String::new(), |step| {
             format!(", {:.0} µs in the recording", step * steps as f64)
@@ -126,14 +133,14 @@ impl Remarks {
     }
 }
 
-/// Formats the items of an array, a line each.
+/// Formats the items of an array, one in each line.
 pub(super) fn lines(items: impl Iterator<Item = String>) -> String {
     items.fold(String::new(), |all, item| all + "        " + &item + ",\n")
 }
 
-/// Returns the bytes that `write` puts into a buffer with room for the largest network.
+/// Calls `write` with a buffer that has room for the largest network; returns the bytes written.
 pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> Result<Vec<u8>, E> {
-    /// More bytes than any network needs on any chip.
+    /// Size of the buffer in bytes: more than any network needs on any chip.
     const LARGEST: usize = 256 * 1024;
     let mut bytes = vec![0; LARGEST];
     let length = write(&mut bytes)?;
@@ -146,7 +153,7 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Converts the error of a driver that runs on the model.
+/// Converts the error of a driver that runs on the chip's model.
 pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> crate::Error {
     fault(format!("the chip's model: {error}"))
 }

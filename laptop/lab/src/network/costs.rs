@@ -1,21 +1,21 @@
-//! Measures what each part of a chip's arithmetic costs by itself: the network runs in double precision except for that
-//! part.
+//! Measures the effect of each part of a chip's arithmetic by itself: the network runs in double precision except for
+//! that part.
 
 use super::controller::Fires;
 use super::trained::{Layer, Neuron};
 use super::{Distance, Trained, Trains};
 use std::fmt::{self, Display};
 
-/// A part of a chip's arithmetic.
+/// A part of a chip's arithmetic that differs from double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
-    /// Neurons compare with their thresholds after each spike, rather than once a step.
+    /// Neurons compare with their thresholds after each spike, instead of once a step.
     Order,
-    /// A leak subtracts a fixed amount, rather than a share of the potential.
+    /// A leak subtracts a fixed amount, instead of a share of the potential.
     Leak,
-    /// A neuron's weights are whole numbers.
+    /// A neuron's weights are rounded to whole numbers.
     Weights {
-        /// The largest weight.
+        /// Largest absolute value of a weight after rounding.
         largest: f64,
     },
 }
@@ -30,12 +30,12 @@ impl Display for Cost {
     }
 }
 
-/// Leaks that are tried, as multiples of what the original loses in a step at half the threshold.
+/// Leaks to try, as multiples of what the original neuron loses in a step at half its threshold.
 const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
 
 impl Cost {
-    /// Runs the network with this part of the chip's arithmetic alone, fitted to the spikes of a recording; returns the
-    /// outputs' spikes.
+    /// Runs the network in double precision except for this part of the chip's arithmetic, whose parameters are fitted
+    /// to the spikes of the recording `tuned`. Returns the spikes of the last layer.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -76,7 +76,7 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
     layer
 }
 
-/// Returns the leak with which a neuron's spikes are nearest to the original's.
+/// Returns the leak, as a fixed amount for each step, with which the neuron's spikes are nearest to the original's.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
     let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {
@@ -112,7 +112,8 @@ fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) ->
     inputs.iter().map(of_step).collect()
 }
 
-/// Runs a step of a neuron whose reset comes at once; returns whether it fires.
+/// Runs a step of neuron `at`; returns whether it fires. A spike resets the neuron in the same step. `leak` replaces
+/// the neuron's own leak by a fixed amount; `by_spike` compares after each spike.
 fn step(
     layer: &Layer,
     at: usize,

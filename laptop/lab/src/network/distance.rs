@@ -1,11 +1,11 @@
-//! The distance between two spike trains.
+//! The van Rossum distance, which measures how much two spike trains differ.
 
-/// Factor by which an exponential with a time constant of 5 steps decays in a step: e to the power of -1/5.
+/// Factor by which an exponential with a time constant of 5 steps decays in one step: e to the power of -1/5.
 const KEPT: f64 = 0.818_730_753_077_981_8;
 
-/// The squared distance of van Rossum (2001), with an exponential of 5 steps.
+/// The squared distance between two spike trains after van Rossum (2001), with an exponential kernel of 5 steps.
 ///
-/// A spike too many or too few counts 1; one that is `k` steps late counts `2 (1 - exp(-k / 5))`, at most 2.
+/// A missing or an extra spike counts 1; a spike that is `k` steps late counts `2 (1 - exp(-k / 5))`, at most 2.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Distance {
     difference: f64,
@@ -13,18 +13,18 @@ pub struct Distance {
 }
 
 impl Distance {
-    /// Adds a step with `one` spikes in the first train and `other` in the second.
+    /// Adds a step, in which the first train has `one` spikes and the second has `other`.
     pub fn step(&mut self, one: usize, other: usize) {
         self.difference = self.difference * KEPT + (one as f64 - other as f64);
         self.sum += self.difference * self.difference;
     }
 
-    /// Returns the distance so far; later steps can only increase it.
+    /// Returns the distance up to the last step added; further steps can only increase it.
     pub fn so_far(self) -> f64 {
         (1.0 - KEPT * KEPT) * self.sum
     }
 
-    /// Returns the distance, including the time after the last step.
+    /// Returns the distance, including what remains of the exponentials after the last step.
     pub fn value(self) -> f64 {
         let after = self.difference * self.difference * KEPT * KEPT / (1.0 - KEPT * KEPT);
         (1.0 - KEPT * KEPT) * (self.sum + after)

@@ -1,4 +1,4 @@
-//! Reasons that a network cannot be read or brought onto a chip.
+//! The reasons for which a network cannot be read, or cannot be brought onto a chip or the controller.
 
 use super::controller::{Choice, Framework};
 use crate::error::{At, room};
@@ -8,7 +8,7 @@ use catalogue::kinds;
 pub(super) use crate::Result;
 
 kinds! {
-    /// The reason that a network cannot be read, or does not fit.
+    /// The reason for which a network cannot be read, or does not fit its target.
     pub enum NetworkKind by spell of subject {
         Fault { what: String } => ("{what}"),
         OpenRule { framework: Option<Framework>, open: Vec<Choice> } => (
@@ -33,12 +33,12 @@ kinds! {
 }
 room!(NetworkKind, Network);
 
-/// Makes the error that something does not fit; its text is for people, not for programs.
+/// Returns an error whose text is for people; programs can tell no more than that the network does not fit.
 pub(super) fn fault(what: impl Into<String>) -> Error {
     NetworkKind::Fault { what: what.into() }.into()
 }
 
-/// Returns from the function with the error that something does not fit.
+/// Returns from the calling function with a [`NetworkKind::Fault`] whose text is formatted from the arguments.
 macro_rules! bail {
     ($($words:tt)+) => {
         return Err($crate::network::fault::fault(format!($($words)+)))
@@ -46,7 +46,7 @@ macro_rules! bail {
 }
 pub(super) use bail;
 
-/// Returns from the function with the error that something does not fit, unless a condition holds.
+/// Returns from the calling function with a [`NetworkKind::Fault`] unless the condition holds.
 macro_rules! ensure {
     ($condition:expr, $($words:tt)+) => {
         let holds: bool = $condition;
@@ -57,7 +57,7 @@ macro_rules! ensure {
 }
 pub(super) use ensure;
 
-/// Adds to an error the part of the network that it concerns, such as a layer.
+/// Adds to an error the part of the network in which it occurred, such as a layer; turns `None` into an error.
 pub(super) trait Context<T> {
     fn context(self, part: impl Into<String>) -> Result<T>;
 

@@ -1,4 +1,4 @@
-//! Reads trained networks, runs them in double precision, and brings them onto chips or the controller.
+//! Reads trained networks, runs them in double precision, and brings them onto chips or the flight controller.
 
 mod bring;
 mod chip;
@@ -32,22 +32,22 @@ use crate::{Error, Result};
 use std::fs;
 use std::path::Path;
 
-/// First bytes of HDF5 files.
+/// The first bytes of every HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// A network as its file contains it.
 pub enum File {
-    /// A network in JSON, whose numbers are for a step.
+    /// A network in JSON, whose parameters are for a step.
     Plain(Trained),
     /// A NIR graph, whose time constants are in seconds.
     Nir(Box<nir::Chain>),
 }
 
 impl File {
-    /// Reads a NIR graph, or a network in JSON.
+    /// Reads a network from a file: a NIR graph, or a network in JSON.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be read, or is neither.
+    /// Returns an error if the file cannot be read, or is neither of the two.
     pub fn read(path: &Path) -> Result<Self> {
         let unread = |error| Error::open(path.display().to_string(), error);
         let bytes = fs::read(path).map_err(unread)?;
@@ -60,10 +60,10 @@ impl File {
         Err(NetworkKind::NoNetwork.at(path))
     }
 
-    /// Converts the network for `spikewire-network`, by the rule asked for.
+    /// Converts the network for `spikewire-network` on the flight controller, by the rule that the user asked for.
     ///
     /// # Errors
-    /// Returns an error if file and `asked` leave the rule incomplete, or contradict each other.
+    /// Returns an error if the file and `asked` leave the rule incomplete, or contradict each other.
     pub fn on_controller(self, asked: &Asked) -> Result<Model> {
         match self {
             Self::Plain(trained) => Model::of_plain(trained, asked),
@@ -71,11 +71,11 @@ impl File {
         }
     }
 
-    /// Converts the network for the chips, by the rule asked for; a step lasts `seconds` of the recording unless
-    /// `asked` says otherwise.
+    /// Converts the network for the chips, by the rule that the user asked for. A step lasts `seconds`, the step of a
+    /// recording, unless `asked` contains a step.
     ///
     /// # Errors
-    /// Returns an error if file and `asked` leave the rule incomplete, or if the chips have no such neurons.
+    /// Returns an error if the file and `asked` leave the rule incomplete, or if the chips have no such neurons.
     pub fn on_chip(self, asked: &Asked, seconds: Option<f64>) -> Result<Trained> {
         match self {
             Self::Plain(trained) => trained.reset_by(asked),

@@ -1,5 +1,5 @@
-//! Reads NIR, the Neuromorphic Intermediate Representation: a graph in an HDF5 file, as the Python package `nir` writes
-//! it.
+//! Reads NIR, the Neuromorphic Intermediate Representation: a graph of neurons and weights in an HDF5 file, as written
+//! by the Python package `nir`.
 //!
 //! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
 
@@ -9,44 +9,44 @@ use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
 use std::collections::BTreeMap;
 
-/// Maximum size of an array in bytes: more than 256 neurons and rows can need. It guards against files that claim to
-/// hold more.
+/// Maximum size of an array in bytes, more than 256 neurons with 256 weights each can need. It protects the reader from
+/// files that claim huge arrays.
 const MOST_BYTES: usize = 1 << 26;
 
-/// The layers of a graph from input to output; times are in seconds.
+/// The layers of a NIR graph, from input to output. Time constants are in seconds.
 pub struct Chain {
     pub(super) stages: Vec<Stage>,
-    /// The last layer, if it never fires.
+    /// The last layer, if its neurons never fire.
     pub(super) readout: Option<Stage>,
-    /// Weights after the last neurons.
+    /// Weights that follow the last neurons; their sums are then the outputs.
     pub(super) sum: Option<Weights>,
-    /// Notes on peculiarities of the file that are accepted.
+    /// Remarks for the user on peculiarities of the file that are accepted.
     pub(super) notes: Vec<String>,
 }
 
 pub(super) struct Stage {
     pub(super) weights: Weights,
-    /// Recurrent weights, from the neurons to themselves.
+    /// Recurrent weights, from the layer's neurons to themselves; `None` if the layer is not recurrent.
     pub(super) recurrent: Option<Weights>,
     pub(super) neurons: Neurons,
 }
 
 pub(super) struct Weights {
-    /// The weights, by neuron, then by input.
+    /// The weights: one row for each neuron, with one weight for each input.
     pub(super) rows: Vec<Vec<f64>>,
     pub(super) bias: Option<Vec<f64>>,
 }
 
 pub(super) struct Neurons {
-    /// Name of the node.
+    /// Name of the node in the graph.
     name: String,
-    /// The leak; `None` for perfect integrators.
+    /// The leak; `None` for neurons that do not leak (perfect integrators).
     pub(super) leak: Option<Leak>,
     pub(super) resistance: Array,
-    /// Thresholds; `None` if the neurons never fire.
+    /// Threshold of each neuron; `None` if the neurons never fire.
     pub(super) threshold: Option<Array>,
     pub(super) reset: Option<Array>,
-    /// Time constant of the current that a spike adds, and its weight; `None` if a spike acts for one step only.
+    /// Time constant and weight of the current that a spike adds; `None` if a spike acts in one step only.
     pub(super) synapse: Option<Synapse>,
 }
 
@@ -60,7 +60,7 @@ pub(super) struct Leak {
     pub(super) rest: Array,
 }
 
-/// One number for each neuron, or one for all.
+/// A parameter of neurons: one number for each neuron, or a single number for all.
 pub(super) struct Array(pub(super) Vec<f64>);
 
 impl Array {
@@ -69,32 +69,32 @@ impl Array {
     }
 }
 
-/// The nodes of a graph and of the graphs nested in it, by path.
+/// A NIR graph with the graphs nested in it, as one graph. The name of a nested node is its path.
 #[derive(Default)]
 struct Graph {
     nodes: BTreeMap<String, Group>,
     edges: Vec<(String, String)>,
-    /// First and last node of each nested graph, by path.
+    /// Names of the input and the output node of each nested graph, by the graph's path.
     inner: BTreeMap<String, (String, String)>,
 }
 
-/// How a layer leads back to itself.
+/// The connections from a layer back to itself.
 struct Loops<'a> {
-    /// Whether an edge without weights leads back.
+    /// Whether an edge without weights leads from the layer to itself.
     is_direct: bool,
     weights: Vec<&'a str>,
 }
 
-/// Types of neurons that fire; any layer of them may be recurrent.
+/// Types of nodes whose neurons fire. Such a layer may be recurrent.
 const FIRING: [&str; 3] = ["LIF", "IF", "CubaLIF"];
-/// Types of neurons that never fire; they may form the last layer.
+/// Types of nodes whose neurons never fire. Such a layer may only be the last.
 const SILENT: [&str; 3] = ["LI", "I", "CubaLI"];
 
-/// Reads the graph. It must be a chain of Linear or Affine and neurons that fire, each of which may be recurrent; the
-/// last neurons may be of a type that never fires. Nested graphs are replaced by their nodes.
+/// Reads a NIR graph. It must be a chain in which weights (Linear or Affine) and neurons alternate. Layers that fire
+/// may be recurrent; the last layer may be one that never fires. Nested graphs are replaced by their nodes.
 ///
 /// # Errors
-/// Returns an error if the file is damaged, or if the graph has another structure.
+/// Returns an error if the file is damaged, or if the graph has a different structure.
 pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
     let options = OpenOptions::default().with_max_read_bytes(MOST_BYTES);
     let file = Hdf5File::from_vec_with_options(bytes, options).context("damaged")?;
@@ -146,11 +146,15 @@ fn kind(node: &Group, name: &str) -> Result<String> {
     kind.with_context(|| format!("node `{name}`: no type"))
 }
 
-/// How deep graphs may be nested.
+/// Number of levels to which graphs may be nested.
 const DEEPEST: usize = 8;
 
 impl Graph {
-    /// Adds the nodes and edges of a group, with `path` in front of their names; returns its input and output.
+    /// Adds the nodes and edges of a group, which is a graph, and of the graphs nested in it. Puts `path` in front of
+    /// their names. Returns the names of its input and output node.
+    ///
+    /// # Errors
+    /// Returns an error if the group is not a graph with one input and one output.
     fn take(&mut self, group: &Group, path: &str, depth: usize) -> Result<(String, String)> {
         let of = || if path.is_empty() { String::new() } else { format!("node `{path}`: ") };
         ensure!(depth < DEEPEST, "{}graphs in graphs, {DEEPEST} deep", of());
@@ -189,7 +193,8 @@ impl Graph {
         Ok((one("Input", inputs)?, one("Output", outputs)?))
     }
 
-    /// Returns a note if the input keeps a batch dimension, as Norse writes it; `nir` refuses such files.
+    /// Returns a remark if the shape of the input node has an extra first dimension of 1, for batches, as Norse writes
+    /// it. (`nir` itself refuses such files.)
     fn batch(&self, input: &str) -> Result<Vec<String>> {
         let node = &self.nodes[input];
         let is_told = node.datasets()?.iter().any(|dataset| dataset.name() == "shape");
@@ -203,7 +208,7 @@ impl Graph {
         })
     }
 
-    /// Connects edges that lead to nested graphs with the inputs and outputs of those.
+    /// Redirects edges from and to nested graphs to the input and output nodes of those graphs.
     fn join(&mut self) {
         for (from, to) in &mut self.edges {
             if let Some((_, output)) = self.inner.get(from) {
@@ -225,7 +230,10 @@ impl Graph {
         after
     }
 
-    /// Returns the names of the nodes from the input to the output, and how each leads back to itself.
+    /// Returns the names of the nodes from `first` to `last`, each with its connections back to itself.
+    ///
+    /// # Errors
+    /// Returns an error if the graph is not a chain.
     fn chain(&self, first: &str, last: &str) -> Result<Vec<(&str, Loops<'_>)>> {
         let node = |name: &str| self.nodes.get_key_value(name);
         let (mut at, _) = node(first).context("no input")?;
@@ -268,7 +276,7 @@ impl Graph {
         Ok(path)
     }
 
-    /// Combines the weights by which `count` neurons lead back to themselves.
+    /// Returns the sum of all recurrent weights of a layer with `count` neurons; `None` if it is not recurrent.
     fn recurrent(&self, loops: &Loops, count: usize) -> Result<Option<Weights>> {
         if !loops.is_direct && loops.weights.is_empty() {
             return Ok(None);
@@ -344,7 +352,7 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
     })
 }
 
-/// Reads an array's shape and numbers, of any numeric type.
+/// Returns the shape and the numbers of an array, converted from its numeric type.
 fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
     let dataset = node.dataset(name).map_err(|_| fault(format!("no `{name}`")))?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();

@@ -1,4 +1,4 @@
-//! Reads networks in JSON.
+//! Reads trained networks from JSON.
 
 use super::Trained;
 use super::controller::{Fires, Reset};
@@ -17,9 +17,9 @@ struct Network {
 #[serde(deny_unknown_fields)]
 struct WrittenReadout {
     name: Option<String>,
-    /// The weights, by output, then by neuron of the last layer.
+    /// The weights: one row for each output, with one weight for each neuron of the last layer.
     weights: Vec<Vec<f64>>,
-    /// Factor by which a step multiplies the potential; 1 if not given.
+    /// Factor by which a step multiplies an output's potential; 1 if not given.
     keep: Option<Numbers>,
 }
 
@@ -27,21 +27,23 @@ struct WrittenReadout {
 #[serde(deny_unknown_fields)]
 struct Written {
     name: Option<String>,
-    /// The weights, by neuron, then by input.
+    /// The weights: one row for each neuron, with one weight for each input.
     weights: Vec<Vec<f64>>,
-    /// The recurrent weights, by neuron, then by the neuron of the same layer that fired a step before.
+    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer, whose spikes
+    /// act one step later.
     #[serde(default)]
     recurrent: Vec<Vec<f64>>,
     #[serde(default)]
     bias: Vec<f64>,
-    /// Factor by which a step multiplies the potential; 1 if not given.
+    /// Factor by which a step multiplies a neuron's potential; 1 if not given.
     keep: Option<Numbers>,
-    /// Amount by which a step moves the potential towards 0, for networks trained with tinyODIN's leak.
+    /// Amount by which a step moves a potential towards 0, for networks that were trained with tinyODIN's leak; 0 if
+    /// not given.
     leak: Option<Numbers>,
     threshold: Numbers,
 }
 
-/// One number for all neurons, or one for each.
+/// A parameter in JSON: one number for all neurons, or a list with one number for each.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Numbers {
@@ -61,10 +63,10 @@ impl Numbers {
     }
 }
 
-/// Reads a network.
+/// Reads a network from JSON.
 ///
 /// # Errors
-/// Returns an error if the JSON has another structure, or if a number is invalid.
+/// Returns an error if the JSON has a different structure, or if a number is invalid.
 pub(crate) fn read(bytes: &[u8]) -> Result<Trained> {
     let network: Network = serde_json::from_slice(bytes)?;
     let layers = network.layers.into_iter().enumerate().map(|(at, written)| {

@@ -1,4 +1,4 @@
-//! A trained network, and its simulation in double precision.
+//! A trained network in double precision, and its simulation.
 
 use super::controller::{Asked, Fires, Reset};
 use crate::network::fault::{Result, bail, ensure};
@@ -6,26 +6,26 @@ use crate::network::fault::{Result, bail, ensure};
 /// Maximum number of layers in a network.
 const LAYERS: usize = 3;
 
-/// The neurons that fire, for each step; a neuron may occur several times.
+/// A spike train: the neurons that fire, for each step. A neuron may occur several times in a step.
 pub type Trains = Vec<Vec<u16>>;
 
-/// Layers of integrate-and-fire neurons, each fully connected to the layer before it.
+/// A trained network: layers of integrate-and-fire neurons, each fully connected to the layer before it.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// The layers, in order from the input.
+    /// The layers whose neurons fire, from input to output.
     pub layers: Vec<Layer>,
-    /// Neurons that never fire, after the last layer.
+    /// Neurons that never fire, after the last layer; `None` if the outputs are the spikes of the last layer.
     pub readout: Option<Readout>,
 }
 
-/// Leaky neurons that never fire: their potentials are the network's outputs.
+/// Leaky neurons that never fire, whose potentials are the network's outputs.
 #[derive(Clone, Debug)]
 pub struct Readout {
-    /// Name in the file.
+    /// Name in the network's file.
     pub name: String,
-    /// For each output, the weights by neuron of the last layer.
+    /// The weights: one row for each output, with one weight for each neuron of the last layer.
     pub weights: Vec<Vec<f64>>,
-    /// For each output, the factor by which a step multiplies the potential, 0 to 1.
+    /// For each output, the factor by which a step multiplies its potential, 0 to 1.
     pub keep: Vec<f64>,
 }
 
@@ -51,7 +51,7 @@ impl Readout {
         Ok(())
     }
 
-    /// Returns the potentials, for each step and output.
+    /// Returns the potentials of the outputs after each step, if the last layer fires as in `fired`.
     fn run(&self, fired: &Trains) -> Vec<Vec<f64>> {
         let mut potentials = vec![0.0; self.weights.len()];
         let step = |fired: &Vec<u16>| {
@@ -66,48 +66,50 @@ impl Readout {
     }
 }
 
-/// A layer: its neurons, and the weights that lead to them.
+/// A layer of neurons that fire, and the weights that lead to them.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// Name in the file.
+    /// Name in the network's file.
     pub name: String,
-    /// For each neuron, the weights by input.
+    /// The weights: one row for each neuron, with one weight for each input.
     pub weights: Vec<Vec<f64>>,
-    /// For each neuron, the weights by neuron of this layer, which act in the next step; empty unless the layer is
-    /// recurrent.
+    /// The recurrent weights: one row for each neuron, with one weight for each neuron of this layer. They act one step
+    /// later. Empty unless the layer is recurrent.
     pub recurrent: Vec<Vec<f64>>,
-    /// For each neuron, the amount that every step adds.
+    /// For each neuron, the amount that every step adds to its potential.
     pub bias: Vec<f64>,
-    /// The other parameters of each neuron.
+    /// Leak and threshold of each neuron.
     pub neurons: Vec<Neuron>,
-    /// What a spike does to its neuron's potential.
+    /// How a spike resets its neuron's potential.
     pub reset: Reset,
-    /// How potentials are compared with thresholds.
+    /// Whether a neuron fires when its potential equals its threshold.
     pub fires: Fires,
 }
 
-/// Converts a threshold to the whole number at or above which the chip's neuron fires.
+/// Returns the smallest whole number at which a neuron with this threshold fires; a chip's neuron fires at or above its
+/// threshold.
 pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
     match fires {
-        // But for what rounding adds.
+        // The small term keeps rounding errors from changing the result.
         Fires::Above => (threshold + 1e-9).floor() + 1.0,
         Fires::At => (threshold - 1e-9).ceil().max(1.0),
     }
 }
 
-/// A leaky integrate-and-fire neuron that rests at 0.
+/// The parameters of a leaky integrate-and-fire neuron that rests at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neuron {
     /// Factor by which a step multiplies the potential, 0 to 1; 1 for a perfect integrator.
     pub keep: f64,
-    /// Amount by which a step then moves the potential towards 0, for networks trained with tinyODIN's leak.
+    /// Amount by which a step then moves the potential towards 0, for networks trained with tinyODIN's leak; 0 for
+    /// others.
     pub leak: f64,
-    /// Threshold of the potential.
+    /// Threshold of the potential, above 0.
     pub threshold: f64,
 }
 
 impl Neuron {
-    /// Returns what a step leaves of a potential.
+    /// Returns the potential after the leak of one step.
     pub(super) fn left(self, potential: f64) -> f64 {
         let kept = potential * self.keep;
         if self.leak == 0.0 { kept } else { kept.signum() * (kept.abs() - self.leak).max(0.0) }
@@ -115,7 +117,7 @@ impl Neuron {
 }
 
 impl Layer {
-    /// Returns the number of inputs.
+    /// Returns the number of inputs of the layer.
     pub fn inputs(&self) -> usize {
         self.weights.first().map_or(0, Vec::len)
     }
@@ -161,7 +163,8 @@ impl Layer {
         Ok(())
     }
 
-    /// Returns the neurons that fire, for each step. Calls `see` with each neuron and its potential, before it fires.
+    /// Runs the layer on the inputs of all steps; returns the neurons that fire, by step. Calls `see` with each neuron
+    /// and its potential before the reset.
     pub(super) fn follow(&self, inputs: &Trains, mut see: impl FnMut(usize, f64)) -> Trains {
         let mut potentials = vec![0.0; self.neurons.len()];
         let mut before: Vec<u16> = Vec::new();
@@ -185,7 +188,8 @@ impl Layer {
         inputs.iter().map(step).collect()
     }
 
-    /// Runs a step of a neuron; returns whether it fires.
+    /// Runs a step of neuron `at`, to whose potential `driven` is added; returns whether it fires. Calls `see` with the
+    /// potential before the reset.
     fn step(&self, at: usize, driven: f64, potential: &mut f64, see: impl FnOnce(f64)) -> bool {
         let Neuron { threshold, .. } = self.neurons[at];
         let fires = |potential| match self.fires {
@@ -195,7 +199,8 @@ impl Layer {
         let (before, was_over) = (*potential, fires(*potential));
         let next = self.neurons[at].left(before) + driven;
         let less = next - threshold;
-        // Before the reset, and after: those that come late are part of the step that follows.
+        // `reached` is compared with the threshold, and `reset` is the potential after a spike. Resets that come a step
+        // late have acted before the comparison.
         let (reached, reset) = match self.reset {
             Reset::ToValue => (next, 0.0),
             Reset::Subtract => (next, less),
@@ -225,7 +230,7 @@ impl Layer {
 }
 
 impl Trained {
-    /// Makes a network of these layers.
+    /// Makes a network of these layers, whose outputs are the spikes of the last one.
     ///
     /// # Errors
     /// Returns an error if there are no layers or too many, if they do not fit each other, or if a number is invalid.
@@ -253,10 +258,10 @@ impl Trained {
         Ok(Self { layers, readout: None })
     }
 
-    /// Makes a network of these layers, followed by neurons that never fire.
+    /// Makes a network of these layers, followed by `readout`, neurons that never fire.
     ///
     /// # Errors
-    /// See [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new), and an error if the readout does not fit.
     pub fn with_readout(layers: Vec<Layer>, readout: Option<Readout>) -> Result<Self> {
         let network = Self::new(layers)?;
         if let (Some(readout), Some(last)) = (&readout, network.layers.last()) {
@@ -265,7 +270,7 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
-    /// Replaces the resets by those asked for: one for all layers, or one for each.
+    /// Replaces the resets of the layers by those that the user asked for: one for all layers, or one for each.
     ///
     /// # Errors
     /// Returns an error if the number of resets is neither one nor that of the layers.
@@ -283,8 +288,9 @@ impl Trained {
         Ok(self)
     }
 
-    /// Replaces subtraction at once by subtraction a step late. The late one comes after the step's leak, which would
-    /// have reduced it; weights from each neuron to itself give back the difference.
+    /// Replaces subtraction in the same step by subtraction one step late, as some chips do it. The late subtraction
+    /// comes after the step's leak, which would have reduced it; weights from each neuron to itself make up for the
+    /// difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {
@@ -305,12 +311,13 @@ impl Trained {
         self
     }
 
-    /// Returns the number of inputs.
+    /// Returns the number of inputs of the network.
     pub fn inputs(&self) -> usize {
         self.layers.first().map_or(0, Layer::inputs)
     }
 
-    /// Returns the neurons that fire, by layer and step. A spike passes through all layers within its step.
+    /// Runs the network on the inputs of all steps; returns the neurons that fire, by layer, then by step. A spike
+    /// passes through all layers within its step.
     pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
         let mut all: Vec<Trains> = Vec::new();
         for layer in &self.layers {
@@ -320,7 +327,8 @@ impl Trained {
         all
     }
 
-    /// Returns the outputs' potentials for these spikes, by step; empty if the outputs are the last layer's spikes.
+    /// Returns the outputs' potentials by step, if neurons fire as in `fired`; empty if the outputs are the spikes of
+    /// the last layer.
     pub fn potentials(&self, fired: &[Trains]) -> Vec<Vec<f64>> {
         let (Some(readout), Some(fired)) = (&self.readout, fired.last()) else { return vec![] };
         readout.run(fired)
@@ -343,8 +351,8 @@ mod tests {
         }
     }
 
-    /// The expected spikes are those of the table in `spikewire-network`, for a factor of 1/2 and a threshold of 4; all
-    /// numbers are exact.
+    /// Each reset gives the spikes of the table in `spikewire-network`'s documentation, for a factor of 1/2 and a
+    /// threshold of 4; all numbers are exact.
     #[test]
     fn each_reset_has_its_spikes() {
         let drive = [3, 3, 0, 4, 1, 5, 2, 0, 0, 6, 6, -4, 2, 7, 1, 8];
@@ -366,11 +374,11 @@ mod tests {
 
     #[test]
     fn a_neuron_leaks_adds_up_fires_above_its_threshold_and_starts_again() {
-        // Potentials: 0.6, 0.3 + 0.6 = 0.9, 0.45, 0.225 + 1.2 -> fires, 0.6.
+        // The potentials are 0.6, then 0.3 + 0.6 = 0.9, 0.45, and 0.225 + 1.2, at which the neuron fires and keeps 0.6.
         let one = layer(&[&[0.6]], 0.5, 1.0);
         let inputs = vec![vec![0], vec![0], vec![], vec![0, 0], vec![0]];
         assert_eq!(one.follow(&inputs, |_, _| ()), [vec![], vec![], vec![], vec![0], vec![]]);
-        // At its threshold it does not fire yet.
+        // A neuron does not fire at exactly its threshold.
         let exact = layer(&[&[0.5]], 1.0, 1.0);
         let fired = exact.follow(&vec![vec![0]; 6], |_, _| ());
         assert_eq!(fired, [vec![], vec![], vec![0], vec![], vec![], vec![0]]);

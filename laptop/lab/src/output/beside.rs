@@ -1,4 +1,4 @@
-//! Writes files beside their place, and moves them there once they are complete.
+//! Writes files under a temporary name in the same directory, and renames them once they are complete.
 
 use same_file::Handle;
 use std::fs;
@@ -10,39 +10,39 @@ use tempfile::NamedTempFile;
 /// Start of the names of unfinished files.
 pub(crate) const UNFINISHED_NAME: &str = ".spikewire-";
 
-/// Paths of unfinished files, which a program that is ended must delete.
+/// Paths of unfinished files, which are to be deleted if the program is ended early.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Deletes all unfinished files. The program must end at once: from now on no file can be started or finished, so that
-/// none appears after this.
+/// Deletes all unfinished files, for a program that is being ended. The program must end at once: from now on, starting
+/// or finishing a file blocks forever, which keeps files from appearing after the deletion.
 pub fn abandon() {
     let files = unfinished();
     for file in files.iter() {
-        // It may be in its place by now, or its directory gone.
+        // The file may already have its final name, or its directory may be gone.
         let _ = fs::remove_file(file);
     }
     std::mem::forget(files);
 }
 
-/// An unfinished file.
+/// A file that is being written under a temporary name.
 pub(super) struct Beside {
     file: Option<BufWriter<NamedTempFile>>,
     path: PathBuf,
 }
 
 impl Beside {
-    /// Starts a file that will replace `path`; if that is a link, its target.
+    /// Starts a file that will replace `path` or, if `path` is a link, the link's target.
     ///
     /// # Errors
-    /// Returns an error if nothing can be written there.
+    /// Returns an error if no file can be created in the directory of `path`.
     pub(super) fn new(path: &Path) -> io::Result<Self> {
         let path = target(path.to_owned())?;
         let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-        // Nobody may end the program between the two.
+        // While the list is locked, no file exists that is not in the list.
         let mut files = unfinished();
         let file = named(directory.unwrap_or(Path::new(".")))?;
         files.push(file.path().to_owned());
@@ -53,7 +53,7 @@ impl Beside {
         self.file.as_mut().ok_or_else(|| io::Error::other("it is finished"))
     }
 
-    /// Overwrites bytes at an offset of the file.
+    /// Overwrites bytes at the offset `place` of the file; what is written later is appended as before.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -65,7 +65,7 @@ impl Beside {
         Ok(())
     }
 
-    /// Writes buffered bytes, and moves the file to its place.
+    /// Writes buffered bytes, and renames the file to its final one.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -86,7 +86,7 @@ impl Drop for Beside {
         let Some(file) = self.file.take() else { return };
         let path = file.get_ref().path().to_owned();
         let mut files = unfinished();
-        // What is left in the buffer is not wanted.
+        // The rest of the buffer need not be written.
         let (file, _) = file.into_parts();
         drop(file);
         files.retain(|own| *own != path);
@@ -103,7 +103,7 @@ impl Write for Beside {
     }
 }
 
-/// Returns whether both are the same file, also through links or as standard input.
+/// Returns whether both paths are the same file, also through links; `-` as input is standard input.
 pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
         return false;
@@ -112,9 +112,9 @@ pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     matches!((Handle::from_path(output), input), (Ok(output), Ok(input)) if output == input)
 }
 
-/// Follows symbolic links, even if the last leads to a file that does not exist yet.
+/// Follows symbolic links to the last target, even if no file exists there yet.
 fn target(mut path: PathBuf) -> io::Result<PathBuf> {
-    /// Maximum number of links; more of them are taken to be a circle.
+    /// Maximum number of links to follow; a longer chain is taken for a circle.
     const MOST: usize = 40;
     for _ in 0..MOST {
         if !fs::symlink_metadata(&path).is_ok_and(|data| data.is_symlink()) {
@@ -126,7 +126,7 @@ fn target(mut path: PathBuf) -> io::Result<PathBuf> {
     Err(io::Error::other("links that lead in a circle"))
 }
 
-/// Creates a file with the permissions of an ordinary new file, rather than those of a temporary one.
+/// Creates a temporary file in a directory, with the permissions of an ordinary new file.
 fn named(directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(UNFINISHED_NAME);

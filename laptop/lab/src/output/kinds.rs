@@ -1,10 +1,10 @@
-//! Reasons that a file cannot be written.
+//! Reasons for which a file cannot be written.
 
 use crate::error::room;
 use catalogue::kinds;
 
 kinds! {
-    /// The reason that a file or a picture cannot be written.
+    /// The reason for which a file or a picture cannot be written.
     pub enum OutputKind by spell of subject {
         Ending { ending: String, others: String } => (
             "no file .{ending} is written here; there are .csv, .txt and names without an ending, as tables{others}"

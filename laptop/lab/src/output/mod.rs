@@ -1,4 +1,4 @@
-//! Writes files that appear complete or not at all; also standard output, and memory.
+//! Outputs: files that appear complete or not at all, standard output, and memory.
 
 #[cfg(not(target_family = "wasm"))]
 mod beside;
@@ -16,9 +16,9 @@ use std::io::BufWriter;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Standard output, a file that is written beside its place and then moved there, or memory.
+/// Standard output, a file that gets its final name once it is complete, or memory.
 pub struct Output {
-    /// Name in errors.
+    /// Name of the output in errors.
     name: String,
     place: Place,
     bytes: u64,
@@ -28,18 +28,18 @@ enum Place {
     /// Standard output, or a device.
     #[cfg(not(target_family = "wasm"))]
     Direct(BufWriter<Box<dyn Write>>),
-    /// An unfinished file.
+    /// A file that is not complete yet.
     #[cfg(not(target_family = "wasm"))]
     Beside(beside::Beside),
     /// Memory, returned by [`into_bytes`](Output::into_bytes).
     Memory(Vec<u8>),
 }
 
-/// Checks that a path's ending is one of a table, so that programs which go by the ending can read it. The error lists
-/// the endings of tables, and those in `others`. A device may have any name.
+/// Checks that a path has an ending of tables, `.csv`, `.txt` or none, because other programs go by the ending. A
+/// device may have any name. The error lists the endings of tables, followed by `others`.
 ///
 /// # Errors
-/// Returns an error if the path ends otherwise.
+/// Returns an error if the path has a different ending.
 pub fn is_table(path: &Path, others: &str) -> Result<()> {
     let Some(ending) = path.extension() else { return Ok(()) };
     let is_device = path.metadata().is_ok_and(|data| !data.is_file());
@@ -59,10 +59,10 @@ impl Output {
         Self { name: "memory".to_owned(), place: Place::Memory(Vec::new()), bytes: 0 }
     }
 
-    /// Opens the output at `path`, or standard output if there is none. Links are followed.
+    /// Opens the output at `path`, or standard output if `path` is `None` or `-`. Links are followed.
     ///
     /// # Errors
-    /// Returns an error if nothing can be written there, or if it is the same file as `input`.
+    /// Returns an error if no file can be written at `path`, or if that is the same file as `input`.
     #[cfg(not(target_family = "wasm"))]
     pub fn open(path: Option<&Path>, input: &Path) -> Result<Self> {
         if let Some(path) = path.filter(|path| beside::is_same(path, input)) {
@@ -71,10 +71,10 @@ impl Output {
         Self::to(path)
     }
 
-    /// Opens the output at `path`, or standard output if there is none, for a command without an input file.
+    /// Opens the output at `path`, or standard output if `path` is `None` or `-`, for a command without an input file.
     ///
     /// # Errors
-    /// Returns an error if nothing can be written there.
+    /// Returns an error if no file can be written at `path`.
     #[cfg(not(target_family = "wasm"))]
     pub fn to(path: Option<&Path>) -> Result<Self> {
         use std::fs::{File, metadata};
@@ -85,7 +85,7 @@ impl Output {
             return Ok(Self { name, place: direct(Box::new(io::stdout().lock())), bytes: 0 });
         };
         let name = path.display().to_string();
-        // Nothing is moved onto a device.
+        // A device is written directly: a file that takes its name would replace it.
         let place = if metadata(path).is_ok_and(|data| !data.is_file()) {
             File::create(path).map(|device| direct(Box::new(device)))
         } else {
@@ -112,12 +112,12 @@ impl Output {
         Err(OutputKind::NoFiles.at(path.unwrap_or(Path::new("-"))))
     }
 
-    /// Returns the number of bytes written.
+    /// Returns the number of bytes written so far.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Returns the bytes written to memory; empty for other outputs.
+    /// Returns the bytes written to memory, or an empty vector for other outputs.
     pub fn into_bytes(self) -> Vec<u8> {
         match self.place {
             Place::Memory(bytes) => bytes,
@@ -126,7 +126,7 @@ impl Output {
         }
     }
 
-    /// Overwrites bytes at an offset of the file.
+    /// Overwrites bytes at the offset `place` of the output.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written, or if it is standard output or a device.
@@ -149,7 +149,7 @@ impl Output {
         Ok(())
     }
 
-    /// Writes buffered bytes, and moves the file to its place.
+    /// Writes buffered bytes, and gives a file its final name.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.
@@ -165,7 +165,7 @@ impl Output {
     }
 }
 
-/// Adds a file's name to the error of writing it, and keeps the error's kind.
+/// Adds a file's name to an error in writing the file, and keeps the error's kind.
 fn unwritten(name: &str, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{name}: cannot be written: {error}"))
 }

@@ -9,7 +9,7 @@ use tiny_skia::{
     Transform,
 };
 
-/// A picture in memory.
+/// A picture in memory, on which plotters draws.
 pub(super) struct Bitmap<'a> {
     pixels: &'a mut Pixmap,
 }
@@ -22,7 +22,7 @@ impl<'a> Bitmap<'a> {
     }
 
     fn stroke<S: BackendStyle>(&mut self, path: Option<Path>, style: &S) {
-        // A line without length is no path.
+        // A line of length 0 makes no path.
         let Some(path) = path else { return };
         let stroke = Stroke {
             width: style.stroke_width() as f32,
@@ -48,7 +48,7 @@ impl DrawingBackend for Bitmap<'_> {
         Ok(())
     }
 
-    /// Draws a pixel of a glyph, which covers only a part of it.
+    /// Blends a pixel of a glyph into the picture; `color.alpha` is the share of the pixel that the glyph covers.
     fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Drawn {
         let (width, height) = self.get_size();
         let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return Ok(()) };
@@ -120,7 +120,7 @@ impl DrawingBackend for Bitmap<'_> {
     }
 }
 
-/// Moves lines to the middle of pixels.
+/// Returns the shift by half a pixel that puts lines on the middle of pixels.
 fn centred() -> Transform {
     Transform::from_translate(0.5, 0.5)
 }

@@ -1,26 +1,28 @@
-//! Draws fronts of spikes against error, that is the settings that no other beats in both. Schemes that form the common
-//! front have a colour and a name at their line; the others are grey.
+//! Draws Pareto fronts of spikes against error: of each scheme, the settings that no other setting beats in both. A
+//! scheme that forms part of the common front of all schemes has a colour and a name beside its line; other schemes are
+//! grey.
 
 use super::FONT;
-use super::palette::{GRID, INK, OTHERS, TOLD_APART};
+use super::palette::{DISTINCT, GRID, INK, OTHERS};
 use super::title::Drawn;
 use crate::scheme::Scheme;
 use crate::tune::Curve;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// The fronts of one channel.
+/// The Pareto fronts of all schemes on one channel.
 pub struct Panel {
     /// Name of the channel.
     pub title: String,
     /// The signal's unit, if it is known.
     pub unit: Option<String>,
-    /// A curve for each scheme.
+    /// The front of each scheme.
     pub curves: Vec<Curve>,
 }
 
-/// Font sizes that are legible when the picture is as narrow as a phone.
+/// Font size of a panel's title, legible when the picture is as narrow as a phone.
 const TITLE: i32 = 22;
+/// Font size of all other text, legible when the picture is as narrow as a phone.
 const TEXT: i32 = 19;
 const HEAD: i32 = 34;
 const LABELS: u32 = 84;
@@ -28,37 +30,38 @@ const LABELS: u32 = 84;
 const LINE: i32 = 28;
 /// Lower end of the efficiency axis, in percent. Population codes with several spikes a sample lie below it.
 const LOWEST: f64 = -100.0;
-/// Number of places along the efficiency axis at which schemes are compared.
-const PLACES: usize = 400;
+/// Number of steps into which the efficiency axis is divided to compare schemes.
+const STEPS: usize = 400;
 
-/// A scheme that forms a part of the common front, and its colour.
+/// A scheme that forms a part of the common front, and the colour of its line.
 pub(super) type Named = (Scheme, RGBColor);
 
-/// Returns the efficiency of a place.
-fn place(number: usize) -> f64 {
-    let part = number as f64 / PLACES as f64;
+/// Returns the efficiency, in percent, at the given step along the axis, from 0 to [`STEPS`].
+fn efficiency_at(step: usize) -> f64 {
+    let part = step as f64 / STEPS as f64;
     LOWEST + part * (100.0 - LOWEST)
 }
 
 impl Panel {
-    /// Returns for each place the scheme with the least error at that efficiency or a higher one, with its efficiency
-    /// and error.
+    /// Returns the common front: for each step along the efficiency axis, the scheme with the least error at that
+    /// efficiency or above, with the efficiency and error of its setting.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
-        let best = |number| {
-            let at = place(number);
+        let best = |step| {
+            let at = efficiency_at(step);
             let points = self.curves.iter().flat_map(|curve| {
                 let allowed = curve.points.iter().filter(move |point| point.0 >= at);
                 allowed.map(move |point| (curve.scheme, point.0, point.1))
             });
             points.filter(|point| point.2 > 0.0).min_by(|a, b| a.2.total_cmp(&b.2))
         };
-        (0..=PLACES).map(best).collect()
+        (0..=STEPS).map(best).collect()
     }
 }
 
-/// Returns the schemes that form most of the fronts, the largest part first, at most one for each colour.
+/// Returns the schemes that form most of the common fronts, the one with the largest share first, at most as many as
+/// there are colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// Smallest part of all fronts for which a scheme gets a name.
+    /// Smallest share of all fronts that gives a scheme a name and a colour.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {
@@ -70,10 +73,10 @@ pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
     let all: usize = shares.iter().map(|(_, share)| share).sum();
     shares.sort_by_key(|(_, share)| std::cmp::Reverse(*share));
     let large = shares.into_iter().filter(|(_, share)| *share as f64 > PART * all as f64);
-    large.map(|(scheme, _)| scheme).zip(TOLD_APART).collect()
+    large.map(|(scheme, _)| scheme).zip(DISTINCT).collect()
 }
 
-/// Returns the height of the legend of these schemes, in pixels.
+/// Returns the height in pixels of a legend that is `width` pixels wide and names these schemes.
 pub(super) fn legend_height(named: &[Named], width: u32) -> u32 {
     let columns = (width as i32 / ENTRY).max(1);
     (((named.len() as i32 + 2 + columns - 1) / columns) * LINE + 12) as u32
@@ -82,7 +85,7 @@ pub(super) fn legend_height(named: &[Named], width: u32) -> u32 {
 /// Width of an entry of the legend, in pixels.
 const ENTRY: i32 = 260;
 
-/// Draws the legend that all panels share.
+/// Draws the legend for all panels.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, named: &[Named]) -> Drawn<B> {
     let columns = (area.dim_in_pixel().0 as i32 / ENTRY).max(1);
     let text = (FONT, TEXT).into_font().color(&INK);
@@ -100,7 +103,7 @@ pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, named: &[N
     Ok(())
 }
 
-/// Draws the front of one channel.
+/// Draws the fronts of one channel.
 pub(super) fn draw<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     panel: &Panel,
@@ -164,7 +167,7 @@ pub(super) fn draw<B: DrawingBackend>(
         let (width, height) = area.estimate_text_size(name, &style)?;
         let (mut x, mut y) = chart.plotting_area().map_coordinate(&at);
         let (x_range, y_range) = chart.plotting_area().get_pixel_range();
-        // Below its line, where no better settings are; beside other names, and within the field.
+        // The name stands below its line, where no setting lies, clear of other names and within the axes.
         x = (x + 6)
             .clamp(x_range.start + 4, (x_range.start + columns as i32 - width as i32 - 4).max(0));
         y += 6;
@@ -179,7 +182,8 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the middle of the places at which a scheme forms the front of a panel, on the scheme's own curve.
+/// Returns the middle point of that part of a panel's common front which a scheme forms at efficiencies from `left`, if
+/// it forms any.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

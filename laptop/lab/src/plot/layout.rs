@@ -1,4 +1,4 @@
-//! Places the panels of a picture.
+//! Arranges the panels of a picture in a grid.
 
 use super::title::Drawn;
 use super::{Picture, efficiencies, front, panel};
@@ -9,7 +9,7 @@ const SINGLE: (u32, u32) = (960, 480);
 const PANEL: (u32, u32) = (480, 310);
 const COLUMNS: usize = 2;
 
-/// Returns the width and height of a picture, in pixels.
+/// Returns the width and height of a picture of trials, in pixels.
 pub(super) fn size(picture: &Picture) -> (u32, u32) {
     if picture.trials.len() == 1 {
         return SINGLE;
@@ -18,7 +18,7 @@ pub(super) fn size(picture: &Picture) -> (u32, u32) {
     (PANEL.0 * COLUMNS as u32, PANEL.1 * rows)
 }
 
-/// Draws one trial alone, or all in a grid with the efficiencies last.
+/// Draws a single trial alone, or several in a grid with the panel of efficiencies last.
 pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Picture) -> Drawn<B> {
     area.fill(&WHITE)?;
     if let [trial] = picture.trials {
@@ -40,20 +40,20 @@ pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Pi
 
 const FRONT: (u32, u32) = (400, 340);
 
-/// Returns the columns and rows of a grid for this number of panels.
+/// Returns the numbers of columns and rows of a grid of `panels` panels.
 fn fronts_grid(panels: usize) -> (usize, usize) {
     let columns = panels.clamp(1, COLUMNS);
     (columns, panels.div_ceil(columns))
 }
 
-/// Returns the width and height of fronts with their legend, in pixels.
+/// Returns the width and height of a picture of fronts with its legend, in pixels.
 pub(super) fn fronts_size(panels: &[front::Panel]) -> (u32, u32) {
     let (_, rows) = fronts_grid(panels.len());
     let width = FRONT.0 * COLUMNS as u32;
     (width, front::legend_height(&front::named(panels), width) + FRONT.1 * rows as u32)
 }
 
-/// Draws one front alone, or all in a grid, below one legend.
+/// Draws a legend, and below it the fronts of each channel in a grid.
 pub(super) fn fill_fronts<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     panels: &[front::Panel],

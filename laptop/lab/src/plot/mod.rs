@@ -1,12 +1,12 @@
-//! Draws trials, as SVG or PNG.
+//! Draws trials and Pareto fronts, as SVG or PNG.
 
 mod bitmap;
+mod decimate;
 mod efficiencies;
 pub mod front;
 mod layout;
 mod palette;
 mod panel;
-mod thin;
 mod title;
 
 use crate::error::At;
@@ -23,22 +23,22 @@ use tiny_skia::{Color, Pixmap};
 
 use crate::output::Output;
 
-/// The content of a picture.
+/// The content of a picture of trials.
 pub struct Picture<'a> {
-    /// The signal.
+    /// The recording that the trials encoded.
     pub recording: &'a Recording,
     /// The trials, one for each panel.
     pub trials: &'a [Trial],
     /// The unit of the signal, if it is known.
     pub unit: Option<&'a str>,
-    /// Range of the samples to show.
+    /// Range of the samples to show, by index.
     pub shown: Range<usize>,
 }
 
-/// Name of the embedded font. A viewer of an SVG replaces it by its own sans-serif.
+/// Name of the embedded font. In an SVG, the viewer's own sans-serif font takes its place.
 const FONT: &str = "sans-serif";
 
-/// Draws trials to a file, in the format of its ending.
+/// Draws trials to a file, as SVG or PNG by the file's ending.
 ///
 /// # Errors
 /// Returns an error if the ending is neither `.svg` nor `.png`, if the file cannot be written, or if it is the input.
@@ -46,7 +46,7 @@ pub fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
     write(path, input, layout::size(picture), Drawing::Trials(picture))
 }
 
-/// Draws fronts to a file, in the format of its ending.
+/// Draws Pareto fronts to a file, as SVG or PNG by the file's ending.
 ///
 /// # Errors
 /// See [`draw`].
@@ -69,7 +69,7 @@ fn write(path: &Path, input: &Path, size: (u32, u32), drawing: Drawing) -> Resul
     output.finish()
 }
 
-/// Returns a picture as the bytes of a file with this ending.
+/// Returns a picture of trials as the bytes of an SVG or PNG file; `ending` says which.
 ///
 /// # Errors
 /// Returns an error if the ending is neither `svg` nor `png`.
@@ -86,7 +86,7 @@ fn drawn(ending: &str, size: (u32, u32), drawing: Drawing) -> Result<Vec<u8>> {
         "svg" => {
             let mut text = String::new();
             fill(&SVGBackend::with_string(&mut text, size).into_drawing_area(), drawing)?;
-            // As in PNG: a bend does not stick out beyond the data.
+            // Round joins, as in PNG: a sharp join would stick out beyond the data.
             Ok(text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).into_bytes())
         }
         "png" => png(size, drawing),

@@ -1,4 +1,5 @@
-//! Colours: the paper's blue signal and orange reconstruction, and the catalogue's colours of the schemes.
+//! The colours of pictures: the paper's blue for the signal and orange for the reconstruction, and the catalogue's
+//! colours of the schemes.
 
 use crate::scheme::Scheme;
 use plotters::style::RGBColor;
@@ -11,10 +12,10 @@ pub(super) const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xea);
 pub(super) const UP: RGBColor = RGBColor(0x2b, 0x2f, 0x36);
 pub(super) const DOWN: RGBColor = RGBColor(0xc2, 0x3b, 0x4e);
 
-/// Colour of lines that form no part of the common front.
+/// Colour of the lines of schemes that form no part of the common front.
 pub(super) const OTHERS: RGBColor = RGBColor(0xb8, 0xbd, 0xc5);
-/// Colours that remain distinct to the colour-blind, after Okabe and Ito.
-pub(super) const TOLD_APART: [RGBColor; 5] = [
+/// Colours that the colour-blind can tell apart, after Okabe and Ito.
+pub(super) const DISTINCT: [RGBColor; 5] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
     RGBColor(0x00, 0x9e, 0x73),
@@ -22,7 +23,7 @@ pub(super) const TOLD_APART: [RGBColor; 5] = [
     RGBColor(0x00, 0x00, 0x00),
 ];
 
-/// Returns the colour of a scheme in the panel of efficiencies.
+/// Returns the catalogue's colour of a scheme, for the panel of efficiencies.
 pub(super) fn of(scheme: Scheme) -> RGBColor {
     let [red, green, blue] = scheme.info().colour;
     RGBColor(red, green, blue)

@@ -1,7 +1,7 @@
-//! Draws the panel of one trial: signal and reconstruction over spikes.
+//! Draws the panel of one trial: the signal and its reconstruction, above the spikes.
 
+use super::decimate::{column, decimate};
 use super::palette::{DECODED, DOWN, GRID, INK, QUIET, SIGNAL, UP};
-use super::thin::{column, thin};
 use super::title::{Drawn, TITLE, legend, title};
 use super::{FONT, Picture};
 use crate::brief::brief;
@@ -79,7 +79,7 @@ pub(super) fn draw<B: DrawingBackend>(
         for segment in segments() {
             let points =
                 segment.clone().zip(&values[segment]).map(|(own, value)| (at(own), *value));
-            let points = thin(points, &x_range, columns);
+            let points = decimate(points, &x_range, columns);
             chart.draw_series(LineSeries::new(points, colour.stroke_width(2)))?;
         }
     }
@@ -139,7 +139,7 @@ fn spikes<'a, B: DrawingBackend>(
     for event in events {
         let x = at(event.sample as usize) + f64::from(event.slot) * step;
         let is_up = event.polarity == Polarity::Up;
-        // One stroke for all spikes of a neuron that fall on it.
+        // Spikes of one neuron in one column of pixels share a stroke.
         if !drawn.insert((column(x, &x_range, columns), event.neuron, is_up)) {
             continue;
         }
@@ -161,7 +161,8 @@ fn y_label(picture: &Picture) -> String {
     picture.unit.map_or(name.clone(), |unit| format!("{name}, {unit}"))
 }
 
-/// Returns a function from a sample to its time in seconds from the start, or to its number if there are no times.
+/// Returns the function from a sample's index to its position on the time axis: seconds from the start, or the index
+/// itself if neither times nor a rate are known.
 fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     let recording = picture.recording;
     move |sample| match (recording.times.get(sample), recording.times.first(), recording.rate) {
@@ -171,14 +172,14 @@ fn times<'a>(picture: &'a Picture) -> impl Fn(usize) -> f64 + 'a {
     }
 }
 
-/// Returns the range from the earliest to the latest time.
+/// Returns the range from the earliest to the latest of the times.
 fn span(times: impl Iterator<Item = f64>) -> Range<f64> {
     let (min, max) =
         times.fold((f64::MAX, f64::MIN), |(min, max), time| (min.min(time), max.max(time)));
     min..max
 }
 
-/// Returns the range of the values, with some margin.
+/// Returns the range of the values, extended by a margin.
 fn bounds<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     let (min, max) =
         values.fold((f64::MAX, f64::MIN), |(min, max), &value| (min.min(value), max.max(value)));

@@ -7,10 +7,10 @@ use plotters::prelude::*;
 
 pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-/// Height of the title, in pixels.
+/// Height of a panel's title with its details, in pixels.
 pub(super) const TITLE: u32 = 52;
 
-/// Draws the title of a panel after its letter, and below it, in small print, the parameters.
+/// Draws a panel's letter and title and, below them in small print, up to two lines of details.
 pub(super) fn title<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     letter: Option<char>,
@@ -32,7 +32,7 @@ pub(super) fn title<B: DrawingBackend>(
     Ok(())
 }
 
-/// Draws the legend beside the title, where there are no curves.
+/// Draws the legend of signal and decoded values at the right of the title, above the curves.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>) -> Drawn<B> {
     let width = area.dim_in_pixel().0 as i32;
     let small = (FONT, 13).into_font().color(&INK);

@@ -14,7 +14,7 @@ use std::thread;
 use std::time::Duration;
 
 kinds! {
-    /// The reason that a board cannot be read.
+    /// The reason for which a board cannot be read.
     pub enum CaptureKind by spell of subject {
         Unread { error: Box<Error> } => ("the channel cannot be read any more: {error}"),
         Gone => ("it is gone"),
@@ -31,7 +31,7 @@ kinds! {
 }
 room!(CaptureKind, Capture);
 
-/// A board's ring buffer, which is read by polling.
+/// A ring buffer on a board, read by polling.
 pub trait Channel {
     /// Reads the bytes that are available, up to the buffer's length; returns 0 if there are none.
     ///
@@ -45,11 +45,11 @@ pub trait Channel {
 pub struct Captured {
     /// The number of bytes written.
     pub bytes: u64,
-    /// `Ok` if the capture ended on request, or else the reason that it ended.
+    /// `Ok` if the capture ended on request, otherwise the reason that it ended.
     pub end: Result<()>,
 }
 
-/// Copies a channel's bytes until `is_due` says to stop, and then those that are still in it.
+/// Copies a channel's bytes to `output` until `is_due` returns true, and then the bytes that are still in the channel.
 pub fn capture(
     channel: &mut dyn Channel,
     output: &mut dyn Write,
@@ -66,7 +66,7 @@ fn copy(
     is_due: &mut dyn FnMut() -> bool,
     bytes: &mut u64,
 ) -> Result<()> {
-    /// Time between polls of an empty buffer. A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
+    /// Time between polls of an empty channel. A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
     const PAUSE: Duration = Duration::from_millis(1);
     /// Maximum number of bytes that are read after the request to stop, in case the board never pauses.
     const REST: u64 = 1 << 20;
@@ -98,7 +98,7 @@ mod tests {
     use crate::{ErrorKind, Result};
     use std::collections::VecDeque;
 
-    /// A channel with the bytes of each read; after the last, the board is disconnected.
+    /// A channel that returns the next entry at each read, and fails after the last as if the board were disconnected.
     struct Fake(VecDeque<&'static [u8]>);
 
     impl Channel for Fake {
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Captures with a request to stop after `stop` reads.
+    /// Captures from a board that returns `reads`, with a request to stop after `stop` reads.
     fn run(reads: &[&'static [u8]], stop: usize) -> (Vec<u8>, Captured) {
         let (mut output, mut asked) = (Vec::new(), 0);
         let captured = capture(&mut Fake(reads.iter().copied().collect()), &mut output, || {

@@ -9,20 +9,20 @@ use probe_rs::rtt::{Rtt, ScanRegion, try_attach_to_rtt};
 use probe_rs::{Core, Permissions};
 use std::time::Duration;
 
-/// A board, and the number of the channel to read.
+/// A board at a debug probe, and the channel to read from it.
 #[derive(Clone, Debug)]
 pub struct Board {
-    /// Name of the chip in probe-rs: `STM32F405RG`, `RP2040`.
+    /// Name of the chip in probe-rs, such as `STM32F405RG` or `RP2040`.
     pub chip: String,
-    /// The debug probe, `VENDOR:PRODUCT[:SERIAL]`, if several are connected.
+    /// The debug probe as `VENDOR:PRODUCT[:SERIAL]`; must be given if several are connected.
     pub probe: Option<String>,
     /// Number of the channel on the board, from 0.
     pub channel: usize,
-    /// Address of RTT's control block; all RAM is searched if `None`.
+    /// Address of RTT's control block on the board; if `None`, all RAM is searched for the block.
     pub address: Option<u64>,
 }
 
-/// Finds chip, probe and channel, and passes the channel to `then`.
+/// Finds the chip, the probe and the channel of `board`, and passes the channel to `use_it`.
 ///
 /// # Errors
 /// Returns an error if the probe, the board or the channel is missing, or if an access fails.
@@ -30,7 +30,7 @@ pub fn with_channel(
     board: &Board,
     use_it: impl FnOnce(&mut dyn Channel) -> Result<()>,
 ) -> Result<()> {
-    /// Time for which the control block is searched: a board that has just started must set it up first.
+    /// Longest time to search for the control block; a board that has just started must first set the block up.
     const PATIENCE: Duration = Duration::from_secs(2);
     let Board { chip, probe, channel: number, address } = board;
     let target = Registry::from_builtin_families()
@@ -68,7 +68,7 @@ pub fn with_channel(
     use_it(&mut Probed { core, rtt, number: *number })
 }
 
-/// Formats an error and its causes, in the words of probe-rs.
+/// Formats an error and its causes with the messages of probe-rs, joined by colons.
 fn chain(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
@@ -83,7 +83,7 @@ fn hint() -> &'static str {
     }
 }
 
-/// A channel of a board that keeps running.
+/// An RTT channel of a board that runs on while the channel is read.
 struct Probed<'a> {
     core: Core<'a>,
     rtt: Rtt,

@@ -5,12 +5,12 @@ use crate::Result;
 use crate::output::Output;
 use std::io::Write;
 
-/// An unfinished bag.
+/// A bag that is being written.
 pub(super) struct Bag {
     output: Output,
     topics: Vec<Topic>,
     chunk: Vec<u8>,
-    /// The messages in the current chunk: their topic, time and offset.
+    /// The messages in the current chunk: topic, time in ns, and offset in the chunk.
     index: Vec<(usize, u64, u32)>,
     chunks: Vec<Chunk>,
 }
@@ -20,14 +20,14 @@ struct Chunk {
     place: u64,
     first: u64,
     last: u64,
-    /// Number of messages on each topic.
+    /// Number of messages on each topic in the chunk.
     counts: Vec<u32>,
 }
 
 /// Size of a chunk in bytes, as in `rosbag`.
 const CHUNK: usize = 768 * 1024;
 const VERSION: &[u8] = b"#ROSBAG V2.0\n";
-/// Size in bytes to which the first record is padded, so that it can be overwritten at the end.
+/// Size in bytes to which the first record is padded, because it is overwritten once the place of the index is known.
 const FIRST: usize = 4096;
 
 impl Bag {
@@ -144,7 +144,7 @@ impl Container for Bag {
     }
 }
 
-/// Returns the first record of the bag.
+/// Returns the bag's first record, which gives the offset of the index and the numbers of connections and chunks.
 fn first(index: u64, connections: u32, chunks: u32) -> Vec<u8> {
     let header = [
         field("op", &[3]),
@@ -170,7 +170,7 @@ fn record(bytes: &mut Vec<u8>, header: &[u8], data: &[u8]) {
     }
 }
 
-/// Encodes a time as seconds and nanoseconds.
+/// Encodes a time in ns as seconds and the nanoseconds beyond them, in 4 bytes each.
 fn stamp(nanoseconds: u64) -> [u8; 8] {
     let seconds = (nanoseconds / 1_000_000_000) as u32;
     let rest = (nanoseconds % 1_000_000_000) as u32;

@@ -14,16 +14,16 @@ pub struct Header {
     pub scheme: Scheme,
     /// The sample type.
     pub sample: SampleType,
-    /// All parameters that decoding needs, one set for each channel.
+    /// All parameters that decoding needs, a set for each channel.
     pub channels: Vec<Settings>,
-    /// Samples a second, if known.
+    /// Sample rate in Hz, if known.
     pub rate: Option<f64>,
-    /// The signal's origin, and the values that were calibrated; not needed for decoding.
+    /// Facts that decoding does not need: the origin of the signal, and parameters from which others were derived.
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters that a file of spikes does not contain, as decoding needs only others that were derived from
-/// them.
+/// Lists the parameters of a scheme that are only notes in a file of spikes, because decoding needs others that were
+/// derived from them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =
@@ -34,14 +34,14 @@ pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
 /// Version of the file format.
 const VERSION: &str = "1";
 
-/// Maximum number of channels: that of addresses.
+/// Maximum number of channels, which is the number of addresses.
 const MOST_CHANNELS: usize = 1 << 16;
 
-/// Keys that decoding does not need, besides parameters from which others were derived.
+/// Keys of notes that decoding does not need, besides the parameters in [`unrecorded`].
 const NOTES: [&str; 4] = ["column", "topic", "field", "latency"];
 
 impl Header {
-    /// Returns the keys and values before the parameters.
+    /// Returns the keys and values that precede the parameters.
     fn common(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![
             ("spikewire", VERSION.to_owned()),
@@ -54,8 +54,8 @@ impl Header {
         lines
     }
 
-    /// Returns the keys and values, in order. A value that differs between channels has its channel after an `@`:
-    /// `start@1`.
+    /// Returns the header's keys and values, in their order in the file. A key whose value differs between channels
+    /// ends in `@` and the channel's number, such as `start@1`.
     pub fn lines(&self) -> Vec<(String, String)> {
         let texts = |own: &Settings| -> Vec<(&'static str, String)> {
             own.entries().iter().map(|(name, value)| (*name, value.to_string())).collect()
@@ -78,7 +78,7 @@ impl Header {
         lines
     }
 
-    /// Parses the keys and values.
+    /// Parses the keys and values of a header.
     ///
     /// # Errors
     /// Returns an error if a parameter is missing, occurs twice, is not a number or does not belong to the scheme.
@@ -143,7 +143,7 @@ fn parse<T: FromStr>(key: &str, value: &str) -> Result<T> {
     Ok(value.trim().parse().map_err(wrong)?)
 }
 
-/// Keys that are taken out one by one, so that those left over are known to be unused.
+/// Keys and values that are taken out one by one; those left at the end are known to be unused.
 struct Keys {
     left: Vec<(String, String)>,
 }

@@ -1,10 +1,10 @@
-//! Reasons that spikes cannot be read or written.
+//! Reasons for which spikes cannot be read or written.
 
 use crate::error::room;
 use catalogue::kinds;
 
 kinds! {
-    /// The reason that a file of spikes, or a log of them, cannot be read or written.
+    /// The reason for which a file of spikes, or a log of spikes, cannot be read or written.
     pub enum SpikesKind by spell of subject {
         // The header.
         OtherVersion { version: String, own: &'static str } =>

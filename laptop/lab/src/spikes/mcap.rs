@@ -1,26 +1,26 @@
-//! Writes MCAP files of ROS 2's messages, with an index and without compression.
+//! Writes MCAP files with messages of ROS 2, with an index and without compression.
 
 use super::recorder::{Container, Topic};
 use crate::Result;
 use crate::output::Output;
 use std::io::Write;
 
-/// An unfinished file.
+/// An MCAP file that is being written.
 pub(super) struct Mcap {
     output: Output,
     topics: Vec<Topic>,
     chunk: Vec<u8>,
-    /// The messages in the current chunk: their topic, time and offset.
+    /// The messages in the current chunk: topic, time in ns, and offset in the chunk.
     index: Vec<(usize, u64, u64)>,
-    /// Each chunk's entry in the index at the end of the file.
+    /// The entry of each finished chunk in the index at the end of the file.
     chunks: Vec<Vec<u8>>,
     /// Number of messages on each topic.
     counts: Vec<u32>,
-    /// The first and the last time in the file.
+    /// The earliest and the latest time in the finished chunks, in ns.
     span: Option<(u64, u64)>,
 }
 
-/// Size of a chunk in bytes, as in `rosbag`.
+/// Size of a chunk in bytes, the same as in `rosbag`.
 const CHUNK: usize = 768 * 1024;
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
@@ -151,7 +151,7 @@ impl Container for Mcap {
     }
 }
 
-/// Returns the records that define each topic and its type; types are numbered from 1.
+/// Returns the records that define each topic and its message type; types are numbered from 1.
 fn channels(topics: &[Topic]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for (topic, place) in topics.iter().zip(0_u16..) {
@@ -176,7 +176,7 @@ fn text(text: &str) -> Vec<u8> {
     long(text.as_bytes())
 }
 
-/// Returns the bytes with their length in front.
+/// Returns bytes preceded by their length, which takes 4 bytes.
 fn long(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat()
 }

@@ -1,4 +1,4 @@
-//! Reads spikes from logs, written here or by the paper's toolbox.
+//! Reads spikes from logs that this library or the paper's toolbox wrote.
 
 use super::recorder::{EVENT, HEADER};
 use super::{Header, Item, Spikes, SpikesKind};
@@ -15,22 +15,25 @@ use std::path::Path;
 /// A log of spikes that is read from its start to its end.
 pub struct Messages {
     log: Reading,
-    /// Topic of each channel, and number of its samples so far.
+    /// Topic of each channel, and the number of samples read from it so far.
     channels: Vec<(String, u64)>,
-    /// Number of a channel's neurons; `slots` is the number of a sample's sub-timesteps.
+    /// Number of neurons of each channel.
     neurons: usize,
+    /// Number of sub-timesteps of each sample.
     slots: usize,
     is_signed: bool,
-    /// Whether the log has a header. In such logs, a sample without spikes and with a missing input was not encoded.
+    /// Whether the log has a header, as this library writes it. In such a log, a message whose input is missing or NaN
+    /// stands for a sample that was not encoded.
     has_header: bool,
     items: VecDeque<Item>,
 }
 
 impl Messages {
-    /// Opens a log, and collects what decoding needs: from the header, or else from all messages together.
+    /// Opens a log, and makes the header of its spikes: from the header in the log or, if there is none, from all
+    /// messages.
     ///
     /// # Errors
-    /// Returns an error if the log has no spikes, or if it does not say enough about their scheme.
+    /// Returns an error if the log has no spikes, or if its messages lack a parameter that decoding needs.
     pub fn open(path: &Path, kind: Kind, accept_cut: bool) -> Result<(Self, Header)> {
         let file = path.display().to_string();
         let found = Found::read(Reading::open(path, kind, damage(accept_cut))?)?;
@@ -54,7 +57,7 @@ impl Messages {
         Ok((messages, header))
     }
 
-    /// Reads a message of a channel.
+    /// Turns the current message, which is of channel number `channel`, into items.
     fn take(&mut self, channel: usize) -> Result<()> {
         let (neurons, slots) = (self.neurons, self.slots);
         let sample = self.channels[channel].1;
@@ -119,10 +122,11 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike, from the field `spike`, or from the neuron's place in the array of that name.
+/// Reads a neuron's spike from a message: from the field `spike` of a single neuron, or from element `place` of the
+/// array `spike`. Returns `None` beyond the array's end.
 ///
 /// # Errors
-/// Returns an error if there is no such field.
+/// Returns an error if the message has no field `spike`.
 fn spike(log: &Reading, place: usize, of: usize) -> Result<Option<i8>> {
     let number = match (log.has_number("spike"), place, of) {
         (true, 0, 1 | usize::MAX) => log.number("spike")?,
@@ -132,19 +136,19 @@ fn spike(log: &Reading, place: usize, of: usize) -> Result<Option<i8>> {
     Ok(number.map(|number| number as i8))
 }
 
-/// What was found in a pass over a log.
+/// Facts about a log's spikes, collected in a first pass over the log.
 #[derive(Default)]
 struct Found {
     topic: String,
-    /// The header, in logs written here.
+    /// Text of the header, in logs that this library wrote.
     header: Option<String>,
     scheme: String,
-    /// Start value in the first message.
+    /// Start value in the first message of the topic.
     start: f64,
     range: (f64, f64),
     neurons: usize,
     first: i64,
-    /// Sum of the thresholds in all messages; the toolbox uses their mean.
+    /// Sum of the thresholds in all messages. The toolbox decodes with their mean.
     thresholds: f64,
     samples: u64,
     last: i64,
@@ -159,7 +163,7 @@ impl Found {
                 EVENT.clone_into(&mut found.topic);
                 return Ok(found);
             }
-            // The toolbox publishes on `event`; what is remapped is known by its type.
+            // The toolbox publishes on the topic `event`; a renamed topic is known by its message type.
             let kind = log.kind().rsplit('/').next().unwrap_or_default().to_owned();
             let is_spyke = ["spyke", "spyke_array", "Spyke", "SpykeArray"].contains(&kind.as_str());
             if !is_spyke || (found.samples > 0 && found.topic != log.topic()) {
@@ -186,7 +190,7 @@ impl Found {
         Ok(found)
     }
 
-    /// Returns the keys and values for the header of a file of spikes.
+    /// Returns the keys and values of a header for the spikes.
     fn lines(&self) -> Result<Vec<(String, String)>> {
         if let Some(header) = &self.header {
             let pairs = header.lines().filter_map(|line| line.split_once('='));
@@ -196,7 +200,7 @@ impl Found {
         let threshold = self.thresholds / self.samples as f64;
         let line = |key: &str, value: String| (key.to_owned(), value);
         let own = match scheme {
-            // As the toolbox decodes: from 0 on, and the result doubled.
+            // The toolbox decodes from 0 on, and doubles the result.
             "tbr" => vec![
                 line("threshold", threshold.to_string()),
                 line("step", (2.0 * threshold).to_string()),
@@ -214,7 +218,7 @@ impl Found {
             "grf" => {
                 let (min, max) = self.range;
                 let field = (max - min) / (self.neurons.saturating_sub(2).max(1)) as f64;
-                // The range in which our neurons have the centres of the toolbox's.
+                // The range in which this crate's neurons have the same centres as the toolbox's neurons.
                 let lower = if self.scheme == GAUSSIAN_FIELDS { field } else { 0.0 };
                 vec![
                     line("neurons", self.neurons.to_string()),
@@ -242,24 +246,25 @@ impl Found {
     }
 }
 
-/// Reads a field of text.
+/// Reads the text of the field `name`.
 fn text(log: &Reading, name: &'static str) -> Result<String> {
     log.text(name).ok_or_else(|| lacks(log, name))
 }
 
-/// Makes the error of a message that lacks a field.
+/// Makes the error for a message that lacks the field `name`.
 fn lacks(log: &Reading, name: &'static str) -> Error {
     SpikesKind::NoField { name }.at(log.place())
 }
 
-/// Maximum number of neurons: that of addresses.
+/// Maximum number of neurons, which is the number of addresses.
 const MOST: usize = 1 << 16;
 
 #[cfg(test)]
 mod tests {
     use super::Found;
 
-    /// Neuron 7 of the toolbox has the centre of our neuron 6; our range begins one neuron lower.
+    /// The range of the toolbox's Gaussian fields is moved down by one field, because neuron 7 of the toolbox has the
+    /// centre of this crate's neuron 6. The range of GRF stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

@@ -1,9 +1,11 @@
-//! Files of spikes: `index,address,polarity`, below lines `# key=value` with everything that decoding needs.
+//! Files of spikes: a table `index,address,polarity`, below lines `# key=value` with everything that decoding needs.
 //!
-//! With sub-timesteps, `index` counts those: sample times slots, plus the slot. The last lines give the numbers of
-//! samples and events, so that a truncated file is noticed. Comments report values that were not finite and gaps in
-//! time where they occur, with the times there, at the first and at the last sample. The neurons of a second channel
-//! are numbered on from those of the first.
+//! `index` is the sample or, with sub-timesteps, the sample times the number of slots, plus the slot. Neurons are
+//! numbered through all channels: those of channel 1 follow those of channel 0.
+//!
+//! Comments between the events report values that were not finite and gaps in time, each where it occurs, and the time
+//! before each gap and at the first and last sample. The last lines give the numbers of samples and events, by which a
+//! truncated file is noticed.
 
 mod bag;
 mod header;
@@ -27,28 +29,29 @@ use crate::output::Output;
 use crate::{Place, Result};
 use catalogue::run::Event;
 
-/// A file in any format to which spikes are recorded.
+/// A file in any format, to which spikes are written.
 pub trait Record {
-    /// Notes the next samples, and removes the rows that are not finite, which the encoder must not see.
+    /// Notes the next samples and the unusual steps in their times, and removes from `chunk` the rows that are not
+    /// finite, which must not be encoded.
     ///
     /// # Errors
     /// Returns an error if the file cannot hold the samples.
     fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
 
-    /// Writes events. The encoder's later events must belong to the finite sample `decided` or to a later one.
+    /// Writes events. All events passed later must belong to the finite sample number `decided` or to later samples.
     ///
     /// # Errors
     /// Returns an error if the spikes cannot be written.
     fn write(&mut self, events: &mut Vec<Event>, decided: u64) -> Result<()>;
 
-    /// Writes the end, and returns the output.
+    /// Writes the last events and the file's end. Returns the output, which the caller must finish.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
     fn finish(self: Box<Self>, events: &mut Vec<Event>) -> Result<(Output, Summary)>;
 }
 
-/// A source of spikes, in the order of samples.
+/// A source of spikes, which come in the order of their samples.
 pub trait Spikes {
     /// Returns whether the events have times.
     fn is_timed(&self) -> bool;
@@ -59,10 +62,10 @@ pub trait Spikes {
     /// Returns an error if an item is invalid, or if the end is missing.
     fn next(&mut self) -> Result<Item>;
 
-    /// Returns the place of the last item, for an error.
+    /// Returns the place of the latest item, for an error.
     fn place(&self) -> Place;
 
-    /// Returns notes for the user on the file; they are complete after the last item.
+    /// Returns notes for the user on the file, complete once the last item was read.
     fn notes(&mut self) -> Vec<String> {
         Vec::new()
     }

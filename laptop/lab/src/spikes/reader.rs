@@ -8,38 +8,38 @@ use catalogue::run::Event;
 use spikewire::Polarity;
 use std::io::{BufRead, Read};
 
-/// One item after the header.
+/// One item of a file of spikes, after the header.
 #[derive(Debug, PartialEq)]
 pub enum Item {
-    /// A spike; its sample is counted as in the file.
+    /// A spike.
     Event {
-        /// The event.
+        /// The spike. Its sample is counted as in the file, samples that are not finite included.
         event: Event,
-        /// The time of its sample in µs.
+        /// The time of the event's sample in µs, if events have times.
         time: Option<i64>,
     },
     /// The time of a sample.
     Time {
-        /// The sample.
+        /// Index of the sample.
         sample: u64,
-        /// The time, in µs.
+        /// Time of the sample, in µs.
         time: i64,
     },
-    /// A run of values that were not finite.
+    /// A run of samples that were not finite.
     Rejected {
-        /// First sample of the run.
+        /// Index of the first sample of the run.
         first: u64,
-        /// The number of samples.
+        /// Number of samples in the run.
         count: u64,
     },
     /// The end of the file.
     End {
-        /// Number of samples.
+        /// Number of samples that were recorded.
         samples: u64,
     },
 }
 
-/// Reads the part of a file of spikes that follows the header.
+/// A reader of the spikes in a file, after its header.
 pub struct Reader<R> {
     input: R,
     file: String,
@@ -49,18 +49,18 @@ pub struct Reader<R> {
     neurons: u64,
     is_signed: bool,
     columns: usize,
-    /// Usual time between samples, in µs.
+    /// Usual time between samples, in µs; 0 if unknown.
     period: u64,
-    /// The last `# time=`: a sample and its time.
+    /// The sample and the time in µs of the latest `# time=` line.
     noted: Option<(u64, i64)>,
     previous: u64,
     events: u64,
     samples: Option<u64>,
-    told_events: Option<u64>,
+    declared_events: Option<u64>,
 }
 
 impl<R: BufRead> Reader<R> {
-    /// Reads the header.
+    /// Reads the header, and returns it with a reader of the spikes after it.
     ///
     /// # Errors
     /// Returns an error if the header is incomplete or contradicts itself.
@@ -79,7 +79,7 @@ impl<R: BufRead> Reader<R> {
             previous: 0,
             events: 0,
             samples: None,
-            told_events: None,
+            declared_events: None,
         };
         let mut lines = Vec::new();
         loop {
@@ -118,7 +118,7 @@ impl<R: BufRead> Reader<R> {
         Ok((reader, header))
     }
 
-    /// Parses a sample and a number.
+    /// Parses a sample's index and a number, separated by a comma.
     fn pair(&self, value: &str) -> Result<(u64, i64)> {
         let (sample, number) = value.split_once(',').unwrap_or((value, ""));
         let number = number.parse();
@@ -199,7 +199,7 @@ impl<R: BufRead> Reader<R> {
         Ok(is_some)
     }
 
-    /// Makes an error at the current line.
+    /// Makes an error of this kind at the current line.
     fn refused(&self, kind: SpikesKind) -> Error {
         kind.at(Place::line(&self.file, self.number))
     }
@@ -224,7 +224,7 @@ impl<R: BufRead> Spikes for Reader<R> {
             let (key, value) = note.split_once('=').unwrap_or((note, ""));
             match key {
                 "samples" => self.samples = Some(self.count(value)?),
-                "events" => self.told_events = Some(self.count(value)?),
+                "events" => self.declared_events = Some(self.count(value)?),
                 "time" => {
                     let (sample, time) = self.pair(value)?;
                     self.noted = Some((sample, time));
@@ -250,7 +250,7 @@ impl<R: BufRead> Spikes for Reader<R> {
                 }
             }
         }
-        let (Some(samples), Some(events)) = (self.samples, self.told_events) else {
+        let (Some(samples), Some(events)) = (self.samples, self.declared_events) else {
             return Err(SpikesKind::NoEnd { line: self.number }.at(&self.file));
         };
         if events != self.events {
@@ -269,7 +269,7 @@ impl<R: BufRead> Spikes for Reader<R> {
     }
 }
 
-/// Parses a whole number without sign; `None` if it does not fit.
+/// Parses digits; returns `None` if there are other characters or more than 18 digits.
 fn digits(text: &[u8]) -> Option<u64> {
     if text.is_empty() || text.len() > 18 {
         return None;

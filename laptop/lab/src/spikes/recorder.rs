@@ -1,7 +1,8 @@
-//! Records spikes as messages on a topic `event`, one for each sample, as the paper's toolbox does.
+//! Records spikes as messages in a ROS 1 bag or an MCAP file: on the topic `event`, one message for each sample, as the
+//! paper's toolbox does.
 //!
-//! A topic `event_header` holds once, as text, what the header of a file of spikes says, so that every scheme can be
-//! decoded. Further channels are on `event_1`, `event_2` and so on.
+//! A single message on the topic `event_header` holds the header of a file of spikes as text, which lets every scheme
+//! be decoded. The channels after the first are on the topics `event_1`, `event_2` and so on.
 
 use super::bag::Bag;
 use super::mcap::Mcap;
@@ -23,35 +24,35 @@ pub(super) struct Topic {
     pub kind: Kind,
 }
 
-/// A log that is being written.
+/// A log that is being written, in any format.
 pub(super) trait Container {
-    /// Appends a message on a topic.
+    /// Appends a message on the topic of index `topic`, at a time in ns.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
     fn add(&mut self, topic: usize, nanoseconds: u64, message: &[u8]) -> Result<()>;
 
-    /// Writes the end, and returns the output.
+    /// Writes the end of the log. Returns the output, which the caller must finish.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
     fn finish(self: Box<Self>) -> Result<Output>;
 }
 
-/// The container of recorded messages.
+/// The file format of recorded messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A ROS 1 bag.
     Bag,
-    /// An MCAP file of ROS 2's messages.
+    /// An MCAP file with messages of ROS 2.
     Mcap,
 }
 
 impl Format {
-    /// Returns the container for a file of this name; `None` if the file is a table.
+    /// Returns the format of a log by the file's name; `None` if the file is a table.
     ///
     /// # Errors
-    /// Returns an error if the name has the ending of another kind of file.
+    /// Returns an error if the name ends neither as a log's nor as a table's.
     pub fn of(path: &Path) -> Result<Option<Self>> {
         match path.extension().and_then(|own| own.to_str()) {
             Some("bag") => Ok(Some(Self::Bag)),
@@ -61,21 +62,21 @@ impl Format {
     }
 }
 
-/// Records a log of spikes.
+/// A writer of spikes to a log of messages.
 pub struct Recorder {
     container: Box<dyn Container>,
     format: Format,
     kind: Kind,
-    /// The content that all messages of a channel share.
+    /// A message for each channel, with the content that all messages of the channel share.
     empty: Vec<Spyke>,
-    /// The header's lines, until they are written.
+    /// The header's lines, until they have been written.
     header: Option<String>,
     neurons: usize,
-    /// Time between samples in µs, if no times are recorded.
+    /// Time between samples in µs, if the recording has no times.
     period: Option<f64>,
     /// Samples that are not written yet.
     pending: VecDeque<Pending>,
-    /// Number of finite samples that were written, which is how the encoder counts.
+    /// Number of finite samples written so far. Encoders number samples by counting the finite ones.
     finite: u64,
     /// Events of samples that may still get more events.
     events: VecDeque<Event>,
@@ -88,18 +89,18 @@ struct Pending {
     is_finite: bool,
 }
 
-/// Time in µs at which 32-bit seconds end.
+/// First time in µs that a message cannot hold, because its seconds have 32 bits.
 const LATEST: u64 = (1 << 32) * 1_000_000;
-/// Topic of the spikes, as in the toolbox.
+/// Topic of the first channel's spikes, as in the toolbox.
 pub(super) const EVENT: &str = "event";
 /// Topic of the header.
 pub(super) const HEADER: &str = "event_header";
 
 impl Recorder {
-    /// Starts a log; `ranges` are the smallest and largest sample of each channel.
+    /// Starts a log; `ranges` holds the smallest and largest sample of each channel.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be written, or if samples have no times.
+    /// Returns an error if the file cannot be written, or if the samples have neither times nor a rate.
     pub fn new(
         output: Output,
         format: Format,

@@ -1,40 +1,40 @@
-//! The message types of the paper's toolbox: the spikes of one sample, with what decoding needs.
+//! The message types of the paper's toolbox: the spikes of one sample, with parameters for decoding.
 
 use super::recorder::Format;
 use std::time::Duration;
 
-/// The message of one sample.
+/// The toolbox's message of one sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
-    /// The spikes of each neuron, one sub-timestep after the other: 1, 0 or -1, or the number of spikes in one
-    /// direction.
+    /// Number of spikes of each neuron, negative for spikes down. All neurons' numbers in one sub-timestep precede
+    /// those in the next.
     pub spikes: Vec<i8>,
     /// Value from which decoding starts.
     pub start: f32,
-    /// The smallest and the largest sample.
+    /// The smallest and the largest sample of the recording.
     pub range: (f32, f32),
     /// The threshold; 0 if the scheme has none.
     pub threshold: f32,
-    /// The sample itself.
+    /// The sample that was encoded.
     pub input: f32,
-    /// Name of the scheme.
+    /// Name of the scheme in the toolbox.
     pub scheme: &'static str,
     /// Time of the sample.
     pub time: Duration,
 }
 
-/// A type of message.
+/// A type of ROS message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// A message of one neuron.
+    /// Spikes of one neuron.
     Spyke,
-    /// A message of several neurons, or with sub-timesteps.
+    /// Spikes of several neurons, or of several sub-timesteps.
     SpykeArray,
     /// Text.
     String,
 }
 
-/// The fields after the spikes.
+/// Definition of the fields after the spikes, in the language of ROS messages.
 const FIELDS: &str = "float32 start
 float32 min_input
 float32 max_input
@@ -62,7 +62,7 @@ impl Kind {
         }
     }
 
-    /// Returns the definition for ROS 1.
+    /// Returns the definition of the type for ROS 1.
     pub(crate) fn definition_ros1(self) -> String {
         match self {
             Self::Spyke => format!("int8 spike\n{FIELDS}time timestamp\n"),
@@ -71,7 +71,7 @@ impl Kind {
         }
     }
 
-    /// Returns the definition for ROS 2, with those of the nested types.
+    /// Returns the definition of the type for ROS 2, followed by the definitions of nested types.
     pub(crate) fn definition_ros2(self) -> String {
         let time = "builtin_interfaces/Time timestamp";
         let line = "=".repeat(80);
@@ -83,7 +83,7 @@ impl Kind {
         }
     }
 
-    /// Returns the MD5 of the definition without comments, by which ROS 1 identifies a type.
+    /// Returns the MD5 of the type's definition without comments, by which ROS 1 identifies the type.
     pub(crate) fn md5(self) -> &'static str {
         match self {
             Self::Spyke => "3fe7d788a9984f98947655b57e7a8ced",
@@ -118,14 +118,14 @@ impl Spyke {
     }
 }
 
-/// Encodes a message of text.
+/// Encodes a message that consists of a text.
 pub(crate) fn text(text: &str, format: Format) -> Vec<u8> {
     let mut bytes = start(format);
     add_text(&mut bytes, text, format);
     bytes
 }
 
-/// Returns the prefix of a message: empty in ROS 1; in ROS 2 that of plain CDR, little-endian.
+/// Returns the first bytes of a message: none in ROS 1, and in ROS 2 the prefix of little-endian CDR.
 fn start(format: Format) -> Vec<u8> {
     match format {
         Format::Bag => Vec::new(),
@@ -140,7 +140,7 @@ fn add_text(bytes: &mut Vec<u8>, text: &str, format: Format) {
     bytes.extend(end);
 }
 
-/// Pads to a multiple of four bytes in ROS 2.
+/// Pads a message of ROS 2 to a multiple of four bytes. In ROS 1, nothing is padded.
 fn align(bytes: &mut Vec<u8>, format: Format) {
     if format == Format::Mcap {
         bytes.resize(bytes.len().next_multiple_of(4), 0);

@@ -11,29 +11,29 @@ use std::io::Write;
 
 /// A file of spikes that is being written.
 ///
-/// Encoders see and count finite samples only, while the file counts all. If an encoder looks ahead its events come
-/// late, and notes on later samples wait for them.
+/// Encoders see and count finite samples only, while the file counts all. If an encoder looks ahead, its events come
+/// late, and the writer holds notes on later samples back until these events are written.
 pub struct Writer {
     output: Output,
     slots: u64,
-    /// Usual time between samples in µs, as far as it is known.
+    /// Usual time between samples in µs; 0 if unknown.
     period: u64,
     is_timed: bool,
-    /// Finite samples that may still get events: their index and time.
+    /// Index and time of each finite sample that may still get events.
     pending: VecDeque<(u64, i64)>,
-    /// Number of the first sample in `pending`, counted by finite samples.
+    /// Number of finite samples before the first one in `pending`.
     first_pending: u64,
-    /// Lines that wait; each must come before the events of samples later than its number.
+    /// Notes that wait, each with the index of its sample. A note must come before the events of later samples.
     notes: VecDeque<(u64, String)>,
-    /// A run of values that were not finite, which may continue: its first index and its length.
+    /// First index and length of the current run of samples that were not finite.
     rejected_run: Option<(u64, u64)>,
-    /// Time of the last sample.
+    /// Time of the latest sample, in µs.
     last_time: i64,
     summary: Summary,
     line: Vec<u8>,
 }
 
-/// Counts of what was written.
+/// Counts of what a file of spikes contains.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Summary {
     /// Number of samples.
@@ -45,7 +45,7 @@ pub struct Summary {
 }
 
 impl Writer {
-    /// Writes the header.
+    /// Writes the header, and returns a writer of the spikes after it.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.
@@ -91,7 +91,7 @@ impl Writer {
         }
     }
 
-    /// Writes the notes that come before this sample.
+    /// Writes the waiting notes that must come before the events of `sample`.
     fn write_notes(&mut self, sample: u64) {
         while self.notes.front().is_some_and(|&(at, _)| at < sample) {
             if let Some((_, note)) = self.notes.pop_front() {

@@ -1,4 +1,4 @@
-//! Random numbers from a seed, the same on every machine.
+//! Random numbers from a seed, equal on every machine.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -8,17 +8,17 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct Chance(ChaCha8Rng);
 
 impl Chance {
-    /// Seeds a generator.
+    /// Makes a generator from a seed.
     pub(super) fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    /// Draws evenly from 0 up to, but not including, 1.
+    /// Draws a number from 0 up to, but not including, 1, all equally likely.
     pub(super) fn part(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Draws an index below `count`, which is 1 or more.
+    /// Draws an index below `count`, which must be 1 or more.
     pub(super) fn below(&mut self, count: usize) -> usize {
         ((self.part() * count as f64) as usize).min(count - 1)
     }

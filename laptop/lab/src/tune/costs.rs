@@ -1,4 +1,4 @@
-//! Costs of settings on a flight controller, from measured counts.
+//! Costs of settings on a flight controller, from measured instruction counts.
 
 use super::RequestKind;
 use crate::Result;
@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The counts that `cargo bench-target --baseline` writes and `cargo verify` checks; the file is a symbolic link, so
-/// that source packages contain it.
+/// The measured counts, as JSON, which `cargo bench-target --baseline` writes and `cargo verify` checks. The file is a
+/// symbolic link, because a source package contains only files of its own directory.
 const COUNTS: &str = include_str!("baseline.json");
 
 #[derive(Deserialize)]
@@ -23,10 +23,10 @@ static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
         .unwrap_or_default()
 });
 
-/// The cost of one channel.
+/// The costs of one channel on a flight controller.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Costs {
-    /// How many samples after a sample its code comes out.
+    /// Latency of the code: the number of samples from a sample to its code.
     pub latency: usize,
     /// Size of the encoder's state in bytes, if known.
     pub ram: Option<usize>,
@@ -37,7 +37,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Looks up the costs of settings on a core of the measured table.
+    /// Looks up the costs of settings on `core`, a core with measured counts.
     pub fn new(scheme: Scheme, settings: &Settings, latency: usize, core: &str) -> Self {
         let counted = scheme.counted(settings).ok();
         let measured = counted.and_then(|counted| {
@@ -53,7 +53,7 @@ impl Costs {
         }
     }
 
-    /// Describes the number of instructions for a sample.
+    /// Formats the mean number of instructions for a sample, as a number or as `not measured`.
     pub fn instructions(&self) -> String {
         match self.instructions {
             Some(count) if self.is_bound => format!("at most {count:.0}"),
@@ -63,7 +63,7 @@ impl Costs {
     }
 }
 
-/// Returns the measured sample type that has the same width.
+/// Returns the name of the measured sample type that has the same width as `sample`.
 fn measured_as(sample: SampleType) -> &'static str {
     match sample {
         SampleType::F32 => "f32",
@@ -72,17 +72,17 @@ fn measured_as(sample: SampleType) -> &'static str {
     }
 }
 
-/// Returns the names of the cores in the table.
+/// Returns the names of the cores with measured counts.
 fn cores() -> Vec<&'static str> {
     let mut cores: Vec<&str> = MEASURED.keys().filter_map(|key| key.split(' ').next()).collect();
     cores.dedup();
     cores
 }
 
-/// Finds a core by its name, in upper or lower case.
+/// Returns the usual spelling of a core's name, which may be in upper or lower case.
 ///
 /// # Errors
-/// Returns an error if no instructions were measured on such a core.
+/// Returns an error if no instructions were measured on a core of this name.
 pub fn core(name: &str) -> Result<String> {
     let known = cores();
     let Some(core) = known.iter().find(|core| core.eq_ignore_ascii_case(name)) else {

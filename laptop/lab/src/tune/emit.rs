@@ -1,11 +1,12 @@
-//! Writes settings for firmware, and as files for other commands.
+//! Writes settings as a constant for firmware, or as a TOML file for other commands.
 
 use crate::Result;
 use crate::coding::Coding;
 use crate::scheme::Scheme;
 use catalogue::run::{Constant, Settings};
 
-/// Writes a Rust constant, with these comments before it, that compiles where the crate is a dependency.
+/// Writes settings as a Rust constant, with `comments` before it. The constant is named after the channel, and compiles
+/// where the crate `spikewire` is a dependency.
 ///
 /// # Errors
 /// Returns an error if the scheme cannot be written as a constant.
@@ -18,16 +19,16 @@ pub fn rust(
     let Constant { scheme: kind, value } = scheme.constant(settings)?;
     let comments: Vec<String> = comments.iter().map(|line| format!("/// {line}\n")).collect();
     let name = constant_name(channel);
-    // One long line: whoever pastes it has a formatter.
+    // One long line, left to the formatter of whoever pastes it.
     Ok(format!("{}pub static {name}: {kind} = {value};\n", comments.concat()))
 }
 
-/// Writes a file of parameters, with these comments at its start.
+/// Writes settings as a TOML file of parameters, with `comments` at its start.
 pub fn toml(comments: &[String], scheme: Scheme, settings: &Settings) -> String {
     Coding::of_settings(scheme, settings).to_toml(comments)
 }
 
-/// Returns the name of a constant: `gyro_rad[0]` gives `GYRO_RAD_0`.
+/// Returns the name of a channel's constant: `GYRO_RAD_0` for `gyro_rad[0]`.
 fn constant_name(channel: &str) -> String {
     let words = channel.split(|letter: char| !letter.is_ascii_alphanumeric());
     let words: Vec<String> =

@@ -1,23 +1,23 @@
-//! Reports when the best settings lie at an end of the search, if the scheme itself allows more.
+//! Reports parameters whose best value lies at a bound of the search, if the scheme itself allows values beyond.
 
 use super::Problem;
 use super::space::{Axis, Role, Space};
 use crate::brief::short;
 use catalogue::run::Asked;
 
-/// An end of a parameter's search at which the best settings lie.
+/// A bound of a parameter's search at which the best settings lie.
 #[derive(Clone, Debug)]
 pub struct End {
     /// Name of the parameter.
     pub parameter: &'static str,
-    /// Value of the parameter in the best settings, in words.
+    /// Value of the parameter in the best settings, formatted.
     pub value: String,
-    /// The lowest and highest value that were searched, in words.
+    /// The lowest and highest value that were searched, formatted.
     pub searched: [String; 2],
 }
 
 impl End {
-    /// Describes the end in a sentence for the user.
+    /// Returns a sentence for the user that reports the bound.
     pub fn words(&self) -> String {
         let Self { parameter, value, searched: [low, high] } = self;
         format!(
@@ -26,10 +26,10 @@ impl End {
     }
 }
 
-/// Returns the ends of the search at which these settings lie. If nothing beyond an end can be built, the end is the
-/// scheme's and not the search's, and is left out.
+/// Returns the bounds of the search at which the settings `best` lie. A bound is left out if no value beyond it can be
+/// built, because such a bound is the scheme's and not the search's.
 pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
-    /// Share of an axis that counts as its end.
+    /// Distance from a bound, as a share of the axis, within which a value lies at the bound.
     const NEAR: f64 = 0.02;
     let point = space.point(best);
     let Some(first) = problem.train.first() else { return Vec::new() };
@@ -47,7 +47,7 @@ pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
         let mut beyond = numbers.clone();
         beyond[place] = further(axis, is_high);
         let is_count = matches!(axis.role, Role::Whole | Role::Most);
-        // No count is below 0.
+        // A count cannot be below 0.
         let is_bound = is_count && meaning(axis, beyond[place]) < 0.0;
         if is_near && !is_bound && is_built(&space.meant(&beyond)) {
             let searched = [axis.low, axis.high].map(|end| short(meaning(axis, end)));
@@ -57,7 +57,8 @@ pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
     found
 }
 
-/// Returns the value of the options on an axis, as a user gives it; `None` if an end has no meaning there.
+/// Returns the value that `options` give to the parameter of an axis; `None` if the bounds of such an axis mean nothing
+/// to a user.
 fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     match axis.role {
         Role::Log(_) | Role::Around(..) | Role::Whole | Role::Most => options.number(axis.name),
@@ -65,7 +66,7 @@ fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     }
 }
 
-/// Converts a number on the axis to the value that a user gives.
+/// Converts a number on an axis to the parameter's value, as a user gives it.
 fn meaning(axis: &Axis, number: f64) -> f64 {
     match axis.role {
         Role::Log(unit) => number.exp() * unit,
@@ -74,7 +75,8 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
     }
 }
 
-/// Returns a number just beyond an end: the next whole one, or one that is a fiftieth of the axis away.
+/// Returns a number just beyond a bound of an axis: the next whole number, or on other axes a number a fiftieth of the
+/// axis away.
 fn further(axis: &Axis, is_high: bool) -> f64 {
     let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
     match axis.role {

@@ -1,34 +1,34 @@
 //! Adaptive differential evolution with a shrinking number of parents: L-SHADE, after Tanabe and Fukunaga (2014).
 //!
-//! The caller says how much of its budget is spent, so that a small budget converges as far as it can. Points lie in
-//! the unit cube.
+//! The caller passes the share of its budget that is spent, by which the number of parents shrinks: even a small budget
+//! converges as far as it can. Points lie in the unit cube.
 
 use super::chance::Chance;
 
-/// Number of successful factors and rates that are remembered.
+/// Number of successful scale factors, and of crossover rates, that are remembered.
 const MEMORY: usize = 6;
-/// Number of parents at the end.
+/// Number of parents at the end of the budget.
 const FEWEST: usize = 4;
-/// Share of the parents that count as the best, towards which the others move.
+/// Share of the parents that count as the best. Each new point moves towards one of these.
 const BEST: f64 = 0.15;
 
-/// An optimiser that asks for the values of points.
+/// An optimiser that seeks the smallest value of a function. The caller computes the values.
 pub(super) struct Evolution {
     chance: Chance,
-    /// Points with their values; sorted, the best first, whenever points are asked for.
+    /// The parents and their values; sorted, the best first, by each call of `ask`.
     parents: Vec<(Vec<f64>, f64)>,
-    /// Points that were replaced by better ones.
+    /// Former parents that were replaced by better points.
     replaced: Vec<Vec<f64>>,
     first_count: usize,
     factors: [f64; MEMORY],
     rates: [f64; MEMORY],
     remembered: usize,
-    /// Factor and rate of each point that was asked for.
+    /// Scale factor and crossover rate of each point that `ask` returned last.
     asked: Vec<(f64, f64)>,
 }
 
 impl Evolution {
-    /// Starts with points whose values are known.
+    /// Starts with `parents`, points whose values are known.
     pub(super) fn new(seed: u64, parents: Vec<(Vec<f64>, f64)>) -> Self {
         Self {
             chance: Chance::new(seed),
@@ -42,7 +42,7 @@ impl Evolution {
         }
     }
 
-    /// Returns a generation of points whose values are wanted; `spent` is the share of the budget that is used.
+    /// Returns the next points whose values are wanted; `spent` is the share of the budget that is used, from 0 to 1.
     pub(super) fn ask(&mut self, spent: f64) -> Vec<Vec<f64>> {
         self.parents.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let (first, fewest) = (self.first_count as f64, FEWEST as f64);
@@ -79,7 +79,7 @@ impl Evolution {
             if axis == always || chance.part() < rate {
                 let from = *value;
                 *value += factor * (best[axis] - from) + factor * (other[axis] - third[axis]);
-                // Halfway to the bound that it would pass.
+                // Instead of passing a bound, the value moves halfway to it.
                 if *value < 0.0 {
                     *value = from / 2.0;
                 } else if *value > 1.0 {
@@ -90,10 +90,11 @@ impl Evolution {
         point
     }
 
-    /// Takes the values of the points asked for, in their order. Points may have been moved, and the last ones may be
-    /// missing.
+    /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may
+    /// leave the last ones out.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Bound of a value: settings that are not allowed have values far apart, which must not outweigh all others.
+        /// Largest gain that counts. Settings that break a limit have values far apart, and such a gain would outweigh
+        /// all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);
@@ -127,7 +128,8 @@ impl Evolution {
 mod tests {
     use super::{Chance, Evolution};
 
-    /// A bowl in five dimensions: 400 points come nearer to its minimum than random ones would in a billion.
+    /// In a bowl of five dimensions, 400 points come within a squared distance of 1e-3 of the minimum; as many random
+    /// points would not.
     #[test]
     fn a_bowl_is_descended() {
         let value = |point: &[f64]| point.iter().map(|own| (own - 0.3).powi(2)).sum::<f64>();
@@ -144,13 +146,13 @@ mod tests {
         while spent < 400 {
             let points = evolution.ask(f64::from(spent) / 400.0);
             spent += points.len() as i32;
-            let told: Vec<(Vec<f64>, f64)> = points
+            let values: Vec<(Vec<f64>, f64)> = points
                 .into_iter()
                 .map(|point| (value(&point), point))
                 .map(|(v, p)| (p, v))
                 .collect();
-            least = told.iter().map(|(_, value)| *value).fold(least, f64::min);
-            evolution.tell(told);
+            least = values.iter().map(|(_, value)| *value).fold(least, f64::min);
+            evolution.tell(values);
         }
         assert!(least < 1e-3, "{least}");
     }

@@ -1,4 +1,4 @@
-//! The figures by which settings are judged in a report.
+//! The figures by which a report judges settings.
 
 use super::{Problem, Stretch};
 use crate::Result;
@@ -7,35 +7,35 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Figures over the scored parts of stretches, each of which is coded in one piece.
+/// Figures over the scored parts of stretches of a recording. Each stretch is coded in one piece.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Figures {
     /// Number of samples.
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percentage of samples without a spike, for a code that has at most one each.
+    /// Percentage of samples without a spike, for a code that has at most one spike a sample.
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
     /// Signal-to-noise ratio in dB: the signal's variance over the mean square of the error.
     pub snr: f64,
-    /// The largest error.
+    /// The largest error, in the signal's unit.
     pub worst: f64,
-    /// Delay of the decoded values in samples, besides the latency: the lag with the highest correlation.
+    /// Delay of the decoded values in samples, besides the code's latency: the lag with the highest correlation.
     pub lag: i64,
-    /// RMSE below the band limit, if there is one.
+    /// RMSE after a low-pass of the errors at the band limit, if there is a limit.
     pub below: Option<f64>,
-    /// Events a second, if a rate is known.
+    /// Events a second, if the rate is known.
     pub events_per_second: Option<f64>,
-    /// Entropy of the spikes in bits a second: of the code of a sample, times the rate.
+    /// Entropy of the spikes in bits a second: the entropy of a sample's code, times the rate.
     pub bits_per_second: Option<f64>,
-    /// Bits a second that samples rounded to the same error would need.
+    /// Bits a second that raw samples would need if they were rounded to the same RMSE.
     pub raw_bits_per_second: Option<f64>,
 }
 
 impl Figures {
-    /// Computes the figures of settings on stretches, of which there must be at least one.
+    /// Computes the figures of settings on one or more stretches. `below` is the band limit in Hz.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.
@@ -76,12 +76,12 @@ impl Figures {
         let variance = sums.value_squares / samples - mean * mean;
         let rate = sums.seconds.map(|seconds| samples / seconds);
         let entropy: f64 = codes.values().map(|count| *count as f64 / samples).map(bits).sum();
-        // Steps of this size give as large an error, and as many of them the range.
+        // Rounding to steps of this size gives the same RMSE; `raw` bits number the steps within the range.
         let step = (12.0 * mean_square).sqrt();
         let raw = ((sums.max - sums.min) / step + 1.0).log2();
         let best = |(place, _): (usize, &f64)| place as i64 - FARTHEST as i64;
         let lag = correlations.iter().enumerate().max_by(|a, b| {
-            // Of two alike the shorter one.
+            // Of two lags with the same correlation, the shorter one.
             a.1.total_cmp(b.1).then(best(*b).abs().cmp(&best(*a).abs()))
         });
         Ok(Self {
@@ -100,7 +100,7 @@ impl Figures {
     }
 }
 
-/// Longest lag that is tried, in samples.
+/// Longest lag that is tried in either direction, in samples.
 const FARTHEST: usize = 100;
 
 #[derive(Default)]
@@ -134,12 +134,12 @@ impl Sums {
     }
 }
 
-/// Returns `-p log2 p`.
+/// Returns `-p log2 p`, where `p` is `part`; 0 if `p` is 0.
 fn bits(part: f64) -> f64 {
     if part > 0.0 { -part * part.log2() } else { 0.0 }
 }
 
-/// Counts how often each code of a sample occurs.
+/// Counts how often each code of a sample occurs. Samples without events have an empty code.
 fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>, usize>) {
     let groups = events.chunk_by(|a, b| a.sample == b.sample);
     let mut silent = samples;
@@ -151,7 +151,8 @@ fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>,
     *codes.entry(Vec::new()).or_default() += silent;
 }
 
-/// Adds the correlation of a stretch with its decoded values, for each lag of the latter.
+/// Adds the correlation of a stretch with its decoded values to each lag's sum. The lags go from `-FARTHEST` to
+/// `FARTHEST` samples.
 fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let (center, middle) = (mean(values), mean(decoded));
@@ -164,7 +165,7 @@ fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     }
 }
 
-/// Returns the sum of squares after an ideal low pass at `limit`, a share of the sample rate.
+/// Returns the sum of squares after an ideal low-pass filter at `limit`, a share of the sample rate.
 pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     let power = power(values);
     let count = values.len();
@@ -172,7 +173,7 @@ pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     kept.map(|(_, power)| power).sum()
 }
 
-/// Returns each frequency's part of the sum of squares, from 0 to half the sample rate.
+/// Returns the power spectrum: each frequency's part of the sum of squares, from 0 to half the sample rate.
 pub fn power(values: &[f64]) -> Vec<f64> {
     let count = values.len();
     if count < 2 {
@@ -184,7 +185,7 @@ pub fn power(values: &[f64]) -> Vec<f64> {
     if transform.process(&mut input, &mut spectrum).is_err() {
         return Vec::new();
     }
-    // Both halves of the spectrum count, but for the middle and the ends.
+    // Each bin counts for its mirror image too, except at 0 and at half the sample rate.
     let times = |bin: usize| if bin == 0 || bin * 2 == count { 1.0 } else { 2.0 };
     let bins = spectrum.iter().enumerate();
     bins.map(|(bin, value)| times(bin) * value.norm_sqr() / count as f64).collect()
@@ -204,7 +205,7 @@ mod tests {
         }
     }
 
-    /// The signal has waves of 5 and 40 cycles in 1000 samples; the limit passes only the slower.
+    /// A limit passes the slower of two waves, which have 5 and 40 cycles in 1000 samples.
     #[test]
     fn a_limit_keeps_what_is_below() {
         let wave = |cycles: f64| move |i: i32| (TAU * cycles * f64::from(i) / 1000.0).sin();

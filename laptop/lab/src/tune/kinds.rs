@@ -1,11 +1,11 @@
-//! Reasons that a request cannot be met.
+//! Reasons for which a request cannot be met.
 
 use crate::error::room;
 use catalogue::kinds;
 use catalogue::run::{Needs, Worded};
 
 kinds! {
-    /// The reason that a request cannot be met.
+    /// The reason for which a request cannot be met.
     pub enum RequestKind by spell of subject {
         // Values out of their range.
         NotAboveZero => ("{subject} must be above 0"),

@@ -1,4 +1,4 @@
-//! Tunes step codes: lists the outcomes of all thresholds, and compares them in exact arithmetic.
+//! Tunes step codes: lists the spikes and errors of all thresholds, in exact arithmetic, and scores the best of them.
 
 use super::Scored;
 use super::problem::{Goal, most_spikes};
@@ -9,16 +9,16 @@ use rayon::prelude::*;
 
 /// Smallest threshold that is listed, as a share of the signal's range.
 const SMALLEST: f64 = 1e-3;
-/// Maximum number of samples that are processed for a list of outcomes; it bounds the time to seconds.
+/// Maximum number of samples that are processed to list outcomes, which bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Maximum number of samples that are processed for each setting of the budget, so that a small budget is a short
-/// search.
+/// Maximum number of samples that are processed to list outcomes for each setting of the budget, which makes a search
+/// of a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
 /// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
 const NEIGHBOURHOODS: usize = 24;
-/// Number of combinations of integer parameters that are listed between two checks whether to stop.
+/// Number of combinations of integer parameters that are listed between two checks whether to stop the search.
 const COMBINATIONS: usize = 8;
-/// Maximum number of listed outcomes that the codec scores.
+/// Maximum number of listed outcomes that are scored with the codec.
 const MOST_SCORED: usize = 1000;
 
 /// The combinations of integer parameters, and the outcomes worth scoring, each with the index of its combination.
@@ -35,7 +35,8 @@ impl Run<'_> {
         }
         let Some((combinations, mut all)) = self.listed(space) else { return false };
         let samples: usize = problem.train.iter().map(|stretch| stretch.values.len()).sum();
-        // The best by the goal, as rounding may move any over a limit, and what else no other one beats.
+        // The best by the goal, several because rounding may move one over a limit, and then a selection of the Pareto
+        // front.
         let most = MOST_SCORED.min(self.budget.evaluations - self.found.evaluated);
         let best = if problem.goal == Goal::Front { 0 } else { most.div_ceil(2) };
         let in_order = self.in_order(samples);
@@ -54,7 +55,8 @@ impl Run<'_> {
             let scored = self.try_all(batch).into_iter().flatten();
             first = first.or_else(|| scored.into_iter().find(Scored::is_allowed));
         }
-        // The list is in the order of what can be expected of other stretches, where a step fits these.
+        // A step that is fitted to these stretches scores too well on them. The list is sorted by the error to expect
+        // on other stretches, so its first allowed setting is the best.
         let is_fitted = |(own, _): &(Outcome, usize)| own.apart != own.squares;
         if chosen.first().is_some_and(is_fitted) && matches!(problem.goal, Goal::LeastError(_)) {
             self.found.best = first.or_else(|| self.found.best.take());
@@ -62,7 +64,8 @@ impl Run<'_> {
         true
     }
 
-    /// Lists the outcomes worth scoring; `None` if the scheme has no such list.
+    /// Lists the outcomes worth scoring, for all combinations of integer parameters; `None` if the scheme has no such
+    /// list.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
         let rounded = self.rounded;
@@ -118,7 +121,7 @@ impl Run<'_> {
         Some((combinations, all))
     }
 
-    /// Returns a function that ranks outcomes on this number of samples; smaller is better.
+    /// Returns a function that ranks outcomes by the goal, on `samples` samples; smaller is better.
     fn in_order(&self, samples: usize) -> impl Fn(&Outcome) -> f64 + use<> {
         const NOT_ALLOWED: f64 = 1e100;
         let (goal, count) = (self.problem.goal, samples as f64);
@@ -138,7 +141,7 @@ impl Run<'_> {
     }
 }
 
-/// Converts an outcome to options, which include those of its combination.
+/// Converts an outcome to options: those of its combination, with the outcome's threshold and step.
 fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     let mut options = combination.clone();
     options.set("threshold", outcome.threshold);
@@ -148,7 +151,7 @@ fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     options
 }
 
-/// Keeps the outcomes that no other beats in both spikes and error, sorted by spikes.
+/// Keeps the Pareto front, that is the outcomes that no other beats in both spikes and error, sorted by spikes.
 fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     all.sort_by(|(a, _), (b, _)| a.spikes.cmp(&b.spikes).then(a.squares.total_cmp(&b.squares)));
     let mut least = f64::INFINITY;
@@ -159,7 +162,8 @@ fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     });
 }
 
-/// Returns the ranges of thresholds around the best outcomes, up to their neighbours.
+/// Returns the ranges of thresholds around the best outcomes, each from the next lower to the next higher threshold in
+/// `list`.
 fn neighbourhoods(list: &[Outcome], in_order: &impl Fn(&Outcome) -> f64) -> Vec<(f64, f64)> {
     let mut thresholds: Vec<f64> = list.iter().map(|own| own.threshold).collect();
     thresholds.sort_by(f64::total_cmp);

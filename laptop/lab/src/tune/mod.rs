@@ -1,4 +1,5 @@
-//! Finds parameters for a goal. Its modules define the score of settings, the space in which they lie, and the search.
+//! Finds parameters of a scheme that meet a goal. The modules define the score of settings, the space in which settings
+//! lie, and the search.
 
 mod chance;
 pub mod costs;

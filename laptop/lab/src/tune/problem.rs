@@ -1,4 +1,4 @@
-//! Defines what a search optimises: a goal, limits, and the score of settings by the codec that flies.
+//! The problem that a search solves: a goal, limits, and the score of settings, computed with the codec that flies.
 
 use super::RequestKind;
 use super::{Costs, Extent, Stretch};
@@ -13,24 +13,24 @@ pub enum Goal {
     LeastError(f64),
     /// The greatest spiking efficiency, with at most this RMSE.
     MostEfficient(f64),
-    /// All settings that no other beats in both spikes and error.
+    /// The Pareto front: all settings that no other beats in both spikes and error.
     Front,
 }
 
 /// Upper limits on what settings may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
-    /// Size of a channel's encoder, in bytes.
+    /// Maximum size of a channel's encoder, in bytes.
     pub ram: Option<f64>,
-    /// Mean number of instructions to encode a sample.
+    /// Maximum of the mean number of instructions to encode a sample.
     pub instructions: Option<f64>,
-    /// Delay of the code, in samples.
+    /// Maximum delay of the code, in samples.
     pub latency: Option<f64>,
-    /// Number of events a second.
+    /// Maximum number of events a second.
     pub rate: Option<f64>,
 }
 
-/// Counts over several stretches.
+/// Counts over the scored samples of several stretches.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     /// Number of samples.
@@ -54,31 +54,31 @@ impl Tally {
         (self.squares / self.samples as f64).sqrt()
     }
 
-    /// Returns the number of events a second.
+    /// Returns the number of events a second, if the duration is known.
     pub fn rate(&self) -> Option<f64> {
         self.seconds.map(|seconds| self.spikes as f64 / seconds)
     }
 }
 
-/// A quantity that is limited.
+/// A quantity of settings that may be limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// Size of a channel's encoder, in bytes; from above.
+    /// Size of a channel's encoder in bytes, limited from above.
     Ram,
-    /// Instructions for a sample; from above.
+    /// Instructions to encode a sample, limited from above.
     Instructions,
-    /// Delay of the code, in samples; from above.
+    /// Delay of the code in samples, limited from above.
     Latency,
-    /// Events a second; from above.
+    /// Events a second, limited from above.
     Rate,
-    /// Percentage of samples without a spike; from below.
+    /// Percentage of samples without a spike, limited from below.
     Efficiency,
-    /// Root mean square error; from above.
+    /// Root mean square error, limited from above.
     Rmse,
 }
 
 impl Limit {
-    /// Returns the name of the request's setting that limits it.
+    /// Returns the name of the setting in a request that limits the quantity.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ram => "max_ram",
@@ -91,16 +91,16 @@ impl Limit {
     }
 }
 
-/// A limit that settings exceed.
+/// A limit that settings break.
 #[derive(Clone, Debug)]
 pub struct Excess {
     /// The limited quantity.
     pub limit: Limit,
-    /// Value of the settings.
+    /// Value of the quantity that the settings have.
     pub value: f64,
-    /// Value that is allowed.
+    /// Value of the quantity that the limit allows.
     pub allowed: f64,
-    /// Excess, as a share of the limit.
+    /// Amount by which the limit is exceeded, as a share of the limit.
     pub part: f64,
 }
 
@@ -111,14 +111,14 @@ pub struct Scored {
     pub options: Asked,
     /// Counts of samples, spikes and errors.
     pub tally: Tally,
-    /// Cost on a microcontroller.
+    /// Costs on a flight controller.
     pub costs: Costs,
-    /// The limits and goals that the settings exceed.
+    /// The limits that the settings break, that of the goal included.
     pub excess: Vec<Excess>,
 }
 
 impl Scored {
-    /// Returns whether the settings keep to all limits, including that of the goal.
+    /// Returns whether the settings keep to all limits, that of the goal included.
     pub fn is_allowed(&self) -> bool {
         self.excess.is_empty()
     }
@@ -130,7 +130,7 @@ pub struct Problem<'a> {
     pub scheme: Scheme,
     /// The sample type of the codec that is scored.
     pub sample: SampleType,
-    /// Parameters that the user gave.
+    /// Parameters that the user gave, which the search keeps.
     pub fixed: Asked,
     /// The stretches to tune on.
     pub train: &'a [Stretch],
@@ -138,7 +138,7 @@ pub struct Problem<'a> {
     pub goal: Goal,
     /// Upper limits on what settings may cost.
     pub limits: &'a Limits,
-    /// The core whose measured instructions count.
+    /// The core whose measured instruction counts apply.
     pub core: &'a str,
     /// Range and mean of the stretches to tune on.
     pub extent: Extent,
@@ -146,7 +146,7 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// Makes a problem of these stretches, of which there must be at least one.
+    /// Makes the problem of tuning on `train`, which must hold at least one stretch.
     pub fn new(
         scheme: Scheme,
         sample: SampleType,
@@ -165,7 +165,7 @@ impl<'a> Problem<'a> {
         Self { scheme, sample, fixed: fixed.clone(), train, goal, limits, core, extent, calibrated }
     }
 
-    /// Completes the options to settings for a stretch.
+    /// Completes options to the settings that code a stretch.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.
@@ -212,7 +212,7 @@ impl<'a> Problem<'a> {
         Ok((events, decoded, codec.latency()))
     }
 
-    /// Scores settings on stretches; also returns the latency.
+    /// Scores settings on stretches; also returns the code's latency in samples.
     ///
     /// # Errors
     /// Returns an error if the settings are invalid.
@@ -226,7 +226,7 @@ impl<'a> Problem<'a> {
         Ok((tally, latency))
     }
 
-    /// Scores settings as [`tally`](Self::tally) does; also returns those completed for the last stretch.
+    /// Scores settings as [`tally`](Self::tally) does; also returns the settings completed for the last stretch.
     fn tallied(
         &self,
         options: &Asked,
@@ -237,7 +237,7 @@ impl<'a> Problem<'a> {
         let mut tally = Tally { seconds: Some(0.0), ..Tally::default() };
         let mut latency = 0;
         let mut settings = self.settings(options, sample, first)?;
-        // Only the first samples of a stretch can change them.
+        // Stretches can differ only in the first value.
         let is_shared = !self.scheme.info().has_first_value();
         for (place, stretch) in stretches.iter().enumerate() {
             if place > 0 && !is_shared {
@@ -268,7 +268,7 @@ impl<'a> Problem<'a> {
 
     fn excess(&self, tally: &Tally, costs: &Costs) -> Vec<Excess> {
         let Limits { ram, instructions, latency, rate } = self.limits;
-        // What is not known may be anything.
+        // A cost that is not known may be any, and breaks every limit.
         let unknown = f64::INFINITY;
         let ram_used = costs.ram.map_or(unknown, |bytes| bytes as f64);
         let mut asked = vec![
@@ -280,7 +280,7 @@ impl<'a> Problem<'a> {
         if let Goal::MostEfficient(rmse) = self.goal {
             asked.push((Limit::Rmse, tally.rmse(), Some(rmse)));
         }
-        // Rounding is no excess.
+        // A difference within rounding is no excess.
         let is_above = |value: f64, allowed: f64| value > allowed * (1.0 + 1e-12);
         let part = |value: f64, allowed: f64| ((value - allowed) / allowed.max(1e-9)).min(1e6);
         let excess = asked.into_iter().filter_map(|(limit, value, allowed)| {
@@ -289,7 +289,7 @@ impl<'a> Problem<'a> {
         });
         let mut excess: Vec<Excess> = excess.collect();
         if let Goal::LeastError(efficiency) = self.goal {
-            // In whole spikes: percents are rounded.
+            // Compared in whole spikes, because percentages are rounded.
             let most = most_spikes(efficiency, tally.samples);
             if tally.spikes > most {
                 let part = part(tally.spikes as f64, most.max(1) as f64);
@@ -300,7 +300,8 @@ impl<'a> Problem<'a> {
         excess
     }
 
-    /// Returns the value of a score for a goal; smaller is better, and any allowed score is below any other.
+    /// Returns the value of scored settings for a goal. Smaller is better; settings that break a limit are worse than
+    /// all others.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, squares, .. } = scored.tally;
         let limits = scored
@@ -312,7 +313,8 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// Returns the value of these spikes and errors for a goal, regardless of the limits.
+    /// Returns the value of a number of spikes and a sum of squared errors for a goal, regardless of the limits;
+    /// smaller is better.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();
@@ -324,7 +326,7 @@ impl<'a> Problem<'a> {
                     let above = (spikes - most) as f64 / most.max(1) as f64;
                     return NOT_ALLOWED * (1.0 + above);
                 }
-                // Of two alike the one with fewer spikes, or with less error.
+                // Of two settings with the same error, the one with fewer spikes is better.
                 error + 1e-9 * part
             }
             Goal::MostEfficient(most) if rmse > most * (1.0 + 1e-12) => {
@@ -336,10 +338,10 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Value from which settings are not allowed.
+/// Smallest value of settings that break a limit.
 const NOT_ALLOWED: f64 = 1e12;
 
-/// Returns the largest number of spikes at which the efficiency is at least this percentage. If the percentage was
+/// Returns the largest number of spikes at which the efficiency is at least `efficiency` percent. If the percentage was
 /// computed from a number of spikes, returns exactly that number.
 pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     let spikes = (100.0 - efficiency) / 100.0 * samples as f64;
@@ -348,7 +350,7 @@ pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     (if is_count { nearest } else { spikes.floor() }).max(0.0) as usize
 }
 
-/// Returns the settings that no other beats in both spikes and error, sorted by spikes.
+/// Returns the Pareto front: the settings that no other beats in both spikes and error, sorted by spikes.
 pub fn front(mut all: Vec<Scored>) -> Vec<Scored> {
     let key = |one: &Scored| one.tally.spikes as f64 / one.tally.samples as f64;
     all.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.tally.squares.total_cmp(&b.tally.squares)));

@@ -1,4 +1,4 @@
-//! The report on the settings that were found.
+//! The report on the settings that a search found.
 
 use super::RequestKind;
 use super::problem::{Goal, Tally};
@@ -12,19 +12,19 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Note on the settings of a code that drifts.
+/// Note on the settings of a code whose errors add up.
 pub(crate) const DRIFTS: &str = "drifts: the errors of all its steps add up until a keyframe comes, and each flight's add up \
      otherwise: not to be relied on in another flight";
 
-/// The recordings of one channel, cut into stretches.
+/// One channel of all recordings, cut into stretches.
 pub struct Cut {
     /// The channel's name.
     pub name: String,
     /// Stretches to tune on.
     pub train: Vec<Stretch>,
-    /// Stretches that are held out.
+    /// Stretches that are held out, to check the settings on.
     pub held_out: Vec<Stretch>,
-    /// Each recording as one stretch.
+    /// Each segment of the recordings as one stretch.
     pub whole: Vec<Stretch>,
 }
 
@@ -33,53 +33,54 @@ pub struct Cut {
 pub struct Row {
     /// Short name of the scheme.
     pub scheme: &'static str,
-    /// The sample type.
+    /// The sample type, such as `f32` or `q8.8`.
     pub sample: String,
     /// The parameters, by the names that files and other commands use.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// Figures on the blocks that were tuned on.
+    /// Figures on the stretches that were tuned on.
     pub tuned_on: Figures,
-    /// Figures on the blocks that were held out.
+    /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,
-    /// The figures on whole recordings, coded in one piece.
+    /// Figures on whole segments of the recordings, each coded in one piece.
     pub whole: Figures,
-    /// Figures of the paper's settings on the same blocks.
+    /// Figures of the paper's settings on the same stretches, if the paper has settings for the scheme.
     pub paper: Option<Paper>,
-    /// Cost on a microcontroller.
+    /// Costs on a flight controller.
     pub costs: Costs,
-    /// How much the sample type adds to the RMSE of `f32`, in percent.
+    /// Change of the RMSE from `f32` to the sample type, in percent; `None` in `f32`.
     pub quantisation: Option<f64>,
-    /// Number of settings that the codec scored.
+    /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were compared in exact arithmetic.
+    /// Number of outcomes that were listed and compared in exact arithmetic.
     pub listed: usize,
-    /// Whether all outcomes were compared.
+    /// Whether every possible outcome was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent.
     pub is_cut_short: bool,
     /// Notes for the user.
     pub notes: Vec<String>,
-    /// The settings.
+    /// The settings found.
     #[serde(skip)]
     pub settings: Settings,
     #[serde(skip)]
     brief: String,
 }
 
-/// Figures of the paper's settings.
+/// Figures of the paper's settings on the stretches of a channel.
 #[derive(Debug, Serialize)]
 pub struct Paper {
-    /// Figures on the stretches tuned on.
+    /// Figures on the stretches that were tuned on.
     pub tuned_on: Figures,
-    /// Figures on the stretches held out.
+    /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,
 }
 
 impl Row {
-    /// Reports on settings that a search has found.
+    /// Reports on settings that a search has found; `below` is the frequency in Hz below which the error is also
+    /// reported.
     ///
     /// # Errors
-    /// Returns an error if the settings are invalid, which those of a search never are.
+    /// Returns an error if the settings are invalid; those that a search has found are valid.
     pub fn new(
         problem: &Problem,
         cut: &Cut,
@@ -97,7 +98,7 @@ impl Row {
         let tuned_on = figures(&best.options, sample, &cut.train)?;
         let mut paper = problem.fixed.clone();
         paper.paper = true;
-        // A scheme or channel may have none.
+        // The paper may have no settings for the scheme or the channel.
         let paper = figures(&paper, sample, &cut.train)
             .and_then(|tuned_on| Ok(Paper { tuned_on, held_out: held_out(&paper)? }))
             .ok();
@@ -129,11 +130,11 @@ impl Row {
         Ok(row)
     }
 
-    /// Returns the reasons not to trust the settings.
+    /// Returns reasons not to trust the settings, a sentence each.
     fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
-        /// How much better other settings may be on held-out blocks by chance, as a factor of the RMSE.
+        /// Factor by which the RMSE of other settings may be lower on held-out blocks by chance.
         const BY_CHANCE: f64 = 1.25;
-        /// How much larger the RMSE may be on held-out blocks, as a factor, until overfitting is reported.
+        /// Factor by which the RMSE may be larger on held-out blocks before overfitting is reported.
         const FAR: f64 = 1.5;
         let mut flags = Vec::new();
         if found.is_cut_short {
@@ -146,14 +147,14 @@ impl Row {
             flags.push(DRIFTS.to_owned());
         }
         flags.extend(found.ends.iter().map(End::words));
-        let told = self.held_out.as_ref().unwrap_or(&self.tuned_on);
-        // Which of two nothings is nearer says nothing.
-        if told.spikes == 0 {
+        let judged = self.held_out.as_ref().unwrap_or(&self.tuned_on);
+        // A code without spikes, or worse than a constant, is reported as such instead of by its error.
+        if judged.spikes == 0 {
             flags.push("never spikes: its value stays where it starts".to_owned());
-        } else if told.snr <= 0.0 {
+        } else if judged.snr <= 0.0 {
             flags.push(format!(
                 "no better than a constant: the error has {} of the signal's power",
-                short((10_f64.powf(-told.snr / 10.0) * 100.0).round() / 100.0)
+                short((10_f64.powf(-judged.snr / 10.0) * 100.0).round() / 100.0)
             ));
         }
         let Some(held_out) = &self.held_out else {
@@ -189,7 +190,7 @@ impl Row {
                 short(self.tuned_on.rmse)
             ));
         }
-        // Of what was looked at, something may do far better there.
+        // Other settings that the search found may do far better on the held-out blocks.
         let stride = found.front.len().div_ceil(64).max(1);
         let others = found.front.iter().step_by(stride).filter_map(|other| {
             let (tally, _) = problem.tally(&other.options, problem.sample, &cut.held_out).ok()?;
@@ -206,7 +207,7 @@ impl Row {
             ));
         }
         if let Some(Paper { tuned_on: on_tuned, held_out: Some(paper) }) = &self.paper {
-            // Blocks may be harder for any settings.
+            // The held-out blocks may be harder for all settings.
             let grown = (held_out.rmse / self.tuned_on.rmse) / (paper.rmse / on_tuned.rmse);
             if paper.rmse < held_out.rmse && paper.spikes <= held_out.spikes {
                 flags.push("the paper's settings are better on held-out blocks".to_owned());
@@ -224,7 +225,7 @@ impl Row {
         flags
     }
 
-    /// Returns comments on the settings, for their file.
+    /// Returns comments on the settings of a channel, for the file that holds them.
     pub fn comments(&self, channel: &str) -> Vec<String> {
         let Self { scheme, sample, tuned_on, held_out, .. } = self;
         let held_out = held_out.map_or(String::new(), |own| {
@@ -240,7 +241,8 @@ impl Row {
     }
 }
 
-/// Formats the table of all rows, and the lines below it.
+/// Formats the table of all rows, and below it details of each row. `core` is the core of the instruction counts,
+/// `below` the frequency in Hz below which the error is also reported.
 pub fn print(rows: &[&Row], core: &str, below: Option<f64>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -318,7 +320,7 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
     row.notes.iter().try_for_each(|note| writeln!(text, "  {note}"))
 }
 
-/// Returns why the best settings are not allowed, and how near they come.
+/// Returns words for the user that name the limits which the best settings break, and how far they are from each.
 pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
     let settings = problem
         .train

@@ -1,4 +1,4 @@
-//! Requests for parameters, and their results.
+//! Requests to tune schemes on logs, and their results.
 
 use super::RequestKind;
 use super::problem::front;
@@ -16,9 +16,9 @@ use std::time::{Duration, Instant};
 
 /// The logs, schemes and goal of a search, for [`tune`].
 pub struct TuneRequest {
-    /// Logs that are tuned on together; all have recordings of the same channels.
+    /// Logs that are tuned on together, each with one recording for each channel; all logs have the same channels.
     pub logs: Vec<Vec<Recording>>,
-    /// The schemes whose parameters are searched, each by itself.
+    /// The schemes whose parameters are searched, each scheme by itself.
     pub schemes: Vec<Scheme>,
     /// Sample type of the codec that is scored.
     pub sample: SampleType,
@@ -30,9 +30,9 @@ pub struct TuneRequest {
     pub goal: Option<Goal>,
     /// Upper limits on what settings may cost.
     pub limits: Limits,
-    /// Core whose measured instruction counts apply.
+    /// Processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: String,
-    /// The part of each recording that is held out, on which the settings are scored too.
+    /// The part of each recording that is not tuned on, but on which the settings found are scored too.
     pub hold_out: HoldOut,
     /// Frequency in Hz below which the error is also reported.
     pub below: Option<f64>,
@@ -71,7 +71,7 @@ impl TuneRequest {
         }
     }
 
-    /// Checks the request.
+    /// Checks whether all settings of the request are in their ranges and go with each other.
     ///
     /// # Errors
     /// Returns an error if a setting is out of its range, or does not go with the schemes.
@@ -120,7 +120,7 @@ impl TuneRequest {
         }
     }
 
-    /// Cuts the channels of all logs; also returns notes for the user.
+    /// Cuts the channels of all logs into stretches; also returns notes for the user.
     fn channels(&self) -> Result<(Vec<Cut>, Vec<String>)> {
         let (mut cuts, mut notes): (Vec<Cut>, _) = (Vec::new(), Vec::new());
         for log in &self.logs {
@@ -159,25 +159,26 @@ pub struct Tuned {
     pub channel: Cut,
     /// The schemes that reach the goal, with their settings, the best first; empty for [`Goal::Front`].
     pub rows: Vec<(Scheme, Row)>,
-    /// The front of each scheme, for [`Goal::Front`].
+    /// The Pareto front of each scheme, for [`Goal::Front`]; otherwise empty.
     pub curves: Vec<Curve>,
-    /// Why each of the other schemes misses the goal, and how near it comes.
+    /// For each scheme that misses the goal, the reason and how near the scheme comes.
     pub missed: Vec<Words>,
-    /// Reasons not to trust the recordings, if they were searched anyway.
+    /// Reasons not to trust the recordings, if the request was to search anyway.
     pub notes: Vec<String>,
 }
 
-/// The front of one scheme: the settings that no other beats in both spikes and error.
+/// The Pareto front of one scheme: the settings that no other beats in both spikes and error.
 pub struct Curve {
     /// The scheme.
     pub scheme: Scheme,
-    /// Efficiency and RMSE of each setting.
+    /// Efficiency in percent and RMSE of each setting.
     pub points: Vec<(f64, f64)>,
-    /// Efficiency and RMSE of the paper's settings.
+    /// Efficiency in percent and RMSE of the paper's settings, if the scheme has any.
     pub paper: Option<(f64, f64)>,
 }
 
-/// Searches the parameters of schemes on the channels of logs. If no scheme reaches the goal, the result says so.
+/// Searches the parameters of schemes on the channels of logs. If a scheme misses the goal, [`Tuned::missed`] gives the
+/// reason.
 ///
 /// # Errors
 /// Returns an error if the request is invalid, or if a recording is unfit for tuning.
@@ -218,7 +219,7 @@ pub fn tune(request: &TuneRequest, watch: &Watch) -> Result<Vec<Tuned>> {
     Ok(all)
 }
 
-/// Describes the best settings so far.
+/// Returns words for a progress report: the best settings of a scheme so far.
 fn so_far(channel: &str, scheme: Scheme, best: &Scored) -> String {
     let state = if best.is_allowed() { "best" } else { "nearest" };
     let (efficiency, rmse) = (best.tally.efficiency(), best.tally.rmse());
@@ -232,7 +233,7 @@ enum Outcome {
     Missed(Words),
 }
 
-/// Searches one scheme on one channel.
+/// Searches the parameters of one scheme on one channel.
 fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) -> Result<Outcome> {
     let TuneRequest { sample, fixed, limits, .. } = request;
     let core = costs::core(&request.core)?;
@@ -261,7 +262,7 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
     Ok(Outcome::Row(Box::new(Row::new(&problem, channel, &found, best, request.below)?)))
 }
 
-/// Returns the curve of a front, scored on held-out blocks if there are any.
+/// Returns the curve of a Pareto front, scored on held-out blocks or, if there are none, on the blocks tuned on.
 fn curve(problem: &Problem, cut: &Cut, found: &Found, paper: Option<&Scored>) -> Curve {
     let stretches = if cut.held_out.is_empty() { &cut.train } else { &cut.held_out };
     let scored = |one: &Scored| {

@@ -1,6 +1,7 @@
-//! The search: exact if a scheme can list its outcomes, by evolution otherwise.
+//! Searches settings: exactly if the scheme can list its outcomes, otherwise by evolution.
 //!
-//! Its length is counted in settings that the codec scores, so that the result is the same on every machine.
+//! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
+//! every machine.
 
 use super::End;
 use super::ends::ends;
@@ -12,7 +13,7 @@ use catalogue::run::{Asked, LANES, Value};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
-/// When a search stops: after a number of settings, at a time, or on request.
+/// The budget of a search, which ends after a number of settings, at a time, or on request.
 pub struct Budget<'a> {
     /// Maximum number of settings to score.
     pub evaluations: usize,
@@ -20,29 +21,29 @@ pub struct Budget<'a> {
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Called with the number of settings scored, and the best so far.
+    /// Called with the number of settings scored so far, and the best of them.
     pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
 }
 
 /// The settings that a search has found.
 pub struct Found {
-    /// The best settings, allowed or not.
+    /// The best settings, even if they break a limit.
     pub best: Option<Scored>,
-    /// The settings within the limits that no other beats in both spikes and error.
+    /// The Pareto front of the settings within the limits: those that no other beats in both spikes and error.
     pub front: Vec<Scored>,
-    /// Number of settings that the codec scored.
+    /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were compared in exact arithmetic, if the scheme can list them.
+    /// Number of outcomes that were listed and compared in exact arithmetic, if the scheme can list them.
     pub listed: usize,
-    /// Whether all outcomes were compared.
+    /// Whether every possible outcome was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
-    /// The ends of the search at which the best settings lie, if the scheme allows values beyond.
+    /// The bounds of the search at which the best settings lie, if the scheme allows values beyond.
     pub ends: Vec<End>,
 }
 
-/// How to search.
+/// Options of a search that do not belong to its problem.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
     /// Seed of the random generator.
@@ -55,14 +56,14 @@ pub struct Method {
 pub(super) const BATCH: usize = 64;
 /// Smallest and largest number of parents with which an evolution starts.
 const PARENTS: (usize, usize) = (10, 100);
-/// Efficiencies at which a front is searched, in percent.
+/// Efficiencies in percent, for each of which settings are searched to find a Pareto front.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
-/// Smallest value to which [`Run::tighten`] lowers a maximum.
+/// Smallest maximum that [`Run::tighten`] sets.
 const ROOM: usize = 16;
-/// Value of settings that cannot be built.
+/// Value of settings that cannot be built, worse than all others.
 const NONE: f64 = 1e30;
 
-/// Searches for the best settings.
+/// Searches the best settings for a problem within a budget.
 pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     let rounded: Vec<Vec<f64>> =
         problem.train.iter().map(|stretch| stretch.rounded(problem.sample)).collect();
@@ -82,12 +83,12 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
         least: f64::INFINITY,
     };
     let space = Space::new(problem.scheme, &problem.fixed, problem.extent);
-    // The paper's settings are a place to start from.
+    // The search starts from the paper's settings.
     let mut paper = problem.fixed.clone();
     paper.paper = true;
     run.try_all(&[paper]);
     if space.len() > 0 && !run.exactly(&space) {
-        // One is left to tighten the best.
+        // One setting of the budget is left for `tighten`.
         let is_loose = space.axes().iter().any(|axis| axis.role == Role::Most);
         let (seed, all) = (method.seed, budget.evaluations - usize::from(is_loose));
         if method.free_taps {
@@ -111,7 +112,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     run.found
 }
 
-/// A running search.
+/// A search that is running.
 pub(super) struct Run<'a> {
     pub problem: &'a Problem<'a>,
     pub budget: &'a Budget<'a>,
@@ -132,7 +133,8 @@ impl Run<'_> {
         self.found.is_cut_short
     }
 
-    /// Scores these options, as many as the budget has left.
+    /// Scores options, as many as the budget has left, and keeps the best and the Pareto front. Returns each score,
+    /// `None` for invalid options.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;
@@ -149,7 +151,7 @@ impl Run<'_> {
                 self.found.front.push(own.clone());
             }
         }
-        // It is thinned now and then.
+        // Whenever the list grows long, it is reduced to its Pareto front.
         if self.found.front.len() > 4000 {
             self.found.front = front(std::mem::take(&mut self.found.front));
         }
@@ -158,7 +160,7 @@ impl Run<'_> {
         scored
     }
 
-    /// Scores points of a space, as many as the budget has left; returns each with its value for a goal.
+    /// Scores points of a space, as many as the budget has left; returns each point with its value for `goal`.
     fn tried(&mut self, space: &Space, goal: Goal, points: Vec<Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
         let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
         let scored = self.try_all(&options);
@@ -166,12 +168,12 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Evolves settings for a goal, until `until` settings are scored.
+    /// Evolves settings for a goal, until `until` settings have been scored in the whole search.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
         let own = until.saturating_sub(self.found.evaluated);
         let before = self.found.evaluated;
         let (fewest, most) = PARENTS;
-        // 18 for 100 settings, 57 for 1000.
+        // 18 parents for 100 settings, 57 for 1000.
         let count = ((1.8 * (own as f64).sqrt()) as usize).clamp(fewest, most).min(own);
         if count == 0 {
             return;
@@ -181,7 +183,7 @@ impl Run<'_> {
             Goal::MostEfficient(_) | Goal::Front => 0.5,
         };
         let first = space.starts(seed, count, share);
-        // All values of what a pass compares, and later those near the point's own.
+        // The first points are compared over the whole axis, later ones only near their own value.
         let first = self.swept(space, goal, first, None);
         let parents = self.tried(space, goal, first);
         let mut evolution = Evolution::new(seed, parents);
@@ -191,13 +193,14 @@ impl Run<'_> {
             points.truncate(until - self.found.evaluated);
             let width = 0.4 * (1.0 - spent).max(0.1);
             let points = self.swept(space, goal, points, Some(width));
-            let told = self.tried(space, goal, points);
-            evolution.tell(told);
+            let values = self.tried(space, goal, points);
+            evolution.tell(values);
         }
     }
 
     /// Moves each point along one axis to the best of several values, which the scheme compares in a single pass over
-    /// the signal. Leaves the points as they are if the scheme cannot do so.
+    /// the signal. The values span the whole axis, or the share `width` of the axis around the point's own value.
+    /// Leaves the points as they are if the scheme cannot compare values in this way.
     fn swept(
         &self,
         space: &Space,
@@ -245,8 +248,9 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a maximum that costs time, such as the number of spikes in a sample, to twice what the signal needs. It
-    /// stays at [`ROOM`] or above: held-out blocks and other recordings may jump further.
+    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample, to twice the number that
+    /// the signal needs, because a higher maximum costs time. The maximum stays at [`ROOM`] or above, because held-out
+    /// blocks and other recordings may jump further.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;
@@ -268,7 +272,7 @@ impl Run<'_> {
         Some(())
     }
 
-    /// Runs an evolution strategy on the taps of the best filter so far, repeatedly.
+    /// Runs an evolution strategy on the taps of the best filter so far, again and again until the budget is spent.
     fn free(&mut self, space: &Space, seed: u64) {
         /// Number of generations without progress after which the strategy restarts.
         const PATIENCE: usize = 60;
@@ -286,8 +290,8 @@ impl Run<'_> {
                     return;
                 }
                 let points = strategy.ask();
-                let told = self.tried(&free, self.problem.goal, points);
-                strategy.tell(told);
+                let values = self.tried(&free, self.problem.goal, points);
+                strategy.tell(values);
                 since = if self.least < least * (1.0 - 1e-4) { 0 } else { since + 1 };
                 least = self.least;
             }
@@ -295,10 +299,10 @@ impl Run<'_> {
     }
 }
 
-/// Returns the deadline of the next scheme, if `left` schemes share the time until `end`.
+/// Returns the deadline of the next search, if `left` searches share the time until `end`.
 pub fn share(end: Option<Instant>, left: usize) -> Option<Instant> {
     let end = end?;
-    // A browser's WebAssembly has no clock to ask, and no deadline either.
+    // In a browser, WebAssembly has no clock to ask, but no deadline is set there either.
     let now = Instant::now();
     let time = end.saturating_duration_since(now).checked_div(left.max(1) as u32);
     Some(now + time.unwrap_or(Duration::ZERO))

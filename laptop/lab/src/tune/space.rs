@@ -1,11 +1,11 @@
-//! The space of a search: maps points of the unit cube to options, and back.
+//! The space of a search: converts points of the unit cube to options, and options to points.
 
 use super::chance::Chance;
 use crate::scheme::Scheme;
 use catalogue::run::{Asked, Value, taps};
 use catalogue::{Found, Parameter, Search, Unit};
 
-/// The statistics of the signal on which the bounds depend.
+/// The statistics of the signal on which the bounds of a search depend.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
     /// Smallest sample.
@@ -22,7 +22,7 @@ impl Extent {
     }
 }
 
-/// An axis of the search: one number of the settings, and its bounds.
+/// An axis of the search: one number of the settings, with its bounds.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub name: &'static str,
@@ -31,36 +31,37 @@ pub(super) struct Axis {
     pub high: f64,
 }
 
-/// How a number on an axis becomes a parameter.
+/// The conversion of a number on an axis to a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
-    /// Logarithm of the parameter, in multiples of this unit.
+    /// Logarithm of the parameter, in multiples of the given unit.
     Log(f64),
-    /// Offset from the first value, in multiples of the second.
+    /// Offset of the parameter from the first value, in multiples of the second.
     Around(f64, f64),
-    /// Share of the filter's sum.
+    /// The parameter as a share of the filter's sum.
     OfFilter,
-    /// Logarithm of a factor of the threshold.
+    /// Logarithm of the parameter, in multiples of the threshold.
     Thresholds,
     Whole,
-    /// Whole number that is a maximum, such as that of spikes in a sample.
+    /// A whole number that is a maximum, such as the largest number of spikes in a sample.
     Most,
     Words(&'static [&'static str]),
-    /// Logarithm of the number of taps.
+    /// Logarithm of the filter's length in taps.
     Length,
     Shape,
     Alpha,
-    /// Logarithm of the filter's sum, in units of the height of the mean above the shift. It is the number of samples
-    /// for each spike when the signal is at its mean. The two values bound the sum itself.
+    /// Logarithm of the filter's sum, in units of the height of the signal's mean above the shift. In this unit, the
+    /// sum is the number of samples for each spike while the signal is at its mean. The two values bound the sum
+    /// itself.
     Sum(f64, f64),
-    /// Tap, in multiples of this unit.
+    /// A tap of the filter, in multiples of the given unit.
     Tap(f64),
 }
 
-/// The shapes of a filter; the last one takes an alpha.
+/// The shapes of a filter that are searched; only the last has a parameter alpha.
 const SHAPES: [&str; 3] = ["triang", "hann", "gauss"];
 
-/// The axes of a scheme's search.
+/// The space of a scheme's search: an axis for each number that is searched, and the parameters that are fixed.
 #[derive(Clone, Debug)]
 pub(crate) struct Space {
     axes: Vec<Axis>,
@@ -73,12 +74,12 @@ pub(crate) struct Space {
 pub(crate) struct Inner {
     /// Index of the axis.
     pub axis: usize,
-    /// Whether the axis is the filter's sum, so that values are factors of it; otherwise it is the threshold.
+    /// Whether the axis is the filter's sum, of which the values are then factors; otherwise the axis is the threshold.
     pub is_factor: bool,
 }
 
 impl Space {
-    /// Makes the space of the parameters that `fixed` leaves open.
+    /// Makes the space of those parameters of the scheme that `fixed` leaves open.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {
@@ -91,7 +92,8 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// Returns the space in which the filter's axes are replaced by its taps, and integer parameters are fixed.
+    /// Returns the space in which the filter's single taps replace its shape, length and sum, and integer parameters
+    /// keep their values in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -122,7 +124,7 @@ impl Space {
         &self.axes
     }
 
-    /// Returns the number at `place`, 0 to 1, between the bounds of an axis.
+    /// Returns the number on an axis at `place`, from 0 at its lower bound to 1 at its upper bound.
     pub(crate) fn number(&self, axis: usize, place: f64) -> f64 {
         let Axis { low, high, .. } = self.axes[axis];
         low + place.clamp(0.0, 1.0) * (high - low)
@@ -142,9 +144,9 @@ impl Space {
         Some(Inner { axis, is_factor: !has_threshold })
     }
 
-    /// Returns points to start from, spread over each axis, for a code that may spike at a share `share` of the
-    /// samples. Filters start with a sum at which the code, spiking at every sample, reaches the largest sample, and
-    /// reaches the mean with as many spikes as allowed.
+    /// Returns `count` points to start from, spread over each axis, for a code that may spike at the share `share` of
+    /// the samples. The sums of filters are such that the code reaches the largest sample if it spikes at every sample,
+    /// and reaches the mean with as many spikes as allowed.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);
@@ -160,11 +162,11 @@ impl Space {
             for (point, stratum) in points.iter_mut().zip(order) {
                 let even = (stratum as f64 + chance.part()) / count as f64;
                 let number = match axis.role {
-                    // 1.5 to 48 taps.
+                    // From 1.5 to 48 taps.
                     Role::Length => (1.5_f64 * 32_f64.powf(even)).ln(),
                     Role::Alpha => (0.8 + 2.0 * even).ln(),
                     Role::Sum(..) => (apart * (0.75 + 0.6 * even)).ln(),
-                    // At the signal's minimum, or somewhat off it.
+                    // The shift is the signal's minimum, or somewhat off it.
                     Role::Around(..) if has_filter && stratum % 3 == 0 => 0.0,
                     Role::Around(..) if has_filter => 0.4 * (even - 0.4),
                     _ => axis.low + even * (axis.high - axis.low),
@@ -176,7 +178,7 @@ impl Space {
         points
     }
 
-    /// Returns every combination of the integer and word parameters, as options.
+    /// Returns every combination of values of the integer and word parameters, as options.
     pub(crate) fn combinations(&self) -> Vec<Asked> {
         let mut all = vec![Asked::default()];
         for axis in
@@ -209,7 +211,7 @@ impl Space {
         self.meant(&numbers)
     }
 
-    /// Converts numbers on all axes, which may lie beyond the bounds, to options.
+    /// Converts a number for each axis, which may lie beyond the axis' bounds, to options.
     pub(super) fn meant(&self, numbers: &[f64]) -> Asked {
         let mut options = self.fixed.clone();
         let (mut filter, mut free) = (Shaped::default(), Vec::new());
@@ -253,13 +255,14 @@ impl Space {
         options
     }
 
-    /// Returns the height of the signal's mean above a shift, or above the minimum; at least a little above 0.
+    /// Returns the height of the signal's mean above a shift, or above the signal's minimum if `None`; at least 1 % of
+    /// the signal's range.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())
     }
 
-    /// Converts options to a point; a value that has no place on its axis gives the middle.
+    /// Converts options to a point of the unit cube; an axis on which the options have no value gets its middle.
     pub(crate) fn point(&self, options: &Asked) -> Vec<f64> {
         let number = |name: &str| options.number(name);
         let taps = taps_of(options).unwrap_or_default();
@@ -273,7 +276,7 @@ impl Space {
                     number(axis.name).map(|value| value / sum)
                 }
                 Role::Whole | Role::Most => number(axis.name),
-                // Given in thresholds, or found as a number.
+                // Given in multiples of the threshold, or as a number.
                 Role::Thresholds => {
                     match options.word(axis.name).and_then(|text| text.strip_suffix('x')) {
                         Some(times) => times.parse::<f64>().ok().map(f64::ln),
@@ -298,7 +301,7 @@ impl Space {
     }
 }
 
-/// A filter given by its shape.
+/// A filter given by its shape, length and sum.
 #[derive(Default)]
 struct Shaped {
     shape: &'static str,
@@ -313,12 +316,12 @@ impl Shaped {
         let last = SHAPES[SHAPES.len() - 1];
         let alpha = if *shape == last { format!(":{alpha}") } else { String::new() };
         let word = format!("{shape}:{length}{alpha},sum={sum}");
-        // What makes no filter is refused where it is resolved, by its name.
+        // Words that make no filter become an error when the options are completed to settings.
         taps(&word).map_or(Value::from(word), Value::from)
     }
 }
 
-/// Returns the taps of the filter, given by its shape or as a list.
+/// Returns the taps of the parameter `filter`, which is given by a shape or as a list.
 fn taps_of(asked: &Asked) -> Option<Vec<f64>> {
     match asked.get("filter")? {
         Value::Word(shape) => taps(shape).ok(),
@@ -359,7 +362,7 @@ mod tests {
     use crate::scheme::Scheme;
     use catalogue::run::Asked;
 
-    /// The scheme accepts the options at every corner of its space, and in the middle.
+    /// Each scheme accepts the options at the lower bounds, at the upper bounds, and in the middle of its space.
     #[test]
     fn every_corner_is_understood() {
         for scheme in Scheme::all() {

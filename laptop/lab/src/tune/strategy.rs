@@ -5,10 +5,10 @@ use super::chance::Chance;
 
 /// Number of points in a generation.
 const POINTS: usize = 16;
-/// Number of points of a generation from which the next is made.
+/// Number of the best points of a generation, from which the mean of the next generation is computed.
 const PARENTS: usize = POINTS / 2;
 
-/// An optimiser that asks for the values of points.
+/// An optimiser that seeks the smallest value of a function. The caller computes the values.
 pub(super) struct Strategy {
     chance: Chance,
     mean: Vec<f64>,
@@ -16,9 +16,9 @@ pub(super) struct Strategy {
     step: f64,
     /// The variance along each axis.
     variances: Vec<f64>,
-    /// Evolution path of the mean, in steps.
+    /// Evolution path of the mean, by which the step size is adapted.
     path: Vec<f64>,
-    /// Evolution path over more generations, from which the variances are learnt.
+    /// Evolution path of the mean over more generations, by which the variances are adapted.
     long_path: Vec<f64>,
     weights: Vec<f64>,
     mass: f64,
@@ -26,7 +26,7 @@ pub(super) struct Strategy {
 }
 
 impl Strategy {
-    /// Starts at a point, with an initial step size for each axis.
+    /// Starts at the point `from`, with an initial step size for each axis.
     pub(super) fn new(seed: u64, from: Vec<f64>, steps: &[f64]) -> Self {
         let weight = |place: usize| (PARENTS as f64 + 0.5).ln() - (place as f64 + 1.0).ln();
         let sum: f64 = (0..PARENTS).map(weight).sum();
@@ -45,7 +45,7 @@ impl Strategy {
         }
     }
 
-    /// Returns a generation of points whose values are wanted.
+    /// Returns the next points whose values are wanted.
     pub(super) fn ask(&mut self) -> Vec<Vec<f64>> {
         let Self { chance, mean, variances, step, .. } = self;
         let mut point = || {
@@ -55,7 +55,7 @@ impl Strategy {
         (0..POINTS).map(|_| point()).collect()
     }
 
-    /// Takes the points asked for, with their values.
+    /// Takes the points that `ask` returned, with their values, and adapts mean, step size and variances.
     pub(super) fn tell(&mut self, mut points: Vec<(Vec<f64>, f64)>) {
         points.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let axes = self.mean.len() as f64;
@@ -64,7 +64,7 @@ impl Strategy {
         let for_step = (mass + 2.0) / (axes + mass + 5.0);
         let damping = 1.0 + for_step + 2.0 * (((mass - 1.0) / (axes + 1.0)).sqrt() - 1.0).max(0.0);
         let for_path = (4.0 + mass / axes) / (axes + 4.0 + 2.0 * mass / axes);
-        // Axes of their own are learnt faster than all their correlations.
+        // Without correlations between axes, the variances can be learnt faster than a full matrix.
         let faster = (axes + 2.0) / 3.0;
         let from_path = (faster * 2.0 / ((axes + 1.3).powi(2) + mass)).min(0.5);
         let from_points = (faster * 2.0 * (mass - 2.0 + 1.0 / mass)

@@ -12,9 +12,9 @@ use std::ops::Range;
 pub struct Stretch {
     /// The samples that are coded.
     pub values: Vec<f64>,
-    /// Samples a second, if known.
+    /// Sample rate in Hz, if known.
     pub rate: Option<f64>,
-    /// Ranges of samples that are scored, in order and disjoint.
+    /// Index ranges of the samples that are scored, in order and disjoint.
     pub scored: Vec<Range<usize>>,
 }
 
@@ -43,7 +43,7 @@ impl Stretch {
         self.rate.map(|rate| self.samples() as f64 / rate)
     }
 
-    /// Returns whether a sample is scored.
+    /// Returns whether the sample of index `sample` is scored.
     pub fn is_scored(&self, sample: u64) -> bool {
         self.scored.iter().any(|own| (own.start as u64..own.end as u64).contains(&sample))
     }
@@ -54,7 +54,7 @@ impl Stretch {
     }
 }
 
-/// How much of a recording is held out.
+/// The part of a recording that is held out.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldOut {
     /// Number of blocks into which the recording is cut.
@@ -66,10 +66,11 @@ pub struct HoldOut {
 /// Fewest samples in a block.
 const SHORTEST: usize = 20;
 
-/// Offset of the held-out blocks, which are spread evenly, so that neither the first nor the last block is held out.
+/// Offset of the held-out blocks, which are spread evenly. With this offset, neither the first nor the last block is
+/// held out.
 const OFFSET: f64 = 0.35;
 
-/// Cuts a recording; returns the stretches to tune on, and those held out.
+/// Cuts a recording into blocks; returns the stretches to tune on, and those whose held-out blocks are scored.
 ///
 /// Adjacent blocks to tune on form one stretch. Held-out blocks are coded as in flight: each segment is coded in one
 /// piece, including the blocks to tune on, and only the held-out blocks are scored. If each block were coded alone, a
@@ -127,7 +128,7 @@ mod tests {
     use super::{HoldOut, Stretch, cut};
     use crate::trial::Recording;
 
-    /// The second and the fifth of 5 blocks are held out.
+    /// Of 5 blocks, the second and the fifth are held out, and coded together with the blocks before them.
     #[test]
     fn what_is_held_out_is_coded_with_what_is_before_it() {
         let values: Vec<f64> = (0..200).map(f64::from).collect();

@@ -294,4 +294,8 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
     fn resync(&self, state: &mut PotentialState<S>, value: S) {
         state.potential = value.offset_from(self.reference).doubled(self.power);
     }
+
+    fn slots(&self) -> usize {
+        self.most.unsigned_abs().into()
+    }
 }

@@ -1,4 +1,4 @@
-//! Summarises a table: its columns, and the times of its rows.
+//! Summarises a CSV table: its columns, and the times of its rows.
 
 use super::is_missing;
 use crate::Result;
@@ -8,16 +8,16 @@ use crate::input::times::Times;
 use crate::input::{ALL, Clock, InputOptions, Rollover, Source};
 use catalogue::run::Words;
 
-/// A summary of a table.
+/// A summary of a CSV table.
 #[derive(Debug)]
 pub struct Summary {
     /// The columns, except those of times and counts.
     pub columns: Vec<ColumnSummary>,
     /// Number of rows.
     pub rows: u64,
-    /// Length, rate and gaps.
+    /// The times of the rows: length, rate and gaps.
     pub clock: Clock,
-    /// How often the clock wrapped around.
+    /// How often the recorder's clock wrapped around.
     pub rollover: Rollover,
     /// Notes for the user on how the table is read.
     pub notes: Vec<Words>,
@@ -26,15 +26,15 @@ pub struct Summary {
 /// A summary of one column of a table.
 #[derive(Debug)]
 pub struct ColumnSummary {
-    /// Its name.
+    /// Name of the column.
     pub name: String,
     /// Number of rows in which the value is missing or not finite.
     pub missing: u64,
-    /// The first value that is not a number, and its line.
+    /// Line and text of the first field that is not a number.
     pub text: Option<(u64, String)>,
 }
 
-/// Summarises a table, whose columns may also hold text.
+/// Summarises a CSV table, whose columns may also hold text.
 ///
 /// # Errors
 /// Returns an error if the table cannot be read, or if a time is invalid.

@@ -8,7 +8,7 @@ use catalogue::run::Words;
 use flight_logs::definition::{Definition, NoNumber, Path, Stamp};
 use flight_logs::{Entry, Fault, Kind, Log, Topic, microseconds, open};
 
-/// Fields of one topic of a log.
+/// Fields of one topic of a log, read as channels.
 pub struct Channel {
     log: Box<dyn Log>,
     file: String,
@@ -17,7 +17,7 @@ pub struct Channel {
     time: Option<String>,
     time_unit: Option<TimeUnit>,
     skip_non_finite: bool,
-    /// Where the fields lie, for each topic of the log that has this name.
+    /// For each topic of the log, the positions of the fields, if the topic has the chosen name.
     plans: Vec<Option<Plan>>,
     samples: u64,
     values: Vec<f64>,
@@ -25,7 +25,7 @@ pub struct Channel {
     notes: Vec<Words>,
 }
 
-/// Where the fields lie in a message, and the time if the message has one.
+/// Positions of the chosen fields in a message, and of the time, if a field holds it.
 struct Plan {
     fields: Vec<Path>,
     time: Option<Time>,
@@ -37,7 +37,7 @@ enum Time {
 }
 
 impl Channel {
-    /// Opens the channels of a log.
+    /// Opens the chosen fields of a topic of a log.
     ///
     /// # Errors
     /// Returns an error if the log, the topic or a field is missing or cannot be read.
@@ -65,10 +65,10 @@ impl Channel {
         })
     }
 
-    /// Makes the plans for topics that have appeared since the last call.
+    /// Makes the plans of topics that the log has named since the last call.
     fn plan(&mut self) -> Result<()> {
         for topic in self.log.topics().iter().skip(self.plans.len()) {
-            // ROS takes names with and without a slash before them.
+            // ROS accepts a topic's name with and without a leading slash.
             let is_asked = topic.name.trim_start_matches('/') == self.topic.trim_start_matches('/');
             let plan = if is_asked { Some(self.plan_of(topic)?) } else { None };
             self.plans.push(plan);
@@ -109,7 +109,7 @@ impl Channel {
         Ok(Plan { fields, time })
     }
 
-    /// Returns the unit of a field that holds a time.
+    /// Returns the unit of a field that holds times: the chosen unit, or else the one that the field's name suggests.
     fn unit(&self, field: &str) -> TimeUnit {
         self.time_unit.unwrap_or_else(|| {
             match of_given(field.rsplit('.').next().unwrap_or(field)) {
@@ -119,7 +119,7 @@ impl Channel {
         })
     }
 
-    /// Reads a message of the topic.
+    /// Appends the values and the time of a message, if it is of the chosen topic.
     fn take(&mut self, entry: Entry, chunk: &mut Chunk) -> Result<()> {
         let Some(plan) = self.plans[entry.topic].as_ref() else { return Ok(()) };
         let topic = &self.log.topics()[entry.topic];
@@ -150,7 +150,7 @@ impl Channel {
         Ok(())
     }
 
-    /// Makes the error of a topic that is unknown or has no messages.
+    /// Makes the error of a recording without samples: its topic is unknown or has no messages.
     fn nothing(&self) -> Error {
         let topic = self.topic.clone();
         if self.plans.iter().any(Option::is_some) {
@@ -162,7 +162,8 @@ impl Channel {
     }
 }
 
-/// Reads a message's values, which are NaN beyond the end of a short array, and its time in µs.
+/// Appends the values of a message's fields, NaN for those beyond the end of a short array, and returns the message's
+/// time in µs.
 fn read(
     topic: &Topic,
     plan: &Plan,
@@ -183,7 +184,7 @@ fn read(
     })
 }
 
-/// Lists the numbers within a field that has several.
+/// Lists the names of the numbers that a field consists of.
 fn within(definition: &Definition, field: &str) -> String {
     let (numbers, _) = definition.names();
     let own: Vec<&str> =

@@ -1,4 +1,4 @@
-//! Reads flight logs: fields of a topic as channels, and an overview of a log.
+//! Reads flight logs: fields of a topic as channels, and a summary of each topic.
 //!
 //! The formats themselves are in the crate `flight-logs`.
 
@@ -10,7 +10,7 @@ pub use overview::{Overview, overview};
 
 use flight_logs::Damage;
 
-/// Returns how the log reader should treat damage.
+/// Returns the log reader's treatment of damage: skipping it, or refusing the log.
 pub fn damage(accept_cut: bool) -> Damage {
     if accept_cut { Damage::Skip } else { Damage::Refuse }
 }

@@ -11,27 +11,27 @@ use std::path::Path;
 /// A summary of one topic of a log.
 #[derive(Debug)]
 pub struct Overview {
-    /// Its name.
+    /// Name of the topic.
     pub name: String,
-    /// Type of the messages; empty if they have none.
+    /// Type of the messages; empty if the log names none.
     pub kind: String,
-    /// The fields with numbers.
+    /// Names of the fields that hold numbers.
     pub fields: Vec<String>,
-    /// The fields with text.
+    /// Names of the fields that hold text.
     pub texts: Vec<String>,
-    /// The reason that the fields cannot be read, if so.
+    /// The reason that the fields cannot be read, if they cannot.
     pub unread: Option<String>,
     /// Number of messages.
     pub count: u64,
-    /// Length, rate and gaps.
+    /// The times of the messages: length, rate and gaps.
     pub clock: Clock,
-    /// How often the clock wrapped around.
+    /// How often the recorder's clock wrapped around.
     pub rollover: Rollover,
     /// Number of missing messages, according to the counter in the messages.
     pub missing: u64,
 }
 
-/// Summarises each topic of a log, and adds notes about the log.
+/// Summarises each topic of a log. Returns the summaries, sorted by name, and notes about the log.
 ///
 /// # Errors
 /// Returns an error if the log cannot be read.
@@ -62,16 +62,16 @@ pub fn overview(
         }
     }
     let both = log.topics().iter().zip(watched).filter(|(_, own)| own.count > 0);
-    let mut topics: Vec<Overview> = both.map(|(topic, own)| own.told(topic)).collect();
+    let mut topics: Vec<Overview> = both.map(|(topic, own)| own.summary(topic)).collect();
     topics.sort_by(|a, b| (&a.name, &a.kind).cmp(&(&b.name, &b.kind)));
     Ok((topics, log.faults().notes()))
 }
 
-/// The state of summarising one topic.
+/// The state of one topic while its log is being summarised.
 struct Watched {
     times: Times,
     count: u64,
-    /// Where the messages' own counter lies, if they have one.
+    /// Position of the sequence number in the messages, if they have one.
     counter: Option<FieldPath>,
     previous: Option<u32>,
     missing: u64,
@@ -97,13 +97,13 @@ impl Watched {
     fn count(&mut self, sequence: u32) {
         let before = self.previous.replace(sequence);
         let step = before.map_or(1, |before| sequence.wrapping_sub(before));
-        // A larger step is a counter that began anew.
+        // A larger step means that the sequence began anew.
         if (2..1 << 16).contains(&step) {
             self.missing += u64::from(step - 1);
         }
     }
 
-    fn told(self, topic: &Topic) -> Overview {
+    fn summary(self, topic: &Topic) -> Overview {
         let (clock, rollover) = self.times.finish();
         let ((fields, texts), unread) = match &topic.definition {
             Ok(definition) => (definition.names(), None),

@@ -1,4 +1,4 @@
-//! Writes the network as Rust: constant data for `spikewire-network`.
+//! Writes a network for the flight controller as Rust source: constant data for `spikewire-network`.
 
 use super::super::Trains;
 use super::super::chip::{Remarks, list};
@@ -8,16 +8,17 @@ use super::rule::{Current, Fires, Rule};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// A number type, and how its numbers are written for the constructors of `spikewire-network`.
+/// A number type of the controller, with the spelling of its numbers in generated source.
 pub(super) trait Spelled: Number {
-    /// The crate's type of potentials.
+    /// Name of the number type in generated source.
     const TYPE: &'static str;
-    /// The constructor of neurons.
+    /// Name of the function that constructs a neuron of this number type.
     const NEW: &'static str;
 
     fn spell(self) -> String;
     fn spell_factor(factor: Self::Factor) -> String;
-    /// Writes the constructor of weights with these rows.
+    /// Returns the source of the constructor call for weights with these rows. `shift` is the number of low bits that a
+    /// packed weight leaves out.
     fn spell_weights(rows: &[&[Self]], shift: u32) -> String;
 }
 
@@ -26,7 +27,7 @@ impl Spelled for f32 {
     const NEW: &'static str = "new";
 
     fn spell(self) -> String {
-        // The shortest that is read as the same number.
+        // `{:?}` prints the shortest digits that parse to the same number, and always a decimal point or exponent.
         format!("{self:?}")
     }
 
@@ -65,8 +66,9 @@ fn spell_rows<K: Copy>(rows: &[&[K]], spell: impl Fn(K) -> String) -> String {
     text
 }
 
-/// Writes a module. `shifts` are the shifts of each layer's weights; `units` are the values of a potential of 1, for
-/// integers; the steps in `check` are run before arming.
+/// Returns the source of a module that defines the network. `shifts` are the shifts of each layer's packed weights, and
+/// `units` the values that potentials of 1 represent; both are empty for floating point. `check` are the inputs of the
+/// steps that are run before arming.
 pub(super) fn emit<K: Spelled>(
     net: &Net<K>,
     shifts: &[u32],
@@ -108,7 +110,7 @@ use spikewire_network::{{{used}}};
     )
 }
 
-/// Names that a module imports if it uses them, besides those that every module imports.
+/// Names that a generated module imports only if it uses them.
 const NAMES: [&str; 16] = [
     "Cuba",
     "Forward",
@@ -128,7 +130,7 @@ const NAMES: [&str; 16] = [
     "Values",
 ];
 
-/// Writes the statics of a layer: its weights, neurons and type.
+/// Returns the source of a layer's constants: its weights, neurons and type.
 fn statics<K: Spelled>(layer: &Layer<K>, number: usize, shift: u32) -> String {
     let Layer { name, weights, own, neurons, rule } = layer;
     let (inputs, count, numbers) = (weights.len(), neurons.len(), K::TYPE);
@@ -179,7 +181,7 @@ type Layer{number} = Layer<'static, {kind}, {inputs}, {count}, Spiking, {recurre
     text
 }
 
-/// Writes the type of a neuron.
+/// Returns the source of a neuron's type.
 fn kind<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     let (numbers, reset) = (K::TYPE, rule.reset.type_name());
     let inner = match neuron.spike {
@@ -193,7 +195,7 @@ fn kind<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     }
 }
 
-/// Writes the constructor of a neuron.
+/// Returns the source of the constructor call for a neuron.
 fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     let (numbers, new, zero) = (K::TYPE, K::NEW, K::default());
     let decay = K::spell_factor(neuron.decay);
@@ -226,7 +228,7 @@ fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     text
 }
 
-/// Writes the constructor of the whole network.
+/// Returns the source of the constructor call for the whole network.
 fn network<K: Spelled>(net: &Net<K>) -> String {
     let (mut kind, mut value) = (String::new(), String::new());
     for (number, layer) in (1..).zip(&net.layers) {
@@ -254,7 +256,8 @@ pub static NETWORK: Trained = {value};
     )
 }
 
-/// Writes the steps that run before arming, and the outcome that they must have.
+/// Returns the source of the check before arming: the steps to run, the spikes and potentials that must result, and a
+/// function that compares.
 fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
     let done = net.run(inputs);
     let (steps, layers) = (inputs.len(), net.layers.len());
@@ -266,7 +269,7 @@ fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
     }
     let last = list(done.potentials.last().into_iter().flatten().map(|v| v.spell()));
     let outputs = net.layers.last().map_or(0, |layer| layer.neurons.len());
-    // `Then<Then<A, B>, C>` has the states `first.first`, `first.next` and `next`.
+    // The state of a chain of type `Then<Then<A, B>, C>` nests the layers as `first.first`, `first.next` and `next`.
     let path = |layer: usize| {
         let firsts = ".first".repeat(layers - 1 - layer.max(1).min(layers - 1));
         match (layers, layer) {
@@ -286,7 +289,7 @@ fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
 static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
 {rows}];
 
-/// The outputs' potentials behind these steps.
+/// The outputs' potentials after these steps.
 #[rustfmt::skip]
 static POTENTIALS: [{numbers}; {outputs}] = [{last}];
 

@@ -1,5 +1,5 @@
-//! Converts a file to the form of `spikewire-network`: its numbers are for a step, and gains are contained in the
-//! weights.
+//! Converts a network from its file to the form of `spikewire-network`: time constants become factors for a step, and
+//! gains are multiplied into the weights.
 
 use super::super::nir::{Array, Chain, Neurons, Stage, Weights};
 use super::super::trained;
@@ -9,21 +9,21 @@ use super::{Asked, Model};
 use crate::network::NetworkKind;
 use crate::network::fault::{Context, Result, bail, ensure};
 
-/// Largest number that the crate accepts in `f32`.
+/// Largest absolute value of a number that `spikewire-network` accepts in `f32`.
 const LARGEST: f64 = 1e15;
 
-/// Share of a step from which on a time constant counts as a whole step: the step of a recording and that of the
-/// training may differ a little.
+/// Smallest time constant that counts as one whole step, as a share of the step. The step of a recording may differ a
+/// little from that of the training.
 const A_STEP: f64 = 0.98;
 
-/// How far rounding may move a gain away from 1.
+/// Gains that differ from 1 by less than this are taken for exactly 1.
 const ROUNDING: f64 = 1e-5;
 
 impl Model {
-    /// Converts a network in JSON.
+    /// Converts a network from JSON.
     ///
     /// # Errors
-    /// Returns an error if a number is out of its range.
+    /// Returns an error if a number is out of its range, or if the controller does not support the network.
     pub(in super::super) fn of_plain(trained: trained::Trained, asked: &Asked) -> Result<Self> {
         let trained::Trained { layers, readout } = trained;
         ensure!(
@@ -57,10 +57,10 @@ impl Model {
         Self::new(Net { layers }, Vec::new())
     }
 
-    /// Converts a NIR graph, by the rule asked for.
+    /// Converts a NIR graph, by the rule that the user asked for.
     ///
     /// # Errors
-    /// Returns an error if the rule is incomplete, or if it does not go with the file.
+    /// Returns an error if the rule is incomplete, or if it does not fit the file.
     pub(in super::super) fn of_nir(chain: Chain, asked: &Asked) -> Result<Self> {
         let Chain { stages, readout, sum, mut notes } = chain;
         let all = || stages.iter().chain(&readout);
@@ -147,14 +147,14 @@ impl Layer<f64> {
     }
 }
 
-/// Transposes weights, from rows by neuron to rows by input.
+/// Transposes a matrix of weights: from one row for each neuron to one row for each input.
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let inputs = rows.first().map_or(0, Vec::len);
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Converts recurrent weights, given in rows by neuron; if each neuron leads to itself alone, only those weights are
-/// kept.
+/// Converts recurrent weights from one row for each receiving neuron. If neurons lead only to themselves, keeps the
+/// diagonal only.
 fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
@@ -170,7 +170,7 @@ fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     }
 }
 
-/// Converts a layer.
+/// Converts a layer of a NIR graph, and adds remarks for the user to `notes`.
 fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Layer<f64>> {
     let Stage { weights: Weights { mut rows, bias }, recurrent, neurons } = stage;
     let name = neurons.name();
@@ -185,7 +185,7 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
             && gain != 1.0
             && let Some(spike) = &mut neuron.spike
         {
-            // As its reader does, which has no gain.
+            // snnTorch's reader divides the threshold by the gain, because its neurons have no gain.
             scaled = Some(gain);
             for number in [&mut spike.threshold, &mut spike.reset, &mut neuron.inner] {
                 *number /= gain;
@@ -220,7 +220,7 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
     let is_leaky = back.is_empty() && neurons.synapse.is_none();
     let is_late = rule.reset == Reset::ToValueLate;
     if is_late && !is_leaky && rule.framework == Some(Framework::SnnTorch) {
-        // As all of its neurons but `Leaky` do.
+        // In snnTorch, all neurons except `Leaky` hold the potential through the next step.
         rule.reset = Reset::ToValueHeld;
     }
     Ok(Layer { name, weights: turned(&rows), own: own(&back), neurons: all, rule })
@@ -228,11 +228,11 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
 
 struct Stepped {
     neuron: Neuron<f64>,
-    /// Factor of the inputs.
+    /// Factor by which the weights must be multiplied.
     gain: f64,
 }
 
-/// Converts a neuron's numbers to those for a step, except for its bias, which is added later.
+/// Converts a neuron's parameters to those for a step. The bias stays 0; the caller adds it.
 fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
     let dt = rule.dt;
     let resistance = neurons.resistance.at(at);
@@ -265,7 +265,7 @@ fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
 }
 
 impl Neurons {
-    /// Returns the potential at which the framework starts a neuron; in `spikewire-network` it is 0.
+    /// Returns the potential at which the framework starts this neuron. (`spikewire-network` starts all neurons at 0.)
     fn start(&self, at: usize, rule: &Rule) -> f64 {
         let of = |all: Option<&Array>| all.map_or(0.0, |all| all.at(at));
         match rule.framework {
@@ -278,7 +278,7 @@ impl Neurons {
 }
 
 impl Neuron<f64> {
-    /// Shifts all potentials by `start`, so that the neuron starts at 0.
+    /// Shifts all of the neuron's potentials by `start`, so that it starts at 0.
     fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
         self.inner -= (1.0 - self.decay) * start;
         if let Some(spike) = &mut self.spike {
@@ -291,7 +291,10 @@ impl Neuron<f64> {
     }
 }
 
-/// Returns the factor by which a step multiplies a quantity with this time constant.
+/// Returns the factor by which a step multiplies a quantity that decays with time constant `tau`, in seconds.
+///
+/// # Errors
+/// Returns an error if `tau` is not positive, or so short that [`Decay::Euler`] would give a negative factor.
 fn left(tau: f64, rule: &Rule) -> Result<f64> {
     let Rule { dt, framework, decay, .. } = *rule;
     ensure!(tau > 0.0 && tau.is_finite(), "a time constant of {tau} s");
@@ -300,7 +303,7 @@ fn left(tau: f64, rule: &Rule) -> Result<f64> {
     }
     if tau < dt * (1.0 - 1e-9) && framework != Some(Framework::SnnTorch) {
         let kind = if framework == Some(Framework::Norse) {
-            // Without the digits that a product of two decimals has at its end.
+            // The product of two decimals has wrong digits at its end; rounding removes them.
             let meant = (dt * dt * 1e12).round() / 1e12;
             NetworkKind::NorsesTime { tau, step: dt, meant }
         } else {

@@ -1,4 +1,4 @@
-//! Brings networks onto the flight controller itself, for the crate `spikewire-network`.
+//! Brings trained networks onto the flight controller itself, where the crate `spikewire-network` runs them.
 
 mod emit;
 mod form;
@@ -22,77 +22,78 @@ use net::{Done, Net, Recurrent, State};
 use number::Number;
 use quantise::Integers;
 
-/// A network in double precision, in the form of `spikewire-network`.
+/// A network in double precision, in the form of `spikewire-network`: parameters for a step.
 pub struct Model {
     net: Net<f64>,
-    /// Notes on peculiarities of its file.
+    /// Remarks for the user on peculiarities of the network's file.
     notes: Vec<String>,
 }
 
-/// The number type on the controller.
+/// The type of the network's numbers on the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
-    /// Single precision, for cores with a floating-point unit.
+    /// Single precision (`f32`), for cores with a floating-point unit.
     Float,
     /// Integers: weights of 8 bits, potentials of 32 bits.
     Integer,
 }
 
-/// A network for the controller, and the recording on which it is tuned and tested.
+/// A network to bring onto the controller, and the recordings on which it is tuned and tested.
 pub struct ControllerRequest<'a> {
-    /// The network.
+    /// The network in double precision.
     pub model: &'a Model,
-    /// The number type on the controller.
+    /// The type of the network's numbers on the controller.
     pub numbers: Numbers,
-    /// The spikes on which integers are tuned, by step.
+    /// Input spikes of the recording on which integers are tuned, by step.
     pub tuned: &'a Trains,
-    /// Spikes of another recording, on which the result is only tested.
+    /// A recording on which the result is only tested.
     pub held_out: Option<HeldOut<'a>>,
-    /// Called with the number of neurons that are done, and the number in all.
+    /// Called with the number of neurons that are done, and the number of all neurons.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// Number of steps of the check before arming.
+/// Number of steps that the generated check runs before arming.
 const CHECKED: usize = 10;
 
-/// The network in either number type of the controller.
+/// The network, in the number type of the controller.
 enum Held {
     Float(Net<f32>),
     Integer(Integers),
 }
 
-/// A network as the controller holds it.
+/// A network as the controller stores it.
 struct OnController {
     held: Held,
     notes: Vec<String>,
-    /// The inputs of the check before arming.
+    /// Input spikes of the steps that the generated check runs before arming.
     check: Trains,
 }
 
 impl Model {
-    /// Returns the number of inputs.
+    /// Returns the number of inputs of the network.
     pub fn inputs(&self) -> usize {
         self.net.layers.first().map_or(0, net::Layer::inputs)
     }
 
-    /// Returns the name of the first layer.
+    /// Returns the name of the first layer in the network's file.
     pub fn first(&self) -> &str {
         self.net.layers.first().map_or("", |layer| &layer.name)
     }
 
-    /// Runs the network in double precision; returns the neurons that fire, by layer and step.
+    /// Runs the network in double precision on the input spikes of all steps; returns the neurons that fire, by layer,
+    /// then by step.
     pub fn run(&self, inputs: &Trains) -> Vec<Trains> {
         self.net.run(inputs).fired
     }
 
-    /// Runs the network in `f32`, bit for bit as the controller does; returns the neurons that fire, by layer and step,
-    /// and the potentials of the last layer, by step.
+    /// Runs the network in `f32`, with the same bits as the controller. Returns the neurons that fire, by layer, then
+    /// by step; and the potentials of the last layer, by step.
     pub fn run_as_flown(&self, inputs: &Trains) -> (Vec<Trains>, Vec<Vec<f32>>) {
         let Done { fired, potentials, .. } = quantise::float(&self.net).run(inputs);
         (fired, potentials)
     }
 
-    /// Prepares the network to run in `f32` step by step, bit for bit as the controller does.
+    /// Returns the network in `f32` and its initial state, to run it step by step with the same bits as the controller.
     pub fn as_flown(&self) -> Flown {
         let net = quantise::float(&self.net);
         Flown { state: net.state(), net }
@@ -106,14 +107,14 @@ impl Model {
         Original { layers, readout, fired, potentials }
     }
 
-    /// Returns whether the outputs are potentials rather than spikes.
+    /// Returns whether the network's outputs are potentials of neurons that never fire.
     fn is_silent(&self) -> bool {
         let last = self.net.layers.last().and_then(|layer| layer.neurons.first());
         last.is_some_and(|neuron| neuron.spike.is_none())
     }
 }
 
-/// A network and its state in `f32`, bit for bit as on the controller.
+/// A network in `f32` and its state, which runs step by step with the same bits as the controller.
 #[derive(Clone)]
 pub struct Flown {
     net: Net<f32>,
@@ -126,33 +127,34 @@ impl Flown {
         self.net.layers.iter().map(|layer| layer.neurons.len())
     }
 
-    /// Returns the number of inputs.
+    /// Returns the number of inputs of the network.
     pub fn inputs(&self) -> usize {
         self.net.layers.first().map_or(0, net::Layer::inputs)
     }
 
-    /// Resets the network to rest.
+    /// Returns the network to its initial state.
     pub fn reset(&mut self) {
         self.state = self.net.state();
     }
 
-    /// Runs a step with these inputs, in this order; each must be below [`inputs`](Self::inputs).
+    /// Runs a step. `inputs` are the numbers of the inputs that fire, each below [`inputs`](Self::inputs); their order
+    /// decides how sums are rounded.
     pub fn step(&mut self, inputs: &[u16]) {
         self.net.step(&mut self.state, inputs);
     }
 
-    /// Returns the neurons of each layer that fired in the last step, in rising order.
+    /// Returns the neurons that fired in the last step, for each layer, in ascending order.
     pub fn fired(&self) -> impl Iterator<Item = &[u16]> {
         self.state.iter().map(|state| &state.fired[..])
     }
 
-    /// Returns the potentials of the last layer.
+    /// Returns the potentials of the last layer after the last step.
     pub fn potentials(&self) -> &[f32] {
         self.state.last().map_or(&[], |last| &last.potentials)
     }
 }
 
-/// Brings a network onto the controller, and compares it there with double precision.
+/// Brings a network onto the controller: converts its numbers, and compares its spikes with those in double precision.
 ///
 /// # Errors
 /// Returns an error if the network has too many inputs or neurons.
@@ -190,9 +192,10 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
-/// Finds the steps of the recording in which most neurons fire, starting from rest; the last layer counts first.
+/// Returns the inputs of the [`CHECKED`] consecutive steps in which most neurons fire if the network starts from rest.
+/// Windows in which an output fires come before those in which none does.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
-    /// Number of starts that are tried.
+    /// Largest number of windows that are tried.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
     let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);
@@ -205,7 +208,7 @@ fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
 }
 
 impl OnController {
-    /// Returns the bytes that weights and neurons take in flash, and those that the state takes in RAM.
+    /// Returns the number of bytes that the network takes in flash, for weights and neurons, and in RAM, for its state.
     fn bytes_of(&self) -> (usize, usize) {
         match &self.held {
             Held::Float(net) => bytes(net, 4),
@@ -228,7 +231,8 @@ impl OnController {
     }
 }
 
-/// Returns the bytes in flash and RAM of a network, as the crate's types store it, if a weight takes `weight` bytes.
+/// Returns the number of bytes that a network takes in flash and in RAM as `spikewire-network` stores it. `weight` is
+/// the number of bytes of a weight.
 fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
     let (mut flash, mut ram) = (0, 0);
     for layer in &net.layers {

@@ -1,63 +1,65 @@
-//! A network in the form of `spikewire-network`, which covers the neurons of all frameworks, and its simulation.
+//! A network in the form of `spikewire-network`, which covers the neurons of all frameworks, and its simulation in any
+//! number type.
 
 use super::super::Trains;
 use super::number::Number;
 use super::rule::{Current, Fires, Reset, Rule};
 
-/// A network in the number type `K`.
+/// A network whose numbers have the type `K`.
 #[derive(Clone, Debug)]
 pub(super) struct Net<K: Number> {
     pub layers: Vec<Layer<K>>,
 }
 
-/// A layer: its neurons, and the weights that lead to them.
+/// A layer: its neurons, and the weights that lead to its neurons.
 #[derive(Clone, Debug)]
 pub(super) struct Layer<K: Number> {
-    /// Name in the file.
+    /// Name of the layer in the network's file.
     pub name: String,
-    /// The weights, by input, then by neuron.
+    /// The weights: one row for each input, with one weight for each neuron.
     pub weights: Vec<Vec<K>>,
     pub own: Recurrent<K>,
     pub neurons: Vec<Neuron<K>>,
     pub rule: Rule,
 }
 
-/// Recurrent weights of a layer; its spikes act through them a step later.
+/// Recurrent weights of a layer, through which its spikes act on its own neurons one step later.
 #[derive(Clone, Debug)]
 pub(super) enum Recurrent<K> {
     None,
-    /// The weights, by the neuron that fired, then by neuron.
+    /// The weights: one row for each neuron that fired, with one weight for each neuron of the layer.
     Full(Vec<Vec<K>>),
-    /// The weight of each neuron to itself.
+    /// The weight of each neuron to itself; there are no others.
     OneToOne(Vec<K>),
 }
 
-/// A neuron: `I = a I + x + bias`, then `u = b v + I + inner`; without a current `u = b v + x + bias`. `a` and `b` are
-/// the decays, `x` is the sum of the inputs, `v` the potential before.
+/// A neuron. With a current, a step computes `I = a I + x + bias`, then `u = b v + I + inner`; without one, `u = b v +
+/// x + bias`. `a` and `b` are the decay factors, `x` is the sum of the weights of the inputs that fire, `v` the
+/// potential before the step, `u` the potential after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Neuron<K: Number> {
-    /// Factor `a` by which a step multiplies the current; `None` for a neuron without a current.
+    /// Factor `a`, by which a step multiplies the current; `None` for a neuron without a current.
     pub current: Option<K::Factor>,
-    /// Factor `b` by which a step multiplies the potential.
+    /// Factor `b`, by which a step multiplies the potential.
     pub decay: K::Factor,
     pub bias: K,
-    /// Constant added to the potential after the current.
+    /// Constant that a step adds to the potential directly, not through the current.
     pub inner: K,
-    /// How the neuron fires; `None` if it never does.
+    /// How the neuron fires; `None` if it never fires.
     pub spike: Option<Spike<K>>,
 }
 
-/// The threshold and reset of a neuron.
+/// The threshold of a neuron, and its reset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spike<K> {
     pub threshold: K,
-    /// The value to which the potential is set, or which is subtracted from it.
+    /// The value to which a spike sets the potential, or which it subtracts from the potential.
     pub reset: K,
 }
 
 impl<K: Number> Neuron<K> {
-    /// Runs a step; `sum` is that of bias and inputs. Returns whether the neuron fires, and whether a number left its
-    /// range.
+    /// Runs a step. `v` and `current` are the neuron's state, `sum` is the sum of bias and inputs. Returns whether the
+    /// neuron fires, and whether a number left its range.
     #[inline]
     pub(super) fn step(&self, rule: &Rule, v: &mut K, current: &mut K, sum: K) -> (bool, bool) {
         let mut is_outside = false;
@@ -112,7 +114,7 @@ impl<K: Number> Neuron<K> {
     }
 }
 
-/// The state of a layer between steps.
+/// The state of a layer between two steps.
 #[derive(Clone)]
 pub(super) struct State<K> {
     pub potentials: Vec<K>,
@@ -125,8 +127,8 @@ impl<K: Number> Layer<K> {
         self.weights.len()
     }
 
-    /// Returns the number of weights added in a step, given the number of input spikes, and of the layer's own spikes
-    /// in the step before.
+    /// Returns the number of weights that a step adds: `inputs` is the number of input spikes, `own` the number of
+    /// spikes of the layer itself in the step before.
     pub(super) fn operations(&self, inputs: usize, own: usize) -> usize {
         let back = match self.own {
             Recurrent::None => 0,
@@ -140,7 +142,7 @@ impl<K: Number> Layer<K> {
         let before = std::mem::take(&mut state.fired);
         let mut saturated = 0;
         for (at, neuron) in self.neurons.iter().enumerate() {
-            // In the crate's order: the bias comes first.
+            // `spikewire-network` starts each sum with the bias; floating point rounds differently in another order.
             let mut sum = neuron.bias;
             for &input in inputs {
                 sum = sum.plus(self.weights[usize::from(input)][at]);
@@ -169,21 +171,22 @@ impl<K: Number> Layer<K> {
     }
 }
 
-/// The outcome of a run.
+/// The result of a run over all steps.
 #[derive(Default)]
 pub(super) struct Done<K> {
-    /// The neurons that fired, by layer and step.
+    /// The neurons that fired, by layer, then by step.
     pub fired: Vec<Trains>,
-    /// The last layer's potentials, for each step.
+    /// The potentials of the last layer, by step.
     pub potentials: Vec<Vec<K>>,
-    /// Number of weights added, for each step.
+    /// Number of weights that were added, for each step.
     pub operations: Vec<u64>,
-    /// How often a number left its range.
+    /// Number of times that a number left its range.
     pub saturated: u32,
 }
 
 impl<K: Number> Net<K> {
-    /// Describes how neurons fire: in one line for all layers, or in one for each layer that fires.
+    /// Describes how neurons fire, for the user: in one line if all layers have the same rule, else in one for each
+    /// layer that fires.
     pub(super) fn rules(&self) -> Vec<String> {
         let fires = |layer: &&Layer<K>| layer.neurons.iter().any(|neuron| neuron.spike.is_some());
         let firing: Vec<_> = self.layers.iter().filter(fires).collect();
@@ -207,7 +210,7 @@ impl<K: Number> Net<K> {
         self.layers.iter().map(rest).collect()
     }
 
-    /// Runs a step. Returns the number of weights added, and how often a number left its range.
+    /// Runs a step of all layers. Returns the number of weights that were added, and how often a number left its range.
     pub(super) fn step(&self, state: &mut [State<K>], inputs: &[u16]) -> (usize, u32) {
         let (mut operations, mut saturated) = (0, 0);
         let mut drive = inputs.to_vec();

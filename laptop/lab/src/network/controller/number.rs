@@ -1,17 +1,18 @@
-//! The number types of a network: double precision, and those of the controller.
+//! The number types of a network: double precision, and the types of the controller.
 
 use std::fmt::Debug;
 
-/// A number type with a neuron's operations, each rounded as in `spikewire-network`.
+/// A number type with the operations of a neuron, which round as in `spikewire-network`.
 pub(super) trait Number: Copy + Default + PartialOrd + Debug + Send + Sync {
-    /// The type of a decay.
+    /// The type of a decay factor.
     type Factor: Copy + PartialEq + Debug + Send + Sync;
 
     fn scaled(self, factor: Self::Factor) -> Self;
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
 
-    /// Clamps the number to its range; returns whether it was outside.
+    /// Limits the number to the range of potentials and currents. Returns the result, and whether the number was
+    /// outside.
     fn bounded(self) -> (Self, bool) {
         (self, false)
     }
@@ -40,10 +41,10 @@ macro_rules! float {
 float!(f64);
 float!(f32);
 
-/// Bound of potentials and currents in integers.
+/// Bound of potentials and currents in integers: they lie in `-RANGE..RANGE`.
 pub(super) const RANGE: i32 = 1 << 29;
 
-/// The integer that represents a decay of 1.
+/// The integer that stands for a decay factor of 1.
 pub(super) const ONE: f64 = 65_536.0;
 
 impl Number for i32 {

@@ -1,4 +1,5 @@
-//! Converts a network from the form of `spikewire-network` to that of the chips: neurons rest at 0 and have no current.
+//! Converts a network from the form of `spikewire-network` to that of the chips, whose neurons rest at 0 and have no
+//! current.
 
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
@@ -12,7 +13,8 @@ impl Model {
     /// Converts the network for the chips.
     ///
     /// # Errors
-    /// Returns an error if a current lasts longer than a step, or if outputs that never fire have a bias.
+    /// Returns an error if a current lasts longer than a step, if neurons that never fire are not the last ones, or if
+    /// they have a bias.
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =
@@ -29,7 +31,7 @@ impl Model {
     }
 }
 
-/// Transposes weights, from rows by input to rows by neuron.
+/// Transposes a matrix of weights: from one row for each input to one row for each neuron.
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let neurons = rows.first().map_or(0, Vec::len);
     (0..neurons).map(|neuron| rows.iter().map(|row| row[neuron]).collect()).collect()
@@ -71,10 +73,10 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
         let Neuron { decay: keep, bias, inner, spike, .. } = neuron;
         let Spike { threshold, reset } =
             spike.context("neurons that never fire must be the last")?;
-        // A spike returns the chip's neurons to 0: potentials are told from there.
+        // On the chips a spike resets neurons to 0, so potentials are counted from the reset value.
         let zero = if rule.reset.subtracts() { 0.0 } else { reset };
         let bias = bias + inner - (1.0 - keep) * zero;
-        // What rounding leaves of a rest at the reset is no bias.
+        // If the neuron rests at its reset value, only a rounding error remains of the bias.
         layer.bias.push(if bias.abs() < 1e-9 * threshold.abs() { 0.0 } else { bias });
         layer.neurons.push(trained::Neuron { keep, threshold: threshold - zero, leak: 0.0 });
     }

@@ -1,26 +1,27 @@
-//! Choices of a rule that a file leaves open, and their words.
+//! The choices of a rule that a file and its framework leave open, and the text that asks the user for them.
 
 use super::Framework;
 use catalogue::run::Spell;
 use std::fmt::Write as _;
 
-/// A choice that a network needs and that neither its file nor its framework makes.
+/// A choice that the network needs, and that neither its file nor its framework makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Choice {
-    /// What a spike does to its neuron.
+    /// How a spike resets its neuron.
     Reset,
-    /// The potential at which a neuron fires.
+    /// Whether a neuron fires at its threshold or only above it.
     Fires,
-    /// The share of a potential that a step leaves.
+    /// How a time constant becomes the factor by which a step multiplies a potential.
     Decay,
-    /// The current that a potential takes.
+    /// Whether the potential takes the current of this step or of the step before.
     Current,
-    /// Seconds of a step.
+    /// The duration of a step, in seconds.
     Step,
 }
 
-/// Says what is open and how it is chosen, a line for each choice.
+/// Returns a text for the user: which choices are open, and how to make each, one line for each choice. `spell` gives
+/// the name of a setting.
 pub(in super::super) fn words(
     spell: Spell,
     framework: Option<Framework>,
@@ -41,7 +42,7 @@ pub(in super::super) fn words(
 }
 
 impl Choice {
-    /// Its setting, and the values that it takes.
+    /// Returns the name of the setting that makes the choice, and a text that lists its values.
     const fn values(self, framework: Option<Framework>) -> (&'static str, &'static str) {
         match (self, framework) {
             (Self::Reset, Some(Framework::SnnTorch)) => (

@@ -1,4 +1,4 @@
-//! Converts a network from double precision to the controller's number types.
+//! Converts a network from double precision to the number types of the controller.
 
 use super::super::{Distance, Trains};
 use super::net::{Layer, Net, Neuron, Recurrent, Spike};
@@ -7,20 +7,20 @@ use super::rule::Rule;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Scales that are tried, as multiples of the one at which the largest weight becomes 127. Above 1 the largest weights
-/// are clipped, so that the others are rounded less.
+/// Scales to try for the weights, as multiples of the one at which the largest weight becomes 127. Scales above 1 clip
+/// the largest weights, so that the others are rounded less.
 const SCALES: [f64; 14] =
     [1.0, 0.97, 0.94, 0.91, 0.88, 0.85, 0.8, 0.75, 0.7, 1.05, 1.1, 1.2, 1.4, 1.8];
-/// Largest weight.
+/// Largest absolute value of a weight.
 const LARGEST: f64 = 127.0;
-/// Binary places by which potentials are finer than weights, if their range allows.
+/// Number of binary places by which potentials are finer than weights, if the range of potentials allows it.
 const SHIFT: u32 = 8;
-/// Largest bias, threshold and reset value.
+/// Largest absolute value of a bias, threshold or reset value.
 const MOST: f64 = (1 << 27) as f64;
-/// Number of steps of the recording that the search uses.
+/// Number of steps of the recording that the search for scales uses.
 const STEPS: usize = 4_000;
 
-/// Rounds each number to `f32`.
+/// Returns the network with each number rounded to `f32`.
 pub(super) fn float(net: &Net<f64>) -> Net<f32> {
     let row = |row: &Vec<f64>| row.iter().map(|&weight| weight as f32).collect::<Vec<_>>();
     let layer = |layer: &Layer<f64>| Layer {
@@ -50,19 +50,20 @@ pub(super) fn float(net: &Net<f64>) -> Net<f32> {
     Net { layers: net.layers.iter().map(layer).collect() }
 }
 
-/// A network with weights of 8 bits.
+/// A network in integers, with weights of 8 bits.
 pub(super) struct Integers {
     pub net: Net<i32>,
-    /// How far each layer's weights are shifted, in bits.
+    /// Left shift of each layer's weights, in bits.
     pub shifts: Vec<u32>,
-    /// Number of weights of each layer that exceeded 8 bits.
+    /// Number of weights that exceeded 8 bits and were clipped, for each layer.
     pub clipped: Vec<usize>,
-    /// The value that a potential of 1 represents, for each neuron of the last layer.
+    /// The value in the training's units of a potential of 1, for each neuron of the last layer.
     pub units: Vec<f64>,
 }
 
-/// Finds for each neuron the scale of its weights at which its spikes are nearest to the original's, or its potentials
-/// if it never fires. `fired` and `potentials` are the original's.
+/// Quantises a network to integers. Chooses for each neuron the scale of its weights at which its spikes, or its
+/// potentials if it never fires, are nearest to those in double precision. `fired` and `potentials` are the results in
+/// double precision; `progress` is called with the number of neurons that are done, and the number of all neurons.
 pub(super) fn integers(
     net: &Net<f64>,
     inputs: &Trains,
@@ -85,7 +86,7 @@ pub(super) fn integers(
             let distance =
                 |column: &Column| column.distance(layer.rule, &before, fired, &target, at);
             let tried = tried.map(|column| (distance(&column), column));
-            // The first of equals, which clips nothing.
+            // `min_by` returns the first of equal distances; the first scale clips nothing.
             let (_, best) =
                 tried.min_by(|(a, _), (b, _)| a.total_cmp(b)).expect("there are scales");
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
@@ -107,15 +108,15 @@ fn has(fired: &[u16], neuron: usize) -> bool {
     fired.binary_search(&(neuron as u16)).is_ok()
 }
 
-/// A neuron in integers, and the weights that lead to it.
+/// A neuron in integers, and the weights that lead to it: a column of the layer's matrices.
 struct Column {
-    /// The weights by input, shifted.
+    /// The weight of each input, shifted left.
     weights: Vec<i32>,
-    /// The recurrent weights by the neuron that fired, shifted; a single one if each neuron leads to itself alone.
+    /// The weight of each neuron of the same layer, shifted left; a single weight if neurons lead only to themselves.
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
-    /// The value that a potential of 1 represents.
+    /// The value in the training's units of a potential of 1.
     unit: f64,
 }
 
@@ -128,7 +129,7 @@ impl Layer<f64> {
         }
     }
 
-    /// Returns the scale at which a neuron's largest weight becomes 127.
+    /// Returns the scale at which the largest weight of neuron `at` becomes 127.
     fn scale(&self, at: usize) -> f64 {
         let own = self.own_weights(at);
         let weights = self.weights.iter().map(|row| row[at]).chain(own);
@@ -136,13 +137,13 @@ impl Layer<f64> {
         let number = self.neurons[at].largest();
         match (largest > 0.0, number > 0.0) {
             (true, _) => LARGEST / largest,
-            // It has no weights: any scale will do.
+            // The neuron has no weights that differ from 0, so any scale will do.
             (false, true) => LARGEST / number,
             (false, false) => 1.0,
         }
     }
 
-    /// Returns the largest shift at which thresholds and biases stay in their range.
+    /// Returns the largest left shift at which thresholds, biases and reset values stay in their range.
     fn shift(&self) -> u32 {
         let numbers = (0..self.neurons.len()).map(|at| self.neurons[at].largest() * self.scale(at));
         let most = numbers.fold(0.0, f64::max);
@@ -187,7 +188,7 @@ impl Column {
     fn new(layer: &Layer<f64>, at: usize, share: f64, shift: u32) -> Self {
         let neuron = &layer.neurons[at];
         let finer = f64::from(1 << shift);
-        // A neuron whose threshold is far above its weights has small weights.
+        // If the threshold is far above the weights, its range limits the scale, and the weights become small.
         let scale = (layer.scale(at) * share).min(MOST / finer / neuron.largest().max(1e-300));
         let mut clipped = 0;
         let mut weight = |weight: f64| {
@@ -212,8 +213,8 @@ impl Column {
         Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
     }
 
-    /// Returns how far the neuron's spikes or potentials are from the target, with the layer's other spikes as in the
-    /// original.
+    /// Returns the distance of the neuron's spikes or potentials from the target. The other neurons of its layer fire
+    /// as in double precision.
     fn distance(
         &self,
         rule: Rule,
@@ -232,7 +233,8 @@ impl Column {
             }
             match self.own[..] {
                 [] => {}
-                // Of one neuron it is the same.
+                // A single weight leads from the neuron to itself; or the layer has one neuron, for which that is the
+                // same.
                 [one] => sum = sum.wrapping_add(if has(before, at) { one } else { 0 }),
                 _ => {
                     for &fired in before {

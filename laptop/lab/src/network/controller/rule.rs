@@ -1,27 +1,27 @@
-//! The rule by which neurons decay, fire and reset, which a NIR file does not contain.
+//! The rule by which neurons decay, fire and reset. A NIR file does not contain the whole rule.
 
 use super::open::Choice;
 use crate::network::fault::{NetworkKind, Result};
 use std::fmt::{self, Display};
 
-/// The framework whose rule a network follows.
+/// The training framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// snnTorch, which trains with five kinds of reset and writes none of them into its files.
+    /// The framework snnTorch, which trains with five kinds of reset; its files do not say with which one.
     SnnTorch,
-    /// Norse.
+    /// The framework Norse.
     Norse,
-    /// `SpikingJelly`.
+    /// The framework `SpikingJelly`.
     SpikingJelly,
-    /// Rockpool.
+    /// The framework Rockpool.
     Rockpool,
-    /// Sinabs.
+    /// The framework Sinabs.
     Sinabs,
-    /// NIR's own reference program.
+    /// The reference program of the NIR project.
     Nir,
 }
 
-/// What a spike does to its neuron's potential; the names are those of the types in `spikewire-network`.
+/// How a spike resets its neuron's potential. The variants have the names of the types in `spikewire-network`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reset {
     /// Sets the potential to `v_reset` in the same step.
@@ -38,70 +38,72 @@ pub enum Reset {
     SubtractNoDelay,
 }
 
-/// How the potential is compared with the threshold.
+/// Whether a neuron fires when its potential equals its threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fires {
-    /// Fires above the threshold.
+    /// The neuron fires only above the threshold.
     Above,
-    /// Fires at or above the threshold.
+    /// The neuron fires at or above the threshold.
     At,
 }
 
-/// How a time constant `tau` becomes the factor of a step of length `dt`.
+/// How a time constant `tau` becomes the factor by which a step of length `dt` multiplies a potential or current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
-    /// 1 - dt / tau.
+    /// The factor is 1 - dt / tau.
     Euler,
-    /// e to the power of -dt / tau.
+    /// The factor is e to the power of -dt / tau.
     Exponential,
 }
 
-/// Which current drives the potential, for neurons that have both.
+/// Which current drives the potential, for neurons that have a current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Current {
-    /// The current of this step.
+    /// The current after this step's inputs.
     New,
     /// The current of the step before.
     Old,
-    /// The current of this step, to which a spike adds its whole weight, as in Norse's `LIFCell`.
+    /// The current after this step's inputs, to which a spike adds its whole weight, as in Norse's `LIFCell`.
     Whole,
 }
 
-/// The parts of a rule that a user gave.
+/// The parts of a rule that the user gave; all others are open.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
-    /// The framework, which implies some of the others.
+    /// The training framework, which implies some of the other parts.
     pub framework: Option<Framework>,
-    /// What a spike does: one entry for all layers, or one for each layer that fires; empty if not given.
+    /// How a spike resets its neuron: one entry for all layers, or one entry for each layer that fires; empty if not
+    /// given.
     pub resets: Vec<Reset>,
-    /// How potentials are compared with thresholds.
+    /// Whether a neuron fires when its potential equals its threshold.
     pub fires: Option<Fires>,
-    /// How potentials and currents decay.
+    /// How time constants become factors.
     pub decay: Option<Decay>,
     /// Which current drives the potential.
     pub current: Option<Current>,
-    /// Length of a step, in seconds.
+    /// Duration of a step, in seconds.
     pub dt: Option<f64>,
 }
 
-/// The complete rule of a layer.
+/// The complete rule by which a layer's neurons decay, fire and reset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
-    /// The framework, if it was named.
+    /// The training framework, if the user gave one.
     pub framework: Option<Framework>,
-    /// What a spike does to its neuron's potential.
+    /// How a spike resets its neuron's potential.
     pub reset: Reset,
-    /// How potentials are compared with thresholds.
+    /// Whether a neuron fires when its potential equals its threshold.
     pub fires: Fires,
-    /// How potentials and currents decay.
+    /// How time constants become factors.
     pub decay: Decay,
     /// Which current drives the potential.
     pub current: Current,
-    /// Length of a step, in seconds.
+    /// Duration of a step, in seconds.
     pub dt: f64,
 }
 
-/// The rule of networks in JSON, whose numbers are for a step: fires above the threshold, and sets to 0 at once.
+/// The rule of networks in JSON, whose parameters are for a step: a neuron fires above its threshold, and a spike sets
+/// the potential to 0 in the same step.
 pub(super) const PLAIN: Rule = Rule {
     framework: None,
     reset: Reset::ToValue,
@@ -111,22 +113,22 @@ pub(super) const PLAIN: Rule = Rule {
     dt: 1.0,
 };
 
-/// Length of the step, in seconds, with which snnTorch and `SpikingJelly` write files by default.
+/// Duration of a step, in seconds, that snnTorch and `SpikingJelly` assume by default when they write a file.
 const WRITTEN: f64 = 1e-4;
 
-/// Which parts of a rule a network needs.
+/// Which parts of a rule a network needs, by the neurons that it contains.
 #[derive(Clone, Copy)]
 pub(super) struct Needs {
-    /// Whether it has neurons that fire.
+    /// Whether the network has neurons that fire.
     pub fires: bool,
-    /// Whether it has neurons with a current.
+    /// Whether the network has neurons with a current.
     pub current: bool,
-    /// Whether it has time constants.
+    /// Whether the network has time constants.
     pub time: bool,
 }
 
 impl Framework {
-    /// Returns the name by which users choose the framework.
+    /// Returns the name of the framework on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SnnTorch => "snntorch",
@@ -154,17 +156,17 @@ impl Framework {
         Asked { framework: Some(self), resets, fires, decay: Some(decay), current, dt }
     }
 
-    /// Returns whether gains near 1 in the framework's files are meant to be exactly 1.
+    /// Returns whether gains near 1 in this framework's files stand for exactly 1.
     pub(super) const fn means_ones(self) -> bool {
         matches!(self, Self::SnnTorch | Self::SpikingJelly)
     }
 }
 
 impl Asked {
-    /// Returns the complete rule.
+    /// Returns the complete rule: what the user gave, and what the framework implies.
     ///
     /// # Errors
-    /// Returns an error that lists all missing parts which the network needs.
+    /// Returns an error that lists all parts that the network needs and that are still open.
     pub(super) fn rule(&self, needs: Needs) -> Result<Rule> {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         let (reset, fires) = (self.reset(&says), self.fires.or(says.fires));
@@ -193,7 +195,8 @@ impl Asked {
         })
     }
 
-    /// Returns the rule of a network in JSON, changed by what was asked for.
+    /// Returns the rule of a network in JSON: [`PLAIN`], with the reset and the comparison that the user or the
+    /// framework gives.
     pub(in super::super) fn or_plain(&self) -> Rule {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Rule {
@@ -204,7 +207,8 @@ impl Asked {
         }
     }
 
-    /// Completes the rule with what holds for every chip, and with `seconds`, the step of a recording.
+    /// Completes the rule for a chip: comparison, decay and current get the values that all chips have, and the step
+    /// gets the duration `seconds`, unless they are given.
     pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Self {
@@ -216,14 +220,15 @@ impl Asked {
         }
     }
 
-    /// Returns the first layer's reset: the one asked for, or the framework's.
+    /// Returns the reset of the first layer: the one that the user gave, or the one that `says`, the framework's rule,
+    /// implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }
 }
 
 impl Reset {
-    /// Returns the name of the type in `spikewire-network`.
+    /// Returns the name of the type in `spikewire-network` that resets in this way.
     pub(super) const fn type_name(self) -> &'static str {
         match self {
             Self::ToValue => "ToValue",
@@ -235,7 +240,7 @@ impl Reset {
         }
     }
 
-    /// Returns whether a spike subtracts the threshold, rather than setting the potential.
+    /// Returns whether a spike subtracts the threshold from the potential. Otherwise it sets the potential to a value.
     pub const fn subtracts(self) -> bool {
         !matches!(self, Self::ToValue | Self::ToValueLate | Self::ToValueHeld)
     }

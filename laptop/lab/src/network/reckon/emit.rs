@@ -1,4 +1,4 @@
-//! Writes the network as Rust: constant data for `spikewire_chips`.
+//! Writes a network for `ReckOn` as Rust source: constant data for `spikewire_chips`.
 
 use super::super::chip::{Remarks, lines, list};
 use super::Quantised;
@@ -11,16 +11,16 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     let layers = list(network.layers.iter().map(|(name, neurons)| format!("{neurons} ({name})")));
     let bias = network.bias.map_or(String::new(), |bias| {
         format!(
-            "\n/// The input that every step must be told, beside its others.\npub const BIAS: u8 = {bias};\n"
+            "\n/// The input that carries the bias: it must fire in every step, like the other inputs.\npub const BIAS: u8 = {bias};\n"
         )
     });
     let answer = match network.unit {
         Some(unit) => format!(
-            "/// What 1 in an answer stands for in the units of the training.\npub const UNIT: f32 = {:?};",
+            "/// The value of 1 in an answer, in the units of the training.\npub const UNIT: f32 = {:?};",
             unit as f32
         ),
         None => format!(
-            "/// The bit of an answer that says whether the output's neuron fired; each lower one is a step older.
+            "/// The bit of an answer that says whether the output's neuron fired; each lower bit is a step older.
 pub const FIRED: u32 = {FIRED};"
         ),
     };
@@ -38,12 +38,12 @@ pub const FIRED: u32 = {FIRED};"
 
 use spikewire_chips::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
 {bias}
-/// Steps from inputs to the answer that shows what they did; a step is a tick{micros}.
+/// Number of steps from inputs to the answer that shows their effect; a step is a tick{micros}.
 pub const LATE: usize = {late};
 
 {answer}
 
-/// Layers of {layers}; {outputs} outputs. Inputs: {meaning}.
+/// Neurons in each layer: {layers}; {outputs} outputs. Inputs: {meaning}.
 #[rustfmt::skip]
 pub static NETWORK: ReckOnNetwork<{inputs}, {count}, {outputs}> = ReckOnNetwork {{
     pairs: &[

@@ -1,4 +1,4 @@
-//! `ReckOn`: 256 recurrent neurons, 16 leaky outputs, weights of 8 bits.
+//! Brings networks onto `ReckOn`: 256 neurons with recurrent connections, 16 leaky outputs, weights of 8 bits.
 
 mod emit;
 mod place;
@@ -12,7 +12,7 @@ use crate::Result;
 use quantise::{Quantised, quantise};
 use spikewire_chips::{DescribeReckOn, ReckOnBytes};
 
-/// The chip `ReckOn`.
+/// The chip `ReckOn`, as a target for trained networks.
 pub struct ReckOn;
 
 impl Chip for ReckOn {
@@ -28,13 +28,13 @@ impl Chip for ReckOn {
         _compare: Option<Compare>,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Box<dyn OnChip>> {
-        // The chip subtracts a threshold behind its leak.
+        // The chip subtracts a threshold one step after the spike, after the leak.
         let trained = trained.clone().late();
         Ok(Box::new(quantise(&trained, inputs, fired, progress)?))
     }
 }
 
-/// Number of SPI clocks for a word and its header.
+/// Number of SPI clock pulses in the transfer of one 32-bit word and its header.
 const FRAME: u32 = 64;
 
 impl OnChip for Quantised {

@@ -1,4 +1,4 @@
-//! Assigns the layers' neurons to the chip's.
+//! Assigns the neurons of a network to those of the chip.
 
 use super::super::Trained;
 use crate::network::fault::{Result, ensure};
@@ -7,18 +7,19 @@ const NEURONS: usize = 256;
 const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
 
-/// The assignment of neurons. The chip's neurons form pairs that share leak and threshold: both belong to one layer,
-/// and leak alike.
+/// Which neuron of the network each of the chip's neurons is. Two adjacent neurons of the chip form a pair with a
+/// common leak and threshold, so both belong to the same layer, and their trained leaks are as similar as possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// Layer and neuron for each of the chip's neurons; `None` for the free half of a layer's last pair.
+    /// For each of the chip's neurons, its layer and its index in the layer; `None` for a neuron that is left free
+    /// because a layer has an odd number of neurons.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
-    /// The chip's neuron, by layer and neuron.
+    /// The number of the chip's neuron, by layer and index in the layer.
     by_layer: Vec<Vec<usize>>,
 }
 
 impl Places {
-    /// Assigns all neurons of the network.
+    /// Assigns all neurons of a network to the chip.
     ///
     /// # Errors
     /// Returns an error if the chip has too few neurons, inputs or outputs.
@@ -66,12 +67,12 @@ impl Places {
         Ok(Self { neurons, by_layer })
     }
 
-    /// Returns the chip's neuron for a neuron of a layer.
+    /// Returns the number of the chip's neuron for neuron `neuron` of layer `layer`.
     pub(super) fn of(&self, layer: usize, neuron: usize) -> usize {
         self.by_layer[layer][neuron]
     }
 
-    /// Returns the neurons of each pair, as layer and neuron.
+    /// Returns, for each pair of the chip's neurons, their layers and indices.
     pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
     }

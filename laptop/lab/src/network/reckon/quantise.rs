@@ -1,4 +1,4 @@
-//! Quantises a network from double precision to the numbers of `ReckOn`.
+//! Quantises a network from double precision to the integers of `ReckOn`.
 
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
@@ -9,46 +9,48 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The integer that represents a factor of 1: for neurons, and for outputs.
+/// The integers that stand for a factor of 1: `KEEP` for neurons, `OUTPUT_KEEP` for outputs.
 const KEEP: f64 = 32_768.0;
 const OUTPUT_KEEP: f64 = 128.0;
-/// Smallest factor that the chip can hold for a neuron.
+/// Smallest factor by which a step can multiply a neuron's potential on the chip.
 const LEAST_KEEP: f64 = 0.875;
 const LARGEST: f64 = 127.0;
-/// Largest potential that the recording may reach; the rest of the range is left for other recordings.
+/// Largest potential that a neuron may reach in the recording. The rest of the 16-bit range is left for other
+/// recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Scales that are tried, as multiples of the one at which the largest weight just fits.
+/// Scales to try for a pair of neurons, as multiples of the largest one at which its weights and potentials fit.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
-/// Number of left shifts that weights may have.
+/// Number of left shifts (0 to 7) from which weights can choose.
 const SHIFTS: u8 = 8;
-/// Weight, shift and factor of an output without trained weights, which follows its neuron. A step halves its
+/// Weight, shift and factor of an output that reports the spikes of one neuron. Each step halves the output's
 /// potential, so that the bits of the potential are the neuron's last steps.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// Bit of an answer that says whether the neuron fired last.
+/// Bit of such an output's potential that is 1 if its neuron fired in the latest step.
 pub(super) const FIRED: u32 = 12;
 
-/// A network as `ReckOn` holds it.
+/// A network in the integers of `ReckOn`.
 #[derive(Clone, Debug)]
 pub(super) struct Quantised {
     pub(super) places: Places,
     pub(super) pairs: Vec<ReckOnPair>,
-    /// The weights, by input, then by neuron. The bias is the last input, if there is one.
+    /// The weights: one row for each input, with one weight for each neuron of the chip. The bias is the last input, if
+    /// the network has a bias.
     pub(super) inputs: Vec<Vec<i8>>,
-    /// The weights, by sending neuron, then by receiving neuron.
+    /// The weights: one row for each sending neuron, with one weight for each receiving neuron.
     pub(super) recurrent: Vec<Vec<i8>>,
-    /// The weights, by neuron, then by output.
+    /// The weights: one row for each neuron, with one weight for each output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
-    /// The input that carries the bias and must fire in every step, if there is one.
+    /// Number of the input that carries the bias and must fire in every step; `None` if the network has no bias.
     pub(super) bias: Option<usize>,
-    /// Name and size of each layer.
+    /// Name and number of neurons of each layer.
     pub(super) layers: Vec<(String, usize)>,
-    /// The value that an answer of 1 represents, in the training's units; `None` if an answer's bits are a neuron's
-    /// spikes.
+    /// The value in the training's units of an output's potential of 1; `None` if the outputs report the spikes of
+    /// neurons.
     pub(super) unit: Option<f64>,
-    /// How rounding changed the weights of each layer, then those of the outputs, if they have any.
+    /// How rounding changed the weights of each layer; then those of the outputs, if they were trained.
     pub(super) changes: Vec<Change>,
-    /// Number of neurons and outputs whose leak differs from the trained one, and the largest difference.
+    /// Number of neurons and outputs whose leak on the chip differs from the trained one, and the largest difference.
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -57,22 +59,22 @@ pub(super) struct Quantised {
 pub(super) struct Change {
     pub(super) name: String,
     pub(super) weights: usize,
-    /// Number of weights that exceeded the chip's range.
+    /// Number of weights that exceeded the chip's range and were clipped.
     pub(super) clipped: usize,
-    /// Number of weights that were rounded to 0.
+    /// Number of weights other than 0 that were rounded to 0.
     pub(super) vanished: usize,
-    /// Sum of the squared weights, and sum of their squared changes.
+    /// Sum of the squares of the weights, and sum of the squares of their changes.
     sums: [f64; 2],
 }
 
 impl Change {
-    /// Returns the ratio of the root mean square of the changes to that of the weights.
+    /// Returns the root mean square of the changes, relative to that of the weights.
     pub(super) fn relative(&self) -> f64 {
         let [weights, changes] = self.sums;
         if weights > 0.0 { (changes / weights).sqrt() } else { 0.0 }
     }
 
-    /// Rounds a weight for the chip; a weight of 1 becomes `scale`, before it is shifted.
+    /// Rounds `weight * scale` to a weight of the chip, and adds its change to the sums.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let rounded = (weight * scale).round();
         let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
@@ -86,17 +88,17 @@ impl Change {
     }
 }
 
-/// A neuron and the weights that lead to it, divided by its threshold.
+/// A neuron and the weights that lead to it, all divided by its threshold.
 struct Source {
     layer: usize,
     neuron: usize,
     keep: f64,
-    /// The weights of the inputs; the bias is the last, if there is one.
+    /// The weight of each input; then the bias, if the network has a bias.
     inputs: Vec<f64>,
-    /// Neurons of the chip that lead to it, with their weights.
+    /// The chip's neurons that lead to this one, each with its weight.
     recurrent: Vec<(usize, f64)>,
     has_bias: bool,
-    /// Largest potential in double precision.
+    /// Largest absolute potential of the neuron in double precision, divided by its threshold.
     peak: f64,
 }
 
@@ -113,7 +115,7 @@ impl Source {
     }
 }
 
-/// Returns the largest scale at which the weights and potentials of a pair fit.
+/// Returns the largest scale at which the weights and potentials of a pair of neurons fit the chip.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -123,7 +125,8 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     (ROOM / room).min(of_kind(0)).min(of_kind(1))
 }
 
-/// Returns how much rounding changes a pair: the sum of the squared changes of its weights, and of its leaks' losses.
+/// Returns how much rounding changes a pair of neurons: the sum of the squared changes of its weights, and of its
+/// leaks.
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -137,12 +140,13 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     pair.iter().map(of_source).sum()
 }
 
-/// Brings a network onto the chip. First chooses the shifts with which the weights change least; then for each pair of
-/// neurons the scale at which its spikes are nearest to the original's, driven by the spikes in double precision. Calls
-/// `progress` with the number of neurons that are done, and the number in all.
+/// Quantises a network for the chip. First chooses the shifts at which rounding changes the weights least. Then
+/// chooses, for each pair of neurons, the scale at which its spikes are nearest to those in double precision, with the
+/// other neurons firing as in double precision. Calls `progress` with the number of neurons that are done, and the
+/// number of all neurons.
 ///
 /// # Errors
-/// Returns an error if the network does not fit.
+/// Returns an error if the network does not fit the chip.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -278,7 +282,7 @@ fn source(
     Source { layer: at, neuron, keep, inputs, recurrent, has_bias, peak: peak / threshold }
 }
 
-/// Returns the largest potentials in double precision, by layer and neuron.
+/// Returns the largest absolute potential that each neuron reaches in double precision, by layer and neuron.
 fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> {
     let before = std::iter::once(inputs).chain(fired);
     let of_layer = |(layer, before): (&Layer, &Trains)| {
@@ -289,15 +293,16 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
     trained.layers.iter().zip(before).map(of_layer).collect()
 }
 
-/// The spikes that drive a layer in a step.
+/// The spikes that act on a layer in a step.
 struct Drive {
-    /// Inputs of the network, each at most once.
+    /// Inputs of the network that fire, each at most once.
     inputs: Vec<u16>,
-    /// Neurons of the layer before, in the same step, and the layer's own in the step before, as layer and neuron.
+    /// Neurons that fire, as layer and index: those of the layer before in the same step, and those of the layer itself
+    /// in the step before.
     neurons: Vec<(usize, usize)>,
 }
 
-/// Returns the spikes in double precision that drive each layer in each step.
+/// Returns the spikes that act on each layer in each step, if all neurons fire as in double precision.
 fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive>> {
     let of_layer = |(at, layer): (usize, &Layer)| {
         let of_step = |step: usize| {
@@ -322,14 +327,14 @@ fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive
     trained.layers.iter().enumerate().map(of_layer).collect()
 }
 
-/// How all neurons fire and reset.
+/// How all neurons of the chip fire and reset.
 #[derive(Clone, Copy)]
 struct Firing {
     resets_to_zero: bool,
     fires: Fires,
 }
 
-/// A neuron as the chip holds it.
+/// A neuron in the chip's integers, to be simulated alone.
 struct Held<'a> {
     keep: i32,
     threshold: i32,
@@ -371,7 +376,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the distance of its spikes from the original's.
+    /// Returns the distance of the neuron's spikes from those that it should have.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let mut is_over = false;
@@ -394,7 +399,7 @@ impl<'a> Held<'a> {
 }
 
 impl Quantised {
-    /// Returns the number of ticks from a step to the one whose answer shows the effect of the step's inputs.
+    /// Returns the number of ticks by which an answer is late: the effect of a step's inputs shows so many ticks later.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
     }
@@ -422,7 +427,10 @@ impl Quantised {
         *most = most.max(difference);
     }
 
-    /// Sets the outputs' weights, for a network whose outputs are potentials.
+    /// Sets the outputs' weights, shift and leak, for a network whose outputs are potentials.
+    ///
+    /// # Errors
+    /// Returns an error if the outputs keep too little of their potential to be read.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
         let mean = keep.iter().sum::<f64>() / keep.len() as f64;
@@ -452,12 +460,12 @@ impl Quantised {
         self.changes.push(change);
         self.shared.shifts[2] = shift;
         self.shared.keep = held as u8;
-        // An answer has leaked once more.
+        // The chip sends a potential after it has leaked once more.
         self.unit = Some(OUTPUT_KEEP / held / scale);
         Ok(())
     }
 
-    /// Adds an output for each neuron of the last layer, which follows its spikes.
+    /// Adds an output for each neuron of layer `last`, which reports the neuron's spikes.
     fn follow(&mut self, last: usize) {
         let (weight, shift, keep) = FOLLOWS;
         let outputs = self.layers[last].1;

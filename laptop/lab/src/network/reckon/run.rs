@@ -1,4 +1,4 @@
-//! Runs the network on the chip's model, clock by clock, through the driver of `spikewire-chips`.
+//! Runs a network on `ReckOn`'s model, which is exact to the clock cycle, through the driver of `spikewire-chips`.
 
 use super::super::Trains;
 use super::super::chip::{Ran, refused};
@@ -10,12 +10,13 @@ use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
 
 type Chip = ReckOn<Spi, Port>;
 
-/// Number of the chip's clocks for one SPI clock.
+/// Number of the chip's clock cycles in one SPI clock cycle.
 const RATIO: u32 = 10;
 
-/// Loads the network, verifies it and runs it as one sample: for each step its inputs, the bias and a tick. Neurons of
-/// the first layer fire at the next tick, those of each further layer one tick later, and outputs show the last layer's
-/// spikes one tick after that. The result assigns all of them to the step in which they fire in double precision.
+/// Loads the network into the model, and runs it as one sample. A step consists of its inputs, the bias and a tick.
+/// Neurons of the first layer fire at the next tick, those of each further layer one tick later, and the outputs show
+/// the last layer's spikes one tick after that. The result lists all spikes under the step in which they occur in
+/// double precision.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.
@@ -34,7 +35,8 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         clocks: vec![],
         lost: 0,
     };
-    // Spikes are taken from the model, but those of the last layer from what the chip answers, if it does.
+    // The spikes of inner layers are taken from the model. Those of the last layer come from the chip's answers, unless
+    // the answers are potentials.
     let read_out = if network.unit.is_some() { layers } else { layers - 1 };
     let late = network.late();
     board.pins().chip.fired.clear();
@@ -75,7 +77,7 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
             ran.fired[layers - 1][step] = fired.map(|(output, _)| output).collect();
         }
     }
-    // In order of their number, as in double precision.
+    // Sorts the neurons by number, as in double precision.
     ran.fired.iter_mut().flatten().for_each(|step| step.sort_unstable());
     Ok(ran)
 }

@@ -1,8 +1,8 @@
-//! The search for a neuron's numbers, by hill climbing.
+//! Hill climbing, which searches for the parameters of a neuron on the chip.
 
-/// Finds the choice with the smallest distance from the original; returns both. The `climbs` best of the first choices
-/// are replaced by a neighbour for as long as that is nearer. `distance` is given the smallest distance so far, and may
-/// give up once a choice exceeds it, as almost all do.
+/// Finds a choice with a small distance from the original; returns the distance and the choice. Starts from the
+/// `climbs` best of the choices in `first`, and moves each to its best neighbour until none is nearer. `distance` also
+/// gets the smallest distance so far; it may stop computing when a choice exceeds it, as almost all do.
 pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
     first: impl IntoIterator<Item = C>,
     neighbours: impl Fn(C) -> N,
@@ -14,7 +14,7 @@ pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
         let most = best.get(climbs.max(1) - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
         let distance = distance(choice, most);
         if distance < most || best.is_empty() {
-            // Of equals the first.
+            // Places a choice after those of equal distance, so that the first of equals wins.
             let place = best.partition_point(|(other, _)| *other <= distance);
             best.insert(place, (distance, choice));
             best.truncate(climbs.max(1));

@@ -1,10 +1,11 @@
-//! Writes the network as Rust: constant data for `spikewire_chips`.
+//! Writes a network for tinyODIN as Rust source: constant data for `spikewire_chips`.
 
 use super::super::chip::{Remarks, lines, list};
 use super::Quantised;
 use spikewire_chips::{Describe, TinyOdinNeuron};
 
-/// Writes Rust source, which compiles without `std` if `spikewire-chips` has its feature `embedded-hal`.
+/// Returns Rust source that defines the network. It compiles without `std` if `spikewire-chips` has its feature
+/// `embedded-hal`.
 pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     let (count, inputs) = (network.neurons(), network.inputs());
     let outputs = (0..count).filter(|&neuron| network.output(neuron as u8).is_some());
@@ -15,14 +16,15 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     );
     let bias = if network.has_bias {
         format!(
-            "\n/// The input that every step must be told, before its others.\npub const BIAS: u16 = {};\n",
+            "\n/// The input that carries the bias: it must fire in every step, before the other inputs.\npub const BIAS: u16 = {};\n",
             inputs - 1
         )
     } else {
         String::new()
     };
     let micros = remarks.micros(every);
-    let idle = if network.leaks() { "" } else { " No neuron leaks: none need be sent." };
+    let idle =
+        if network.leaks() { "" } else { " No neuron leaks, so that no leaks need be sent." };
     let neurons = lines((0..count).map(|neuron| {
         let TinyOdinNeuron { threshold, leak, .. } = network.neuron(neuron as u8);
         format!("TinyOdinNeuron {{ threshold: {threshold}, leak: {leak}, ..TinyOdinNeuron::REST }}")
@@ -40,10 +42,10 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
 use core::num::NonZeroU32;
 use spikewire_chips::{{Inputs, TinyOdinNetwork, TinyOdinNeuron}};
 {bias}
-/// Steps from one leak of all neurons to the next{micros}.{idle}
+/// Number of steps between two leaks of all neurons{micros}.{idle}
 pub const STEPS_A_LEAK: NonZeroU32 = NonZeroU32::new({every}).unwrap();
 
-/// Layers of {layers}. Inputs: {meaning}.
+/// Neurons in each layer: {layers}. Inputs: {meaning}.
 #[rustfmt::skip]
 pub static NETWORK: TinyOdinNetwork<{inputs}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [

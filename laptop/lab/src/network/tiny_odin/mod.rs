@@ -14,7 +14,7 @@ use crate::network::fault::{Context, Result, bail};
 use quantise::{Quantised, quantise};
 use spikewire_chips::NetworkBytes;
 
-/// The chip tinyODIN.
+/// The chip tinyODIN, as a target for trained networks.
 pub struct TinyOdin;
 
 impl Chip for TinyOdin {
@@ -36,7 +36,7 @@ impl Chip for TinyOdin {
         if compare == Some(Compare::Spike) {
             return Ok(Box::new(quantise(trained, inputs, fired, progress)?));
         }
-        // What is found on the first part is judged on the rest, where it may not hold.
+        // Searches on the first part of the recording, and judges the results on the rest.
         let part = inputs.len() * FOUND.0 / FOUND.1;
         let found = inputs[..part].to_vec();
         let found_fired: Vec<Trains> = fired.iter().map(|all| all[..part].to_vec()).collect();
@@ -67,7 +67,7 @@ impl Chip for TinyOdin {
     }
 }
 
-/// Share of a recording on which a network's numbers are searched, as numerator and denominator.
+/// Share of the recording on which parameters are searched, as numerator and denominator.
 const FOUND: (usize, usize) = (3, 4);
 
 impl OnChip for Quantised {

@@ -1,4 +1,4 @@
-//! Quantises a network from double precision to the numbers of tinyODIN.
+//! Quantises a network from double precision to tinyODIN's integers, with neurons that compare after every spike.
 
 use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
@@ -13,46 +13,46 @@ const NEURONS: usize = 256;
 const ROWS: usize = 256;
 const MAX_THRESHOLD: f64 = 2047.0;
 const MAX_LEAK: f64 = 127.0;
-/// Largest weights that are tried. Above 7 the largest weights are clipped, so that the others are rounded less.
+/// Largest weights to try. Values above 7 clip the largest weights, so that the others are rounded less.
 const LARGEST: [f64; 20] = [
     7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 10.0, 3.0, 12.0, 2.0, 14.0, 1.0, 16.0, 6.5, 5.5, 4.5, 3.5, 7.5,
     8.5, 20.0,
 ];
 /// Number of choices from which the search climbs.
 const CLIMBS: usize = 2;
-/// Leaks that are tried, as multiples of what the original loses at half the threshold.
+/// Leaks to try, as multiples of what the original neuron loses at half its threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
-/// Number of neurons of each layer on which the number of steps between leaks is tried.
+/// Number of neurons of each layer on which the interval between leaks is rated.
 const SURVEYED: usize = 32;
-/// The marker of a leak among weights.
+/// The value that stands for a leak in a sequence of weights.
 const LEAK: i8 = i8::MIN;
-/// Number of a layer's spikes in a step from which it counts as driving itself without end.
+/// Number of spikes in a step at which a layer counts as driving itself without end.
 const MOST_SPIKES: usize = 10_000;
-/// Numbers of steps between two leaks of all neurons that are tried.
+/// Numbers of steps to try between two leaks of all neurons.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
 
-/// A network as tinyODIN holds it: the neurons of all layers one after the other. If a layer has a bias, there is one
-/// more input, which must fire in every step.
+/// A network in tinyODIN's integers. The chip's neurons are those of all layers, one layer after the other. If the
+/// network has a bias, the last input carries it and must fire in every step.
 #[derive(Clone, Debug)]
 pub(super) struct Quantised {
     /// The layers.
     pub layers: Vec<ChipLayer>,
-    /// Number of inputs, without the bias.
+    /// Number of inputs, without the one for the bias.
     inputs: usize,
-    /// Whether there is a bias.
+    /// Whether the network has a bias.
     pub has_bias: bool,
-    /// Whether a layer is recurrent.
+    /// Whether spikes of neurons act on neurons: a layer is recurrent, or there are several layers.
     is_recurrent: bool,
     /// Number of steps between two leaks of all neurons.
     pub steps_a_leak: usize,
 }
 
-/// A layer's neurons.
+/// The neurons of a layer.
 #[derive(Clone, Debug)]
 pub(super) struct ChipLayer {
-    /// Name in the file.
+    /// Name of the layer in the network's file.
     pub name: String,
-    /// Number of inputs from the layer before.
+    /// Number of inputs, which for later layers are the neurons of the layer before.
     inputs: usize,
     /// The neurons, in order.
     pub neurons: Vec<ChipNeuron>,
@@ -61,24 +61,25 @@ pub(super) struct ChipLayer {
 /// A neuron, and the weights that lead to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ChipNeuron {
-    /// The weights, by input, then in a recurrent layer by its neurons.
+    /// The weight of each input; then, in a recurrent layer, that of each of its neurons.
     pub weights: Vec<i8>,
-    /// Weight that every step adds.
+    /// Weight that acts in every step.
     pub bias: i8,
-    /// Potential at which it fires.
+    /// Potential at which the neuron fires.
     pub threshold: u16,
-    /// Amount that a leak subtracts.
+    /// Amount by which a leak moves the potential towards 0.
     pub leak: u8,
-    /// Number of weights that exceeded the chip's range.
+    /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
 }
 
-/// Brings a network onto the chip, layer by layer. Finds for each neuron the scale of its weights, the threshold and
-/// the leak with which its spikes are nearest to the original's, driven by the spikes of the chip's layer before in the
-/// chip's order. Calls `progress` with the number of neurons that are done, and the number in all.
+/// Quantises a network for the chip, layer by layer. Finds for each neuron the scale of its weights, the threshold and
+/// the leak with which its spikes are nearest to the original's. The inputs of a layer are the spikes of the chip's
+/// quantised layer before it, in the chip's order. Calls `progress` with the number of neurons that are done, and the
+/// number of all neurons.
 ///
 /// # Errors
-/// Returns an error if the network does not fit.
+/// Returns an error if the network does not fit the chip.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -94,7 +95,7 @@ pub(super) fn quantise(
         .any(|neuron| neuron.keep < 1.0 || neuron.leak > 0.0);
     let tried = if leaks { &STEPS[..] } else { &STEPS[..1] };
     let count = |layer: &Layer| layer.neurons.len();
-    // Of a layer's neurons so many, evenly spaced, tell how often the leak should come.
+    // The interval between leaks is rated on some neurons of each layer, evenly spaced.
     let some = |layer: &Layer| (0..count(layer)).step_by(count(layer).div_ceil(SURVEYED));
     let surveyed: usize = trained.layers.iter().map(|layer| some(layer).len()).sum();
     let all: usize = trained.layers.iter().map(count).sum();
@@ -124,7 +125,7 @@ pub(super) fn quantise(
             layers.map(of_layer).sum()
         };
         let rough = tried.iter().map(|&steps| (survey(steps), steps));
-        // The first of equals, so that leaks come often where it does not matter.
+        // `min_by` returns the first of equals: leaks come often if the interval makes no difference.
         let best = rough.min_by(|(one, _), (other, _)| one.total_cmp(other));
         steps_a_leak = best.map_or(1, |(_, steps)| steps);
     }
@@ -172,17 +173,17 @@ fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
     Ok(())
 }
 
-/// The spikes that drive a layer, by step: its inputs, then in a recurrent layer its own neurons, numbered on from the
-/// inputs.
+/// The spikes that act on a layer, step by step: first its inputs, then, in a recurrent layer, its own spikes. The
+/// layer's own neurons are numbered after the inputs.
 struct Drive {
-    /// Where each step's spikes end.
+    /// For each step, the index in `spikes` at which its spikes end.
     ends: Vec<usize>,
     spikes: Vec<u16>,
 }
 
 impl Drive {
-    /// Lists the spikes as the chip's neurons see them: spikes of neurons come in their own step, after the inputs.
-    /// `fired` is the layer's own spikes.
+    /// Lists the spikes in the order in which the chip applies them: the layer's own spikes, `fired`, come in the step
+    /// in which they occur, after the inputs.
     fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
         let (mut ends, mut spikes) = (Vec::new(), Vec::new());
         let first = layer.inputs() as u16;
@@ -197,7 +198,7 @@ impl Drive {
     }
 }
 
-/// Returns for each neuron and step how often the neuron fires.
+/// Returns the number of spikes of each neuron, by neuron, then by step.
 fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
     let mut counts = vec![vec![0; fired.len()]; neurons];
     for (step, fired) in fired.iter().enumerate() {
@@ -209,9 +210,9 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
 }
 
 impl ChipLayer {
-    /// Returns the neurons that fire in each step, in the chip's order: after each spike every neuron compares with its
-    /// threshold, and the layer's own spikes queue behind earlier ones. `own` is the index of the layer's first own
-    /// spike.
+    /// Returns the neurons that fire in each step, in the chip's order: all neurons compare with their thresholds after
+    /// each spike, and the layer's own spikes wait behind earlier ones. `own` is the number of the layer's first neuron
+    /// among its inputs, if it is recurrent.
     fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
         let mut potentials = vec![0_i32; self.neurons.len()];
         let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {
@@ -235,7 +236,7 @@ impl ChipLayer {
             let (mut waiting, mut seen) = (VecDeque::new(), 0);
             let mut inputs = inputs.iter().copied();
             loop {
-                // The chip takes an input before it takes the next spike out of its queue.
+                // The chip takes an input before it takes the next spike from its queue.
                 waiting.extend(inputs.next());
                 if let Some(own) = own {
                     waiting.extend(out[seen..].iter().map(|&neuron| own as u16 + neuron));
@@ -253,25 +254,25 @@ impl ChipLayer {
     }
 }
 
-/// The searched settings of a neuron.
+/// The settings of a neuron that the search varies.
 #[derive(Clone, Copy)]
 struct Choice {
-    /// The value that a weight of 1 on the chip represents.
+    /// The value in the training's units of a weight of 1 on the chip.
     unit: f64,
     threshold: u16,
     leak: u8,
 }
 
-/// The spikes that a neuron should have, and those that drive it.
+/// The spikes that a neuron should have, and the spikes that act on it.
 struct Aim<'a> {
     drive: &'a Drive,
-    /// How often the neuron fires, for each step.
+    /// Number of spikes that the neuron should have, for each step.
     target: &'a [u16],
     steps_a_leak: usize,
 }
 
-/// Finds the numbers with which a neuron is nearest to the original, and returns their distance with them. Climbs from
-/// the `climbs` best first choices.
+/// Searches for the parameters with which neuron `at` is nearest to the original. Returns the distance of its spikes,
+/// and the neuron. Climbs from the `climbs` best of the first choices.
 fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuron) {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();
@@ -283,7 +284,8 @@ fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuro
     (least, neuron(best))
 }
 
-/// Returns the first choices of the search: scales with their thresholds, and some leaks.
+/// Returns the choices with which the search starts: scales of the weights with the thresholds that fit them, each with
+/// several leaks.
 fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -337,7 +339,7 @@ impl ChipNeuron {
         Self { weights, bias, threshold, leak, clipped }
     }
 
-    /// Returns the potential after a weight, or after a [`LEAK`].
+    /// Returns the potential after a weight has acted on it, or after a leak if `weight` is [`LEAK`].
     fn driven(&self, potential: i32, weight: i8) -> i32 {
         if weight == LEAK {
             potential.signum() * (potential.abs() - i32::from(self.leak)).max(0)
@@ -346,7 +348,8 @@ impl ChipNeuron {
         }
     }
 
-    /// Returns the distance of its spikes from the target, or infinity once that reaches `most`.
+    /// Returns the distance of the neuron's spikes from those that it should have, or infinity as soon as the distance
+    /// reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let threshold = i32::from(self.threshold);
@@ -382,7 +385,7 @@ impl ChipNeuron {
 }
 
 impl Quantised {
-    /// Returns the layer of one of the chip's neurons, and its index in it.
+    /// Returns the layer of one of the chip's neurons, and its index in the layer; `None` if the neuron is not in use.
     pub(super) fn place(&self, neuron: usize) -> Option<(usize, usize)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
@@ -394,12 +397,12 @@ impl Quantised {
         None
     }
 
-    /// Returns whether a leak has any effect.
+    /// Returns whether any neuron leaks.
     pub(super) fn leaks(&self) -> bool {
         self.layers.iter().flat_map(|layer| &layer.neurons).any(|neuron| neuron.leak > 0)
     }
 
-    /// Returns the number of neurons.
+    /// Returns the number of neurons in all layers.
     pub(super) fn count(&self) -> usize {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
@@ -467,8 +470,8 @@ mod tests {
     use super::*;
     use crate::network::{Fires, Reset};
 
-    /// Steps have one spike at most: with several, the chip's neuron might fire at the first, and keep what the others
-    /// add.
+    /// Makes random inputs with at most one spike in a step. With several, the chip's neuron might fire at the first,
+    /// and keep what the others add.
     fn some(inputs: u16, steps: u32) -> Trains {
         let fires = |step: u32, input: u16| {
             let mixed = (step * 257 + u32::from(input) * 7919).wrapping_mul(0x9E37_79B9);
@@ -491,7 +494,7 @@ mod tests {
         }
     }
 
-    /// The weights fit the chip exactly: the neurons fire at the same steps.
+    /// If the weights fit the chip exactly, its neurons fire at the same steps as the original's.
     #[test]
     fn whole_weights_without_a_leak_lose_nothing() {
         let weights = vec![vec![3.0, 7.0, 1.0], vec![2.0, 0.0, 5.0]];

@@ -1,4 +1,4 @@
-//! Runs the network on the chip's model, clock by clock, through the driver of `spikewire-chips`.
+//! Runs a network on tinyODIN's model, which is exact to the clock cycle, through the driver of `spikewire-chips`.
 
 use super::super::Trains;
 use super::super::chip::{Ran, Stepped, refused};
@@ -7,18 +7,18 @@ use crate::Result;
 use silicon::Board;
 use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 
-/// Number of the chip's clocks for one SPI clock.
+/// Number of the chip's clock cycles in one SPI clock cycle.
 pub(super) const RATIO: u32 = 4;
 
-/// The steps as they arrive, each with the inputs that fire.
+/// The inputs that fire, for one step after the other.
 pub(super) type Steps<'a> = dyn Iterator<Item = Result<Vec<u16>>> + 'a;
 
-/// A function that is given the outcome of each step.
+/// A function that takes the result of each step.
 pub(super) type See<'a> = dyn FnMut(Stepped) -> Result<()> + 'a;
 
-/// Loads the network, verifies it and runs it on steps as they arrive. In each step the leak comes first, unless no
-/// neuron leaks, then the bias, then the inputs in order. The outcome is passed to `see` before the next step is read.
-/// Returns the number of spikes lost.
+/// Loads the network into the model, and runs it step by step. A step begins with the leak, if it is due, then comes
+/// the bias, then the inputs in order. Passes the result of each step to `see` before it reads the inputs of the next
+/// one. Returns the number of spikes that were lost.
 ///
 /// # Errors
 /// Returns an error if the chip or `see` refuses a step.
@@ -47,7 +47,7 @@ pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'
         for word in words {
             running.send(word, &mut on_output).map_err(|error| refused(&error))?;
         }
-        // The model says when it is at rest, where a chip has to be waited for.
+        // The model can be asked whether it is at rest; with a chip, one has to wait.
         while !board.pins().chip.is_idle() {
             running.poll(&mut on_output).map_err(|error| refused(&error))?;
         }
@@ -56,7 +56,7 @@ pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'
     Ok(board.pins().chip.overflows)
 }
 
-/// Runs a network with this number of layers on a recording's steps; `follow` is the function that runs it.
+/// Runs a network of `layers` layers on the inputs of a recording; `follow` runs it step by step.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.

@@ -1,10 +1,10 @@
-//! Writes the network as Rust: constant data for `spikewire_chips`.
+//! Writes a network that compares once a step as Rust source: constant data for `spikewire_chips`.
 
 use super::super::super::chip::{Remarks, lines, list};
 use super::Gated;
 use spikewire_chips::{Describe, Steps, StepsLayer, TinyOdinNeuron};
 
-/// Writes Rust source, which compiles without `std`.
+/// Returns Rust source that defines the network and its steps. It compiles without `std`.
 pub(super) fn emit(network: &Gated, remarks: &Remarks) -> String {
     let (source, meaning) = (&remarks.source, &remarks.inputs);
     let (count, rows) = (network.neurons(), network.inputs());
@@ -27,11 +27,11 @@ pub(super) fn emit(network: &Gated, remarks: &Remarks) -> String {
 
 use spikewire_chips::{{Inputs, Steps, StepsLayer, TinyOdinNetwork, TinyOdinNeuron}};
 
-/// The steps of the network, for `Running::step`. Inputs: {meaning}.
+/// The sequence of events in each step of the network, for `Running::step`. Inputs: {meaning}.
 #[rustfmt::skip]
 pub static STEPS: Steps = {steps};
 
-/// Layers of {layers}. Its inputs are the rows of the steps.
+/// Neurons in each layer: {layers}. Its inputs are the rows that `STEPS` uses.
 #[rustfmt::skip]
 pub static NETWORK: TinyOdinNetwork<{rows}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [

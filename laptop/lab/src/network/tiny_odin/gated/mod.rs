@@ -1,5 +1,6 @@
-//! Networks whose neurons compare with their thresholds once a step. During a step their potentials are kept too low to
-//! fire; then events called rungs raise them step by step, so that they compare, and others lower them again.
+//! Networks for tinyODIN whose neurons compare with their thresholds once a step. During a step, potentials are offset
+//! downwards so far that no neuron fires. Then events called rungs raise the neurons until the offset is gone and they
+//! compare. Further events lower the neurons again.
 
 mod emit;
 mod neuron;
@@ -22,12 +23,12 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Number of neurons of each layer on which a shape is tried.
+/// Number of neurons of each layer on which a shape is rated.
 const SURVEYED: usize = 8;
-/// Number of shapes with which the whole network is quantised.
+/// Number of shapes, the best rated, with which the whole network is quantised.
 const CHOSEN: usize = 2;
 
-/// A network as tinyODIN holds it.
+/// A network in tinyODIN's integers, whose neurons compare once a step.
 #[derive(Clone, Debug)]
 pub(super) struct Gated {
     shape: Shape,
@@ -38,7 +39,7 @@ pub(super) struct Gated {
 
 #[derive(Clone, Debug)]
 struct GatedLayer {
-    /// Name in the file.
+    /// Name of the layer in the network's file.
     name: String,
     inputs: usize,
     /// Whether the layer is recurrent.
@@ -46,7 +47,8 @@ struct GatedLayer {
     neurons: Vec<GatedNeuron>,
 }
 
-/// Quantises the network for each of the most promising shapes, and reports progress; empty if none fits.
+/// Quantises the network with each of the best rated shapes, and calls `progress` with the number of finished parts and
+/// of all parts. Returns an empty list if the chip has no room for any shape.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -69,7 +71,8 @@ pub(super) fn quantise(
         .collect();
     let (drive, threshold) = sizes(trained, inputs, fired);
     let shapes = shapes(trained, has_bias, drive, threshold);
-    // Of a layer's neurons some tell how near a shape can bring it, driven by the original's spikes.
+    // Rates a shape by some neurons of each layer: the distance of their spikes from the original's, if the spikes that
+    // act on them are the original's.
     let survey = |shape: &Shape| -> f64 {
         let mut sum = 0.0;
         for (at, layer) in trained.layers.iter().enumerate() {
@@ -105,8 +108,8 @@ pub(super) fn quantise(
     found.collect()
 }
 
-/// Returns the largest sum of positive weights that a step adds to a neuron, in units of its largest weight, and the
-/// median threshold in the same units.
+/// Returns two sizes of the network, in units of a neuron's largest weight: the largest sum of positive weights that a
+/// step adds to a neuron, and the median threshold.
 fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     let (mut most, mut thresholds) = (0.0_f64, Vec::new());
     for ((layer, own), before) in
@@ -144,7 +147,7 @@ fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     (most, thresholds.get(thresholds.len() / 2).copied().unwrap_or(1.0))
 }
 
-/// Returns for each neuron and step whether the neuron fires.
+/// Returns whether a neuron fires, for each neuron, then for each step.
 fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
     let mut all = vec![vec![false; fired.len()]; neurons];
     for (step, fired) in fired.iter().enumerate() {
@@ -156,7 +159,8 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
 }
 
 impl Gated {
-    /// Quantises layer by layer; each is driven by the spikes of the chip's layer before it.
+    /// Quantises the network with this shape, layer by layer. The inputs of a layer are the spikes of the chip's
+    /// quantised layer before it.
     fn find(
         trained: &Trained,
         inputs: &Trains,
@@ -186,7 +190,7 @@ impl Gated {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
 
-    /// Returns the layer, the index in it and the numbers of one of the chip's neurons.
+    /// Returns the layer of one of the chip's neurons, its index in the layer, and its parameters.
     fn at(&self, neuron: usize) -> Option<(usize, usize, &GatedNeuron)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
@@ -198,12 +202,13 @@ impl Gated {
         None
     }
 
-    /// Returns the number of rows of inputs and neurons, and of all rows.
+    /// Returns the number of rows of synapses for inputs and neurons, and the number of all rows.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
 
-    /// Returns the weight of a row onto a neuron; `spikewire_chips::Steps` documents the order of the rows.
+    /// Returns the weight of row `row` onto neuron `post` of the chip. `spikewire_chips::Steps` documents the order of
+    /// the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };
         let rows = usize::from(self.shape.rows);

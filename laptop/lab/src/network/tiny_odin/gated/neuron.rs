@@ -1,32 +1,35 @@
-//! A neuron that compares once a step, in the chip's integers.
+//! A neuron that compares with its threshold once a step, in tinyODIN's integers.
 
 use super::shape::Shape;
 
-/// A neuron, and the weights that lead to it. Its potential is the one at which it compares, without what rungs add to
-/// it.
+/// A neuron that compares once a step, and the weights that lead to it. Its potential is the one that it compares with
+/// its threshold. The offset that the chip's potential has during a step is left out.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
-    /// The weights, by input, then in a recurrent layer by its neurons; each is the sum of its rows.
+    /// The weight of each input; then, in a recurrent layer, that of each of its neurons. On the chip a weight is the
+    /// sum of several rows.
     pub weights: Vec<i16>,
-    /// Weight that every step adds.
+    /// Weight that acts in every step.
     pub bias: i16,
-    /// Potential at which it fires.
+    /// Potential at which the neuron fires.
     pub threshold: u16,
     /// Amount by which a leak moves the potential.
     pub leak: u8,
     /// Amount by which a rung raises the potential.
     pub rung: u8,
-    /// Number of leaks that it alone gets after a spike.
+    /// Number of leaks that only this neuron receives after a spike.
     pub own_leaks: u16,
-    /// Number of weights that exceeded the chip's range.
+    /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
 }
 
-/// The sum of the weights that a step adds to a potential.
+/// The sums of the weights that act on a neuron in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Added {
+    /// Sum of all weights.
     pub all: i32,
-    /// Sum of the positive weights, which may arrive first.
+    /// Sum of the positive weights only. They may arrive before the negative ones, so the potential may rise by this
+    /// much.
     pub raised: i32,
 }
 
@@ -43,7 +46,7 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Runs a step; returns whether the neuron fires.
+    /// Runs a step, which changes `potential`; returns whether the neuron fires.
     #[inline]
     pub(super) fn step(
         &self,
@@ -58,8 +61,9 @@ impl GatedNeuron {
         let fires = *potential + added.all >= threshold || *potential + added.raised >= early;
         *potential = (*potential + added.all).max(below * rung - 2048);
         if fires {
-            // It is raised on from 0, by what it was beyond its threshold in whole rungs; if these lead to its threshold
-            // once more it fires again, which counts once.
+            // On the chip, a neuron that fires returns to 0 before all rungs have come. The other rungs then raise it,
+            // as many as fit into the excess over its threshold. If they lead to the threshold again, the neuron fires
+            // again, which counts once.
             let beyond = (*potential - threshold).max(0);
             let again = (threshold + above * rung - 1) / rung.max(1) + 1;
             *potential = if rung > 0 { (beyond / rung % again - above) * rung } else { 0 };
@@ -74,14 +78,15 @@ impl GatedNeuron {
         fires
     }
 
-    /// Returns the part of a weight that row `row` of `rows` carries.
+    /// Returns the part of `weight` that row `row` of its `rows` rows carries.
     pub(super) fn part(weight: i16, row: usize, rows: u16) -> i8 {
         let rows = rows as i16;
         let rest = i16::from((row as i16) < weight.abs() % rows);
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// Returns the potential with which the chip's neuron starts, and its threshold.
+    /// Returns the initial potential and the threshold of the chip's neuron. The rungs below 0 are subtracted from the
+    /// potential, the rungs above 0 are added to the threshold.
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

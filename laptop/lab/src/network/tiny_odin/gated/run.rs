@@ -1,4 +1,5 @@
-//! Runs the network on the chip's model, clock by clock, through the driver of `spikewire-chips`.
+//! Runs a network that compares once a step on tinyODIN's model, which is exact to the clock cycle, through the driver
+//! of `spikewire-chips`.
 
 use super::super::super::chip::{Stepped, refused};
 use super::super::run::{self, RATIO};
@@ -8,7 +9,7 @@ use silicon::Board;
 use spikewire_chips::{Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput};
 
 impl Gated {
-    /// Passes the driver's description of the steps to `see`.
+    /// Calls `see` with the network's steps in the form of the driver; returns its result.
     pub(super) fn with_steps<T>(&self, see: impl FnOnce(&Steps) -> T) -> T {
         let layers = self.layers.iter();
         let layers: Vec<StepsLayer> = layers
@@ -30,7 +31,11 @@ impl Gated {
     }
 }
 
-/// Loads the network, verifies it and runs it on steps as they arrive.
+/// Loads the network into the model, and runs it step by step. Passes the result of each step to `see`; returns the
+/// number of spikes that were lost.
+///
+/// # Errors
+/// Returns an error if the chip or `see` refuses a step.
 pub(super) fn follow(
     network: &Gated,
     inputs: &mut run::Steps<'_>,
@@ -56,7 +61,7 @@ pub(super) fn follow(
             while !board.pins().chip.is_idle() {
                 running.poll(|_| ()).map_err(|error| refused(&error))?;
             }
-            // In order of their number, as in double precision.
+            // Sorts the neurons by number, as in double precision.
             for layer in &mut fired {
                 layer.sort_unstable();
             }

@@ -1,4 +1,4 @@
-//! The search for a gated network's numbers, neuron by neuron.
+//! The search for the parameters of a network that compares once a step, neuron by neuron.
 
 use super::super::super::trained::{Layer, Neuron, fires_at};
 use super::super::super::{Distance, Trains};
@@ -8,16 +8,16 @@ use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
-/// Largest weights that are tried, with one row. Above 7 the largest weights are clipped, so that the others are
-/// rounded less. With the last value all weights become 0, so that the neuron stays silent.
+/// Largest weights to try, for weights of one row. Values above 7 clip the largest weights, so that the others are
+/// rounded less. At the last value all weights become 0, so that the neuron stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
-/// Rungs that are tried first.
+/// Rungs with which the search starts.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of choices from which the search climbs.
 pub(super) const CLIMBS: usize = 2;
 
-/// The spikes that drive a layer, by step: its inputs, then its own neurons of the step before, numbered on from the
-/// inputs.
+/// The spikes that act on a layer, step by step: first its inputs, then its own spikes of the step before. The layer's
+/// own neurons are numbered after the inputs.
 pub(super) struct Drive {
     ends: Vec<usize>,
     spikes: Vec<u16>,
@@ -38,28 +38,28 @@ impl Drive {
     }
 }
 
-/// The spikes that a neuron should have, and those that drive it.
+/// The spikes that a neuron should have, and the spikes that act on it.
 pub(super) struct Aim<'a> {
     pub drive: &'a Drive,
-    /// Whether the neuron fires, for each step.
+    /// Whether the neuron should fire, for each step.
     pub target: &'a [bool],
     pub shape: &'a Shape,
 }
 
-/// The searched settings of a neuron.
+/// The settings of a neuron that the search varies.
 #[derive(Clone, Copy, PartialEq)]
 struct Choice {
-    /// The value that a weight of 1 on the chip represents.
+    /// The value in the training's units of a weight of 1 on the chip.
     unit: f64,
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Number of its own leaks beyond those that its reset needs.
+    /// Number of leaks after a spike, in addition to those that the reset needs.
     more: i16,
 }
 
-/// Finds the numbers with which a neuron is nearest to the original, and returns their distance with them. Climbs from
-/// the `climbs` best first choices.
+/// Searches for the parameters with which neuron `at` is nearest to the original. Returns the distance of its spikes,
+/// and the neuron. Climbs from the `climbs` best of the first choices.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
@@ -68,8 +68,8 @@ pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64
     (least, made(layer, at, aim.shape, best))
 }
 
-/// The first choices, those that change the neuron least before others: of choices with the same spikes the search takes
-/// the first, and what changes least holds best where it was not searched.
+/// Returns the choices with which the search starts, in the order of how much they change the neuron. Of choices with
+/// the same spikes the search takes the first, and the smallest change is the most likely to hold for other recordings.
 fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -87,7 +87,8 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
         for rung in RUNGS {
             let room = MAX_POTENTIAL - shape.above * u16::from(rung);
             let threshold = threshold.min(room.into()) as u16;
-            // What a leak takes off at half the threshold, or with leaks at several heights as a share.
+            // Amount that the original neuron loses in a step at half its threshold; if leaks at several heights
+            // imitate a share, the amount between two of them.
             let lost = amount / unit
                 + (1.0 - keep) / 2.0
                     * if shape.spacing == 0 {
@@ -95,7 +96,8 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
                     } else {
                         f64::from(shape.spacing * u16::from(rung))
                     };
-            // Without leaks of all, only neurons that fired get some.
+            // If no step has leaks for all neurons, only the leaks after a spike remain, which may be as large as
+            // possible.
             let leaks = if shape.leaks.is_empty() {
                 [f64::from(MAX_LEAK); 2]
             } else {
@@ -154,7 +156,7 @@ impl Choice {
     }
 }
 
-/// Makes a neuron with these settings.
+/// Returns neuron `at` in the chip's integers, with these settings.
 fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron {
     let Choice { unit, threshold, leak, rung, more } = choice;
     let rows = f64::from(shape.rows);
@@ -172,8 +174,8 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns the number of leaks that a neuron needs after a spike. They lead to 0 from wherever rungs and leaks have
-/// left it, or make up the difference between its reset and plain subtraction.
+/// Returns the number of leaks that a neuron needs after a spike. If spikes reset it to 0, they lead it there from
+/// wherever rungs and leaks may have left it. If spikes subtract, they make up the difference from plain subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {
@@ -188,7 +190,8 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
         let farthest = above.max(beyond.min(f64::from(threshold)));
         return (farthest / leak).ceil() as i32 + levels as i32;
     }
-    // Of what it is beyond its threshold whole rungs stay; leaks have taken it for a potential far below 0.
+    // After a spike, the whole rungs in the excess over the threshold remain. Leaks before that have acted on it as on
+    // a potential far below 0.
     let late = if layer.reset == Reset::SubtractLate {
         f64::from(threshold) * (1.0 / keep.max(0.1) - 1.0)
     } else {
@@ -199,7 +202,8 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Returns the distance of its spikes from the target, or infinity once that reaches `most`.
+    /// Returns the distance of the neuron's spikes from those that it should have, or infinity as soon as the distance
+    /// reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let (mut potential, mut first) = (0_i32, 0);

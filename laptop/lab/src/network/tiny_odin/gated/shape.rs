@@ -1,30 +1,34 @@
-//! The events of a step that all neurons of a gated network share: rows of a weight, rungs, leaks.
+//! The shape of a network that compares once a step: the events of a step that all neurons share, namely rows, rungs
+//! and leaks.
 
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, NEURONS, ROWS};
 
-/// Maximum number of leaks on one side of a potential of 0.
+/// Maximum number of heights above a potential of 0 at which leaks come, and maximum number below.
 const LEVELS: u16 = 6;
-/// Numbers of rows for a weight that are tried.
+/// Numbers of rows for each weight to try.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
-/// Factor by which there are more rungs than this recording needs, as others may add more in a step.
+/// Factor by which there are more rungs than this recording needs, because other recordings may add more in a step.
 const SPARE: f64 = 1.5;
 /// Maximum number of rungs between two leaks.
 const WIDEST: f64 = 12.0;
 
-/// The events of a step that neurons share.
+/// The events of a step that all neurons share.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Number of rows for each input or sending neuron; a weight is the sum of its rows.
+    /// Number of rows of synapses for each input or sending neuron. A weight is the sum of its rows.
     pub rows: u16,
-    /// Number of rungs that raise a neuron above 0 before it compares; `below` is the number that raise it up to 0.
+    /// Number of rungs that raise a neuron beyond 0 before it compares. `below` is the number of rungs that raise it up
+    /// to 0 before.
     pub above: u16,
     pub below: u16,
-    /// For each turn of steps, after how many events of the fall there is a leak; the turns are repeated.
+    /// The leaks of all neurons in each step: the number of lowering events that come before each leak. Steps take the
+    /// lists in turn.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of events that lift neurons that fired up to 0, for their own leaks; 0 if a spike subtracts.
+    /// Number of rungs that raise all neurons again, after they were lowered, before the leaks that only neurons that
+    /// fired receive. 0 if spikes subtract the threshold.
     pub lift: u16,
-    /// Number of rungs between two leaks.
+    /// Number of rungs between two leaks; 0 if leaks do not imitate a share of the potential.
     pub spacing: u16,
 }
 
@@ -37,14 +41,15 @@ impl Shape {
         if self.leaks.is_empty() { &[] } else { &self.leaks[step % self.leaks.len()] }
     }
 
-    /// Returns the number of events of a step, without its spikes and without the leaks of neurons that fired.
+    /// Returns the number of events in a step of a network with `layers` layers, apart from spikes and from leaks of
+    /// neurons that fired.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         usize::from(self.rungs()) * (layers + 1) + leaks / self.leaks.len().max(1)
     }
 }
 
-/// Returns the number of rows that a network needs if each weight takes `rows`.
+/// Returns the number of rows of synapses that a network needs if each weight takes `rows` rows.
 pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     let last = trained.layers.len() - 1;
     let senders = trained.layers.iter().enumerate().map(|(at, layer)| {
@@ -55,12 +60,12 @@ pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     sources * rows + trained.layers.len() + 2
 }
 
-/// Returns all shapes to try. `drive` is the most that a step adds to a neuron, and `threshold` the usual threshold,
-/// both in units of the largest weight.
+/// Returns all shapes to try. `drive` is the largest sum that a step adds to a neuron, and `threshold` the median
+/// threshold, both in units of the largest weight.
 pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f64) -> Vec<Shape> {
     let neurons = || trained.layers.iter().flat_map(|layer| &layer.neurons);
     if neurons().count() >= NEURONS - 1 {
-        // One of the last two must be free, to show when a layer is done.
+        // The event that shows when a layer is done acts on one of the last two neurons, which must be free.
         return vec![];
     }
     let lost: Vec<f64> =
@@ -90,7 +95,7 @@ pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f
         }
         let mean = lost.iter().sum::<f64>() / lost.len() as f64;
         for strength in [1.0, 2.0] {
-            // So many rungs apart, leaks of this strength take a share of the potential.
+            // Leaks of this strength that are `spacing` rungs apart remove about the share that the original loses.
             let spacing = (2.0 * strength / mean / LARGEST_RUNG).round().clamp(1.0, WIDEST) as u16;
             let levels = (threshold * unit / LARGEST_RUNG / f64::from(spacing)).ceil();
             let levels = levels.clamp(1.0, LEVELS.into()) as u16;

@@ -1,4 +1,4 @@
-//! The program reports which settings ran, and whether they suit the signal.
+//! The program reports the settings that ran, and warns if they do not suit the signal.
 
 mod common;
 
@@ -23,9 +23,9 @@ fn scores_say_what_they_ran_with() {
     assert_eq!(hsa["parameters"]["taps"].as_array().unwrap().len(), 15);
 }
 
-/// One column has whole numbers that `f32` cannot tell apart, the other a wave far from 0.
+/// A column that `f32` cannot represent is reported, be it integers beyond 24 bits, or a small wave on a large offset.
 #[test]
-fn columns_that_a_sample_type_loses_are_told() {
+fn columns_that_a_sample_type_cannot_hold_are_reported() {
     let latitude: Vec<f64> =
         (0..500).map(|sample| f64::from(473_977_419 + sample * sample % 97)).collect();
     let encode = |sample: &str, values: &[f64]| {
@@ -34,9 +34,9 @@ fn columns_that_a_sample_type_loses_are_told() {
         (ran!("encode {options}"), ran!("score {options}").stderr)
     };
     let ((single, scored), (whole, _)) = (encode("f32", &latitude), encode("i32", &latitude));
-    for told in [&single.stderr, &scored] {
-        assert!(told.contains("f32 loses the column's own steps: "), "{told}");
-        assert!(told.contains("; i32 holds them"), "{told}");
+    for report in [&single.stderr, &scored] {
+        assert!(report.contains("f32 loses the column's own steps: "), "{report}");
+        assert!(report.contains("; i32 holds them"), "{report}");
     }
     assert!(!whole.stderr.contains("loses"), "{}", whole.stderr);
     assert_ne!(events(&single.output), events(&whole.output));

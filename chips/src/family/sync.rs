@@ -1,17 +1,17 @@
-//! Checks that chip and bus are in step and that the gate is shut; reads and writes memory with such checks.
+//! Checks that chip and bus are in sync and that the gate is shut; reads and writes memory with such checks.
 
 use embedded_hal::spi::SpiDevice;
 
 use super::wire::Address;
 use super::{AerPort, ChipError, Input, OdinChip, Outcome, State};
 
-/// Number of the gate's register.
+/// Number of the register that gates the chip's activity.
 const GATE_ACTIVITY: u16 = 0;
 
-/// Mask of the bit in a neuron's last byte that disables it.
+/// Mask of the bit that disables a neuron, in the neuron's last byte.
 pub(super) const DISABLE: u8 = 0x80;
 
-/// A byte of a neuron's parameters that is known not to be 0. A bus out of step reads 0 there.
+/// A byte of a neuron's parameters that is known not to be 0. A bus out of sync reads 0 at its address.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beacon {
     address: Address,
@@ -19,35 +19,36 @@ pub(super) struct Beacon {
     value: u8,
 }
 
-/// The byte that the step check writes; a bus that is out of step by a bit reads a different one.
+/// The byte that the sync check writes. A bus that is out of sync by one bit reads a different byte.
 const SIGN: u8 = 0xA5;
 
-/// Returns the address that the step check writes to.
+/// Returns the address that the sync check writes to.
 fn anchor() -> Address {
     Address::synapse(255, 249)
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
-    /// Shuts the gate of a chip at rest, opens its loop, and checks gate and step.
+    /// Shuts the gate of a chip at rest, opens its loop, and checks that the gate is shut and that chip and bus are in
+    /// sync.
     pub(super) fn shut(&mut self) -> Outcome<(), D, P> {
         self.state = State::NotReset;
         self.registers = None;
         self.wire.configure(GATE_ACTIVITY, 1).map_err(ChipError::Bus)?;
         self.wire.configure(I::OPEN_LOOP, 1).map_err(ChipError::Bus)?;
         self.state = State::Gated;
-        self.check_step()
+        self.check_sync()
     }
 
-    /// Opens the gate. If the gate is later shut while the chip works, tinyODIN overwrites the byte that was accessed
-    /// last, in each neuron that it has still to process. Therefore the last access here is to a byte that does not
-    /// exist.
+    /// Opens the gate. If the gate is shut later while the chip works, tinyODIN overwrites the byte that was accessed
+    /// last over SPI, in each neuron that it has not processed yet. Therefore the last access before opening the gate
+    /// is to a byte that does not exist.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
     }
 
-    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. If all are 0 the neuron was never
-    /// written: it is disabled, which sets a bit.
+    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. If all bytes are 0 the neuron was
+    /// never written; it is then disabled, which sets a bit.
     pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
         let last = I::NEURON_BYTES.saturating_sub(1);
         for byte in (0..=last).rev() {
@@ -55,22 +56,22 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
             let value = self.read_byte(address)?;
             self.note(address, 0xFF, value);
             if self.beacon.is_some() {
-                return self.check_step();
+                return self.check_sync();
             }
         }
         self.store([(Address::neuron(I::PROBED, last), !DISABLE, DISABLE)].into_iter())
     }
 
-    /// Writes a register, which cannot be read back, and checks that chip and bus are still in step.
+    /// Writes a register, which cannot be read back, and checks that chip and bus are still in sync.
     pub(super) fn configure_checked(&mut self, register: u16, value: u32) -> Outcome<(), D, P> {
         self.configure(register, value)?;
-        self.check_step()
+        self.check_sync()
     }
 
-    /// Changes a byte of the synapses' memory and restores it, and reads it both times. This fails if the chip runs, or
-    /// after a lost or doubled clock. In between it reads a byte that is not 0, if one is known, as a chip out of step
-    /// sends 0.
-    pub(super) fn check_step(&mut self) -> Outcome<(), D, P> {
+    /// Checks that chip and bus are in sync: changes a byte in the memory of synapses, restores it, and reads it both
+    /// times. Fails if the chip runs, or after a lost or doubled clock pulse. Between the two reads it reads a byte
+    /// that is known not to be 0, if there is one, because a chip out of sync sends 0.
+    pub(super) fn check_sync(&mut self) -> Outcome<(), D, P> {
         let value = match self.anchor {
             Some(value) => value,
             None => self.read_byte(anchor())?,
@@ -93,16 +94,18 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Writes bytes, each with a mask of the bits to keep, and reads them back once the step is checked.
+    /// Writes bytes, each with a mask of the bits to keep, then checks that chip and bus are in sync, and reads the
+    /// bytes back.
     ///
-    /// A faulty write to another address leaves its own byte unchanged. To notice this, only bytes that differ are
-    /// written, and the comparison that finds them is checked as well. The bits to keep are compared too.
+    /// A faulty write that goes to another address leaves the byte at its own address unchanged. To notice this, only
+    /// bytes that differ from memory are written, and the reads that find the differences are checked, too. The bits to
+    /// keep are compared as well.
     pub(super) fn store(
         &mut self,
         bytes: impl Iterator<Item = (Address, u8, u8)> + Clone,
     ) -> Outcome<(), D, P> {
         let old = self.read_bytes(bytes.clone().map(|(address, ..)| address))?;
-        self.check_step()?;
+        self.check_sync()?;
         let bytes = bytes
             .zip(old)
             .map(|((address, keep, value), old)| (address, keep, old, old & keep | value & !keep));
@@ -111,7 +114,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
             for (address, keep, _, new) in differing {
                 self.put_byte(address, keep, new & !keep)?;
             }
-            self.check_step()?;
+            self.check_sync()?;
         }
         for (address, _, _, new) in bytes {
             self.expect_byte(address, 0, new)?;
@@ -119,13 +122,13 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.expect_anchor()
     }
 
-    /// Reads up to 16 bytes, checks the step, and reads them again.
+    /// Reads up to 16 bytes, checks that chip and bus are in sync, and reads the bytes again.
     pub(super) fn fetch(
         &mut self,
         addresses: impl Iterator<Item = Address> + Clone,
     ) -> Outcome<[u8; 16], D, P> {
         let bytes = self.read_bytes(addresses.clone())?;
-        self.check_step()?;
+        self.check_sync()?;
         for (address, byte) in addresses.zip(bytes) {
             self.expect_byte(address, 0, byte)?;
         }
@@ -133,8 +136,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Reads the byte that the step check wrote once more: two faults in the check's last frames may cancel out and
-    /// leave it wrong.
+    /// Reads the byte that the sync check wrote once more: two faults in the last frames of the check may cancel out
+    /// and leave the byte wrong.
     fn expect_anchor(&mut self) -> Outcome<(), D, P> {
         match self.anchor {
             Some(value) => self.expect_byte(anchor(), 0, value),
@@ -142,7 +145,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Reads up to 16 bytes; they may be wrong if the bus is out of step.
+    /// Reads up to 16 bytes, which may be wrong if the bus is out of sync.
     pub(super) fn read_bytes(
         &mut self,
         addresses: impl Iterator<Item = Address>,
@@ -155,7 +158,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes those bits of a byte that are 0 in `keep`.
+    /// Writes the bits of a byte that are 0 in `keep`; the others keep their value.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -184,7 +187,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Remembers a byte of memory if it can serve as a beacon.
+    /// Remembers a byte of memory if it can serve as a beacon, that is, if bits that the chip does not change are not
+    /// all 0.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);
@@ -207,7 +211,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Requires a reset after an error of the bus, as a clock may be lost.
+    /// Requires a reset after an error of the bus, because a clock pulse may be lost.
     pub(super) fn heed<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
         result.map_err(|error| {
             self.state = State::NotReset;

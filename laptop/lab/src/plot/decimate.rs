@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-/// Returns the first, lowest, highest and last point of each column of pixels, in the order of the points.
+/// Returns, for each column of pixels, the first, lowest, highest and last point in it, in the order of the points.
+/// `columns` columns span `range`.
 ///
 /// A line through these points covers the same pixels as a line through all points.
-pub(super) fn thin(
+pub(super) fn decimate(
     points: impl IntoIterator<Item = (f64, f64)>,
     range: &Range<f64>,
     columns: u32,
@@ -30,7 +31,7 @@ pub(super) fn thin(
     kept
 }
 
-/// Returns the column of pixels for a place on the x axis.
+/// Returns the column of pixels in which `x` lies, if `columns` columns span `range`.
 pub(super) fn column(x: f64, range: &Range<f64>, columns: u32) -> i64 {
     let width = range.end - range.start;
     if width > 0.0 { ((x - range.start) / width * f64::from(columns)) as i64 } else { 0 }
@@ -78,15 +79,15 @@ impl Column {
 
 #[cfg(test)]
 mod tests {
-    use super::thin;
+    use super::decimate;
 
     #[test]
     fn each_column_keeps_its_ends_and_extremes_in_order() {
         let points = [(0.0, 5.0), (0.1, 9.0), (0.2, 1.0), (0.3, 4.0), (0.4, 5.0), (1.0, 2.0)];
-        let kept = thin(points, &(0.0..2.0), 2);
+        let kept = decimate(points, &(0.0..2.0), 2);
         assert_eq!(kept, [(0.0, 5.0), (0.1, 9.0), (0.2, 1.0), (0.4, 5.0), (1.0, 2.0)]);
-        assert_eq!(thin(points, &(0.0..2.0), 1000), points);
+        assert_eq!(decimate(points, &(0.0..2.0), 1000), points);
         let long = (0..1_000_000).map(|sample| (f64::from(sample), f64::from(sample % 1000)));
-        assert_eq!(thin(long, &(0.0..1e6), 500).len(), 1500);
+        assert_eq!(decimate(long, &(0.0..1e6), 500).len(), 1500);
     }
 }
