@@ -192,6 +192,31 @@ fn the_manifest_says_what_became_of_each_log() {
     let kinds: BTreeSet<&str> = all.iter().map(|row| row["kind"].as_str().unwrap()).collect();
     assert_eq!(kinds, CHANNELS.map(|(kind, _)| kind).into());
 
+    // A data set is a list of the samples to train on, for `info` and `tune`.
+    let out = at("out").display().to_string();
+    let told = ran!("info --json {out}").json();
+    let train = all.iter().filter(|row| row["split"] == "train");
+    let samples = |all: &mut dyn Iterator<Item = &Value>| {
+        let mut all: Vec<u64> = all.map(|own| own["samples"].as_u64().unwrap()).collect();
+        all.sort_unstable();
+        all
+    };
+    let listed = told.as_array().unwrap();
+    assert_eq!(samples(&mut listed.iter()), samples(&mut train.into_iter()));
+    assert!(listed.iter().all(|own| own["kind"] == "table" && own["columns"].is_array()));
+    let names = at("logs").join("a");
+    let told = ran!("info {} {}/*.bag", names.display(), at("logs/b").display()).output;
+    for name in ["a/1.csv
+", "a/2.csv
+", "a/log.bin
+", "a/log.tlog
+", "b/log.bag
+/imu: 100"] {
+        assert!(told.contains(name), "{told}");
+    }
+    let odd = format!("info --json {}/b {}/*.xyz", at("logs").display(), at("logs").display());
+    refused(&odd, "", &["*.xyz: no file of this name"]);
+
     good(&format!("{} --by-directory", arguments(&at("logs"), &at("out"))), "");
     let side = |name: &str| {
         let own = rows(&at("out"));

@@ -258,7 +258,7 @@ impl Tune {
     /// Reads the chosen channels of each log: an entry for each log, with a recording for each channel.
     fn logs(&self) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
-        for input in &self.inputs {
+        for input in &lab::dataset::expand(&self.inputs)? {
             let recordings = Recording::read_all(&self.channel.of(&as_file(input)?))?;
             if let Some(first) = recordings.first() {
                 tell(&first.notes());

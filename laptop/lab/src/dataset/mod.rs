@@ -84,7 +84,8 @@ pub struct ChannelsOf {
 pub const NAMES: [&str; 8] =
     ["table", "ulog", "ardupilot", "mavlink", "bag", "ros2", "mcap", "blackbox"];
 
-fn name(kind: Option<Kind>) -> &'static str {
+/// Returns the name of a kind of log; `None` is a table.
+pub fn name(kind: Option<Kind>) -> &'static str {
     match kind {
         None => "table",
         Some(Kind::Ulog) => "ulog",
@@ -188,6 +189,40 @@ pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome
         outcome.test += usize::from(row.split == Some(Split::Test));
     }
     Ok(outcome)
+}
+
+/// Returns the recordings among files, directories and patterns. A data set, by its directory or its manifest, stands for
+/// the samples of its flights for training; standard input and names of missing files are returned as they are.
+///
+/// # Errors
+/// Returns an error if a directory cannot be read, or holds nothing, or if a manifest is invalid.
+pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut all = Vec::new();
+    for path in given {
+        let directory = if path.file_name().is_some_and(|own| own == manifest::MANIFEST) {
+            path.parent()
+        } else {
+            Some(path.as_path()).filter(|own| own.join(manifest::MANIFEST).is_file())
+        };
+        if let Some(directory) = directory {
+            let train = rows(directory)?.into_iter().filter(|row| row.split == Some(Split::Train));
+            all.extend(train.filter_map(|row| row.values).map(|own| directory.join(own)));
+            continue;
+        }
+        let is_pattern = !path.exists() && path.display().to_string().contains(['*', '?', '[']);
+        if is_pattern || path.is_dir() && Kind::of(path).is_err() {
+            let (found, _) = paths::find(std::slice::from_ref(path), Path::new(""))?;
+            if found.is_empty() {
+                // Of a directory, the words say what it might have been.
+                Kind::of(path)?;
+                return Err(DatasetKind::NoneThere.at(path.as_path()));
+            }
+            all.extend(found);
+        } else {
+            all.push(path.clone());
+        }
+    }
+    Ok(all)
 }
 
 impl Request {
