@@ -3,9 +3,7 @@
 mod common;
 
 use common::{flight, flight_logs, good, ran, refused};
-use flight_logs::made::{
-    Kind, blackbox, dataflash, dataflash_sample, dataflash_text, frame, tlog,
-};
+use flight_logs::made::{Kind, blackbox, dataflash, dataflash_sample, dataflash_text, frame, tlog};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -75,12 +73,7 @@ fn logs(directory: &Path, rows: usize) -> usize {
 
 fn arguments(logs: &Path, output: &Path) -> String {
     let channels = CHANNELS.map(|(kind, names)| format!(" --channels-of {kind}={names}"));
-    format!(
-        "dataset {SCHEME}{} {} -o {}",
-        channels.concat(),
-        logs.display(),
-        output.display()
-    )
+    format!("dataset {SCHEME}{} {} -o {}", channels.concat(), logs.display(), output.display())
 }
 
 fn rows(dataset: &Path) -> Vec<Value> {
@@ -175,9 +168,8 @@ fn the_manifest_says_what_became_of_each_log() {
     logs(&at("logs"), 100);
     good(&arguments(&at("logs"), &at("out")), "");
     let all = rows(&at("out"));
-    let row = |name: &str| {
-        all.iter().find(|row| row["log"].as_str().unwrap().ends_with(name)).unwrap()
-    };
+    let row =
+        |name: &str| all.iter().find(|row| row["log"].as_str().unwrap().ends_with(name)).unwrap();
     let names = row("names.csv");
     assert!(names["refused"].as_str().unwrap().contains("line 2, column gyro_x: value `one`"));
     assert_eq!((&names["events"], &names["split"]), (&Value::Null, &Value::Null));
@@ -206,12 +198,18 @@ fn the_manifest_says_what_became_of_each_log() {
     assert!(listed.iter().all(|own| own["kind"] == "table" && own["columns"].is_array()));
     let names = at("logs").join("a");
     let told = ran!("info {} {}/*.bag", names.display(), at("logs/b").display()).output;
-    for name in ["a/1.csv
-", "a/2.csv
-", "a/log.bin
-", "a/log.tlog
-", "b/log.bag
-/imu: 100"] {
+    for name in [
+        "a/1.csv
+",
+        "a/2.csv
+",
+        "a/log.bin
+",
+        "a/log.tlog
+",
+        "b/log.bag
+/imu: 100",
+    ] {
         assert!(told.contains(name), "{told}");
     }
     let odd = format!("info --json {}/b {}/*.xyz", at("logs").display(), at("logs").display());
@@ -220,9 +218,9 @@ fn the_manifest_says_what_became_of_each_log() {
     good(&format!("{} --by-directory", arguments(&at("logs"), &at("out"))), "");
     let side = |name: &str| {
         let own = rows(&at("out"));
-        let own = own.iter().filter(|row| {
-            row["log"].as_str().unwrap().contains(name) && row["refused"].is_null()
-        });
+        let own = own
+            .iter()
+            .filter(|row| row["log"].as_str().unwrap().contains(name) && row["refused"].is_null());
         own.map(|row| row["split"].as_str().unwrap().to_owned()).collect::<BTreeSet<_>>()
     };
     for name in ["/a/", "/b/", "/c/", "/d/"] {
@@ -327,10 +325,7 @@ fn what_cannot_be_asked_is_refused() {
             format!("{sf} --channels-of csv=x {table} -o {}", out.display()),
             "csv=x: there are table, ulog, ardupilot",
         ),
-        (
-            format!("{sf} --column none {table} -o {}", out.display()),
-            "no log can be encoded: ",
-        ),
+        (format!("{sf} --column none {table} -o {}", out.display()), "no log can be encoded: "),
     ] {
         refused(&asked, "", &[words]);
     }
@@ -391,7 +386,8 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
         .collect();
     let end = flown.last().unwrap().0 + 5000;
     let ulog = fs::read(&flight_logs()[0]).unwrap();
-    let end_of_dataflash = dataflash().len() - (0..100).map(|own| dataflash_sample(own).len()).sum::<usize>();
+    let end_of_dataflash =
+        dataflash().len() - (0..100).map(|own| dataflash_sample(own).len()).sum::<usize>();
     let end_of_head = blackbox().len()
         - b"E\xffEnd of log\0".len()
         - (0..200).map(|own| frame(own).len()).sum::<usize>();
@@ -414,7 +410,8 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
             }
             3 => {
                 let chunks = (0..samples / 500).flat_map(|chunk| {
-                    let own = (chunk * 500..(chunk + 1) * 500).flat_map(|own| Kind::Bag.record(own));
+                    let own =
+                        (chunk * 500..(chunk + 1) * 500).flat_map(|own| Kind::Bag.record(own));
                     Kind::Bag.chunk("lz4", &own.collect::<Vec<_>>())
                 });
                 ("bag", Kind::Bag.start().into_iter().chain(chunks).collect())

@@ -5,8 +5,8 @@ mod common;
 use common::{good, ran};
 
 const COMMANDS: [&str; 14] = [
-    "encode", "dataset", "decode", "listen", "convert", "score", "bench", "plot", "network", "info",
-    "signal", "tune", "advise", "frames",
+    "encode", "dataset", "decode", "listen", "convert", "score", "bench", "plot", "network",
+    "info", "signal", "tune", "advise", "frames",
 ];
 
 #[test]

@@ -8,9 +8,9 @@ pub mod bank;
 pub mod bench;
 pub mod brief;
 pub mod coding;
-pub mod emit;
 #[cfg(all(feature = "datasets", not(target_family = "wasm")))]
 pub mod dataset;
+pub mod emit;
 pub mod encode;
 mod error;
 pub mod events;

@@ -67,8 +67,9 @@ pub(crate) struct Dataset {
 /// # Errors
 /// Returns an error if an option is invalid, if no log can be encoded, or if a file cannot be written.
 pub(crate) fn run(options: &Dataset) -> Result<()> {
-    let bar = ProgressBar::no_length()
-        .with_style(ProgressStyle::with_template("{bar:40} {pos} of {len} logs, {eta} left; {msg}")?);
+    let bar = ProgressBar::no_length().with_style(ProgressStyle::with_template(
+        "{bar:40} {pos} of {len} logs, {eta} left; {msg}",
+    )?);
     let outcome = dataset::run(&options.request()?, &mut |progress: &Progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);

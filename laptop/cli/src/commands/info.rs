@@ -148,14 +148,14 @@ fn json(name: &str, content: &Content) -> serde_json::Value {
             let columns: Vec<_> = columns
                 .iter()
                 .map(|own| {
-                    let text = own.text.as_ref().map(|(line, text)| json!({ "line": line, "text": text }));
+                    let text =
+                        own.text.as_ref().map(|(line, text)| json!({ "line": line, "text": text }));
                     json!({ "name": own.name, "missing": own.missing, "text": text })
                 })
                 .collect();
             let notes: Vec<_> = notes.iter().map(|own| own.spelled(option).to_string()).collect();
             let kind = dataset::name(None);
-            let mut all =
-                json!({ "log": name, "kind": kind, "notes": notes, "samples": rows, "columns": columns });
+            let mut all = json!({ "log": name, "kind": kind, "notes": notes, "samples": rows, "columns": columns });
             add_times(&mut all, clock, rollover);
             all
         }

@@ -143,7 +143,8 @@ impl Row {
     pub(super) fn parts(&self) -> (String, String) {
         const LONGEST: usize = 60;
         let stem = Path::new(&self.log).file_stem().unwrap_or_default().to_string_lossy();
-        let plain = |own: char| if own.is_alphanumeric() || "-_.".contains(own) { own } else { '_' };
+        let plain =
+            |own: char| if own.is_alphanumeric() || "-_.".contains(own) { own } else { '_' };
         let stem: String = stem.chars().take(LONGEST).map(plain).collect();
         let mark = &hex(Sha256::new_with_prefix(&self.log))[..12];
         let part = |directory| format!("{directory}/{stem}-{mark}.parquet");
@@ -246,8 +247,7 @@ impl Manifest {
         }
         let mut options = OpenOptions::new();
         let path = directory.join(MANIFEST);
-        let mut file =
-            options.read(true).append(true).create(true).open(path).map_err(failed)?;
+        let mut file = options.read(true).append(true).create(true).open(path).map_err(failed)?;
         lock(&file).map_err(|_| DatasetKind::InUse.at(at()))?;
         let described = directory.join(SETTINGS);
         if let Ok(text) = fs::read_to_string(&described) {

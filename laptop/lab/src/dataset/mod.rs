@@ -252,8 +252,11 @@ impl Request {
             Code::Coding(coding) => (coding.to_toml(&[]), coding.asked.paper),
             Code::Flight(flight) => (flight.to_toml(&[]), false),
         };
-        let channels_of: Vec<String> =
-            self.channels_of.iter().map(|own| format!("{}={}", own.kind, own.names.join(","))).collect();
+        let channels_of: Vec<String> = self
+            .channels_of
+            .iter()
+            .map(|own| format!("{}={}", own.kind, own.names.join(",")))
+            .collect();
         Settings::new(serde_json::json!({
             "spikewire": env!("CARGO_PKG_VERSION"),
             "is_flight": matches!(self.code, Code::Flight(_)),

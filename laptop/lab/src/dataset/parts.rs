@@ -2,7 +2,7 @@
 
 use super::unwritten;
 use crate::encode::Start;
-use crate::input::{Chunk, ChannelOptions, Step};
+use crate::input::{ChannelOptions, Chunk, Step};
 use crate::output::Output;
 use crate::spikes::{Record, Summary};
 use crate::{Error, Result};
@@ -256,8 +256,7 @@ impl Part {
         let fields = columns.into_iter().map(Arc::new).collect();
         let schema = Type::group_type_builder("schema").with_fields(fields).build()?;
         let pipe = Pipe::default();
-        let file =
-            SerializedFileWriter::new(pipe, Arc::new(schema), Arc::new(properties.build()))?;
+        let file = SerializedFileWriter::new(pipe, Arc::new(schema), Arc::new(properties.build()))?;
         Ok(Self { output, file })
     }
 

@@ -9,8 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Endings of tables, by which they are recognised in a directory.
-const TABLES: [&str; 8] =
-    ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
+const TABLES: [&str; 8] = ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
 /// Endings of compressed files.
 const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
@@ -29,7 +28,8 @@ pub(super) fn find(given: &[PathBuf], output: &Path) -> Result<(Vec<PathBuf>, us
             continue;
         }
         let name = path.display().to_string();
-        let matches = glob::glob(&name).map_err(|error| DatasetKind::Pattern { error }.at(&name))?;
+        let matches =
+            glob::glob(&name).map_err(|error| DatasetKind::Pattern { error }.at(&name))?;
         let mut is_any = false;
         for path in matches {
             found.take(&path.map_err(|error| Error::open(&name, error.into()))?)?;

@@ -52,7 +52,8 @@ fn restore_from(part: &Path, output: impl FnOnce() -> Result<Output>) -> Result<
         finite += is_finite.iter().filter(|own| **own).count() as u64;
         let mut seen = first;
         while let Some(spike) = rows.next_before((sample + is_finite.len() as u64) * slots)? {
-            let at = (spike.index / slots).checked_sub(sample).ok_or_else(|| other("out of order"))?;
+            let at =
+                (spike.index / slots).checked_sub(sample).ok_or_else(|| other("out of order"))?;
             let at = at as usize;
             if at < row || is_finite.get(at) != Some(&true) {
                 return Err(other("a spike without a sample"));
@@ -143,7 +144,8 @@ impl Part {
             reader.read_records(count, None, None, &mut values)?;
             chunk.columns.push(values);
         }
-        let lengths = chunk.columns.iter().map(Vec::len).chain(is_timed.then_some(chunk.times.len()));
+        let lengths =
+            chunk.columns.iter().map(Vec::len).chain(is_timed.then_some(chunk.times.len()));
         if lengths.into_iter().any(|own| own != count) {
             return Err(other("columns of different lengths"));
         }
@@ -213,7 +215,8 @@ impl<'a> Rows<'a> {
             let own = self.group;
             self.group += 1;
             let index = self.part.longs(own, "index")?;
-            let (channel, neuron) = (self.part.ints(own, "channel")?, self.part.ints(own, "neuron")?);
+            let (channel, neuron) =
+                (self.part.ints(own, "channel")?, self.part.ints(own, "neuron")?);
             let polarity = self.part.ints(own, "polarity")?;
             let spikes = index.into_iter().zip(channel).zip(neuron).zip(polarity);
             let spikes = spikes.map(|(((index, channel), neuron), polarity)| Spike {

@@ -94,11 +94,7 @@ impl Table {
     /// # Errors
     /// See [`open`](Self::open).
     #[cfg(not(target_family = "wasm"))]
-    pub(super) fn of_rows(
-        rows: Box<dyn Read>,
-        file: &str,
-        options: &InputOptions,
-    ) -> Result<Self> {
+    pub(super) fn of_rows(rows: Box<dyn Read>, file: &str, options: &InputOptions) -> Result<Self> {
         Self::of_text(rows, 1, Rc::default(), file, options)
     }
 
@@ -117,9 +113,7 @@ impl Table {
         let delimiter = if above > 0 {
             b','
         } else {
-            asked
-                .or(comment.as_ref().map(|own| own.delimiter))
-                .unwrap_or_else(|| start.delimiter())
+            asked.or(comment.as_ref().map(|own| own.delimiter)).unwrap_or_else(|| start.delimiter())
         };
         let comments = Rc::default();
         let mut rows = Rows::new(start, input, delimiter, above, &comments);

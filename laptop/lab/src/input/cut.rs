@@ -36,7 +36,8 @@ impl<R: Read> WholeLines<R> {
                     continue;
                 }
                 Err(error) => {
-                    self.cut.set(Some(format!("nothing is read behind the last whole line: {error}")));
+                    self.cut
+                        .set(Some(format!("nothing is read behind the last whole line: {error}")));
                     0
                 }
             };

@@ -70,9 +70,9 @@ impl Start {
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
         comments.rev().find_map(|comment| {
-            let delimiter = asked.or_else(|| delimiter(comment)).unwrap_or_else(|| {
-                if is_aligned(comment, line) { b' ' } else { b',' }
-            });
+            let delimiter = asked
+                .or_else(|| delimiter(comment))
+                .unwrap_or_else(|| if is_aligned(comment, line) { b' ' } else { b',' });
             let (names, row) = (split(comment, delimiter), split(line, delimiter));
             let has_number = |row: &ByteRecord| row.iter().any(|own| is_number(own, delimiter));
             let is_header = names.len() == row.len() && has_number(&row) && !has_number(&names);

@@ -46,14 +46,11 @@ pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or decompressed.
-pub(super) fn unpacked(
-    input: impl Read + 'static,
-    name: &str,
-) -> Result<(Vec<u8>, Box<dyn Read>)> {
+pub(super) fn unpacked(input: impl Read + 'static, name: &str) -> Result<(Vec<u8>, Box<dyn Read>)> {
     let (head, input) = peek(input).at(|| name)?;
     let Some(packing) = Packing::of(&head) else { return Ok((head, Box::new(input))) };
-    let (head, input) = peek(packing.reader(input))
-        .map_err(|error| TableKind::NotUnpacked { error }.at(name))?;
+    let (head, input) =
+        peek(packing.reader(input)).map_err(|error| TableKind::NotUnpacked { error }.at(name))?;
     Ok((head, Box::new(input)))
 }
 
@@ -86,11 +83,7 @@ pub fn shown(bytes: &[u8]) -> String {
 ///
 /// # Errors
 /// Returns an error if it is not text.
-pub(super) fn decode(
-    head: &[u8],
-    input: impl Read + 'static,
-    name: &str,
-) -> Result<Box<dyn Read>> {
+pub(super) fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     let is_utf16 = head.len() >= 4 && head.len().is_multiple_of(2);
     match *head {
         [0xff, 0xfe, ..] => return encoding::utf16(input, false, name),

@@ -4,10 +4,10 @@
 mod beside;
 mod kinds;
 
-#[cfg(not(target_family = "wasm"))]
-pub use beside::abandon;
 #[cfg(all(feature = "datasets", not(target_family = "wasm")))]
 pub(crate) use beside::UNFINISHED_NAME;
+#[cfg(not(target_family = "wasm"))]
+pub use beside::abandon;
 pub use kinds::OutputKind;
 
 use crate::Result;

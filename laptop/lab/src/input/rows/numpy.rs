@@ -78,10 +78,8 @@ impl Kind {
     fn of(text: &str) -> Option<Self> {
         let [order, kind, size @ ..] = text.as_bytes() else { return None };
         let size = str::from_utf8(size).ok()?.parse().ok()?;
-        let is_known = matches!(
-            (kind, size),
-            (b'i' | b'u', 1 | 2 | 4 | 8) | (b'f', 4 | 8) | (b'b', 1)
-        );
+        let is_known =
+            matches!((kind, size), (b'i' | b'u', 1 | 2 | 4 | 8) | (b'f', 4 | 8) | (b'b', 1));
         is_known.then_some(Self { kind: *kind, size, is_big: *order == b'>' })
     }
 
@@ -149,7 +147,8 @@ fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
         _ => return None,
     };
     let is_by_columns = header.contains("'fortran_order': True");
-    if is_by_columns && columns.is_some_and(|own| own > 1) || columns.is_some_and(|own| own > MOST) {
+    if is_by_columns && columns.is_some_and(|own| own > 1) || columns.is_some_and(|own| own > MOST)
+    {
         return None;
     }
     let descr = header.split_once("'descr':")?.1.trim_start();
