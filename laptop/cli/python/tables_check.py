@@ -28,7 +28,7 @@ def write(directory, recording):
     """The recording in every format: the path of each, and what reads it."""
     table = pd.read_csv(recording, float_precision="round_trip")
     at = directory.joinpath
-    for packing in ("none", "snappy", "lz4", "gzip"):
+    for packing in ("none", "snappy", "lz4"):
         table.to_parquet(at(f"{packing}.parquet"), compression=packing, index=False)
         yield at(f"{packing}.parquet"), []
     table.to_json(at("lines.jsonl"), orient="records", lines=True, double_precision=15)
@@ -41,7 +41,7 @@ def write(directory, recording):
     yield at("fields.npy"), []
     np.save(at("swapped.npy"), table.to_records(index=False).astype([(own, ">f8") for own in table.columns]))
     yield at("swapped.npy"), []
-    np.save(at("plain.npy"), table.to_numpy())
+    np.save(at("plain.npy"), np.ascontiguousarray(table.to_numpy()))
     places = [str(1 + table.columns.get_loc(f"gyro_{own}")) for own in "xyz"]
     time = ["--time", str(1 + table.columns.get_loc("time_us")), "--time-unit", "us"]
     yield at("plain.npy"), ["--columns", ",".join(places), *time]

@@ -289,7 +289,7 @@ name = \"roll\"
 source = \"gyro_x\"
 unit = \"rad/s\"
 counts = 1000
-parameters = { threshold = 20 }
+parameters = { threshold = 20, spikes = 4 }
 ";
     fs::write(at("flight.toml"), text).unwrap();
     let (flight_file, table) = (at("flight.toml"), flight("hexarotor.csv"));
