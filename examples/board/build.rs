@@ -14,6 +14,7 @@ fn main() {
         "thumbv7m-none-eabi" => "lm3s6965evb",
         "thumbv7em-none-eabihf" => "netduinoplus2",
         "thumbv8m.main-none-eabihf" => "mps2-an505",
+        "riscv32imc-unknown-none-elf" | "riscv32imafc-unknown-none-elf" => "virt",
         _ => return, // the host needs no map
     };
     let board = env::var("BOARD").unwrap_or_else(|_| usual.into());

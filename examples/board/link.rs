@@ -1,4 +1,4 @@
-//! The build script of every program: the linker script of cortex-m-rt, said once and here, as a second `-Tlink.x` fails to
+//! The build script of every program: the linker script of cortex-m-rt or riscv-rt, said once and here, as a second `-Tlink.x` fails to
 //! link.
 
 fn main() {

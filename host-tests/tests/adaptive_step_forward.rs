@@ -1,10 +1,11 @@
 //! Adaptive step forward: values by hand, its bounds, and keyframes.
 
+use crate::common::refused;
 use std::collections::HashSet;
 
 use proptest::prelude::*;
 use spikewire::temporal::{AdaptiveStepForward, StepForward};
-use spikewire::{ConfigError, Encoder, Scheme, Spike, Start};
+use spikewire::{Encoder, Scheme, Spike, Start};
 
 type Asf = AdaptiveStepForward<i16>;
 
@@ -20,17 +21,11 @@ fn check_values() {
 
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
-    let parameter = |scheme: Result<Asf, ConfigError>| match scheme.unwrap_err() {
-        ConfigError::NotPositive { parameter, .. } | ConfigError::OutOfRange { parameter, .. } => {
-            parameter
-        }
-        error => panic!("{error}"),
-    };
-    assert_eq!(parameter(Asf::try_new(0, 4)), "threshold");
-    assert_eq!(parameter(Asf::try_new(1, 31)), "doublings");
-    assert_eq!(parameter(Asf::try_new(1, 15)), "largest step");
-    assert_eq!(parameter(Asf::new(1, 4).try_with_run(0)), "run");
-    assert_eq!(parameter(Asf::new(1, 4).try_with_run(9)), "run");
+    assert_eq!(refused(Asf::try_new(0, 4)), "threshold");
+    assert_eq!(refused(Asf::try_new(1, 31)), "doublings");
+    assert_eq!(refused(Asf::try_new(1, 15)), "largest step");
+    assert_eq!(refused(Asf::new(1, 4).try_with_run(0)), "run");
+    assert_eq!(refused(Asf::new(1, 4).try_with_run(9)), "run");
     assert!(Asf::try_new(1, 14).is_ok() && Asf::try_new(16_383, 1).is_ok());
     assert!(Asf::try_new(16_384, 1).is_err());
     assert!(AdaptiveStepForward::<f32>::try_new(1e31, 1).is_err());

@@ -187,8 +187,8 @@ fn slots_are_times() {
     let mut bank = Bank::<_, 2>::new(&scheme).with_slot_ticks(5);
     let channels = [vec![99.0], vec![0.1]];
     let events = events(&mut bank, &channels, &[u32::MAX]);
-    let told: Vec<_> = events.iter().map(|event| (event.tick.micros(), event.address)).collect();
-    assert_eq!(told, [(49, 5), (209, 4), (424, 6)]);
+    let fired: Vec<_> = events.iter().map(|event| (event.tick.micros(), event.address)).collect();
+    assert_eq!(fired, [(49, 5), (209, 4), (424, 6)]);
 }
 
 #[test]
@@ -196,8 +196,8 @@ fn channels_may_have_parameters_of_their_own() {
     let schemes = [1.0_f32, 2.0].map(StepForward::new);
     let mut bank = Bank::per_channel(schemes.each_ref());
     let channels = [vec![0.0, 1.5], vec![0.0, 1.5]];
-    let told = events(&mut bank, &channels, &[1, 2]);
-    assert_eq!(told, [event(2, 0, Polarity::Up)]);
+    let fired = events(&mut bank, &channels, &[1, 2]);
+    assert_eq!(fired, [event(2, 0, Polarity::Up)]);
 }
 
 #[test]
@@ -260,17 +260,16 @@ fn flights() {
     let hough = Hough::new(Taps::<f32, 9>::triangular(0.1)).with_shift(-0.5);
     let position = Position::<f32, 20>::linear(-9.0..=9.0);
     let slots = Slots::<f32, 15, 10>::new(-4.0..=4.0, 1.5);
-    for flight in [flight::hexarotor(), flight::vtol_at_rest()] {
-        let channels: [_; 6] = std::array::from_fn(|channel| flight::channel(&flight, channel));
+    for channels in flight::flights() {
         let ticks: Vec<_> = (0..channels[0].len() as u32).map(|i| i * 5_000).collect();
-        let told = events(&mut Bank::new(&step), &channels, &ticks);
-        assert_eq!(told, expected(&step, &channels, &ticks, 0));
-        let told = events(&mut Bank::new(&hough), &channels, &ticks);
-        assert_eq!(told, expected(&hough, &channels, &ticks, 0));
-        let told = events(&mut Bank::new(&position), &channels, &ticks);
-        assert_eq!(told, expected(&position, &channels, &ticks, 0));
-        let told = events(&mut Bank::new(&slots).with_slot_ticks(500), &channels, &ticks);
-        assert_eq!(told, expected(&slots, &channels, &ticks, 500));
+        let fired = events(&mut Bank::new(&step), &channels, &ticks);
+        assert_eq!(fired, expected(&step, &channels, &ticks, 0));
+        let fired = events(&mut Bank::new(&hough), &channels, &ticks);
+        assert_eq!(fired, expected(&hough, &channels, &ticks, 0));
+        let fired = events(&mut Bank::new(&position), &channels, &ticks);
+        assert_eq!(fired, expected(&position, &channels, &ticks, 0));
+        let fired = events(&mut Bank::new(&slots).with_slot_ticks(500), &channels, &ticks);
+        assert_eq!(fired, expected(&slots, &channels, &ticks, 500));
     }
 }
 
@@ -291,12 +290,12 @@ proptest! {
         let channels: [_; 3] = channels.try_into().unwrap();
         let scheme = StepForward::new(0.5);
         let mut bank = Bank::new(&scheme);
-        let told = events(&mut bank, &channels, &ticks);
-        prop_assert_eq!(told, expected(&scheme, &channels, &ticks, 0));
+        let fired = events(&mut bank, &channels, &ticks);
+        prop_assert_eq!(fired, expected(&scheme, &channels, &ticks, 0));
         let faults = channels.iter().flatten().filter(|x| !x.is_finite()).count();
         prop_assert_eq!(bank.rejected() as usize, faults);
         let scheme = Slots::<f32, 4, 100>::new(-1.0..=1.0, 1.5);
-        let told = events(&mut Bank::new(&scheme).with_slot_ticks(slot_ticks), &channels, &ticks);
-        prop_assert_eq!(told, expected(&scheme, &channels, &ticks, slot_ticks));
+        let fired = events(&mut Bank::new(&scheme).with_slot_ticks(slot_ticks), &channels, &ticks);
+        prop_assert_eq!(fired, expected(&scheme, &channels, &ticks, slot_ticks));
     }
 }

@@ -2,15 +2,15 @@
 //! `e1 <= e2 - threshold` or `e1 <= e2 * threshold`; then `r[i+j] -= h[j]`.
 
 use crate::common::rate::{
-    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
+    all_lengths, drawn_recordings, few_lengths, least, pairs_of_8_bits, spikes_of, triangle,
 };
-use crate::common::{Drawn, flight_channels, hostile_recordings};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{Drawn, between, flights, hostile_recordings};
+use fixed::types::I8F8;
 use host_tests::compare::{Wire, check_rate, decode, encode, reals, signs_of};
 use host_tests::reference::{ben_multiplicative, ben_subtractive};
 use proptest::prelude::*;
+use spikewire::Scheme;
 use spikewire::rate::{Bsa, Scale, Shape, Taps};
-use spikewire::{Scheme, Spike};
 
 /// Both criteria against the reference, encoder and decoder.
 fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], threshold: S, ratio: f32, shift: S) {
@@ -90,21 +90,9 @@ fn the_printed_check_values() {
     }
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        let shift = channel.iter().copied().fold(f32::INFINITY, f32::min);
-        all_lengths!(check, f32, &triangle(0.1), &channel, 0.3, 0.7, shift);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        let (threshold, base) = (I16F16::from_num(0.3), I16F16::from_num(shift));
-        check::<I16F16, 8>(&first_taps(&triangle(0.1)), &fixed, threshold, 0.7, base);
-        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-        let (threshold, base) = (I8F8::from_num(0.3), I8F8::from_num(shift));
-        check::<I8F8, 8>(&first_taps(&triangle(0.1)), &fixed, threshold, 0.7, base);
-        let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-        check::<i16, 8>(&first_taps(&triangle(10.0)), &counts, 30, 0.7, (shift * 100.0) as i16);
-    }
-}
+flights!(S: Wire, |x, unit| {
+    few_lengths!(check, S, &triangle(0.1 * unit), &x, S::from_f64(0.3 * unit), 0.7, least(&x));
+});
 
 #[test]
 fn hostile() {
@@ -124,7 +112,7 @@ fn thresholds<S: Wire + Drawn>() -> impl Strategy<Value = S> {
 /// Any ratio that is allowed, exact multiples of 2⁻¹⁴ and halves between them often.
 fn ratios() -> impl Strategy<Value = f32> {
     let grid = (2..131_070_u32).prop_map(|halves| halves as f32 / 32_768.0);
-    prop_oneof![grid, crate::common::between(0.1, 1.5), crate::common::between(0.000_062, 3.999)]
+    prop_oneof![grid, between(0.1, 1.5), between(0.000_062, 3.999)]
 }
 
 drawn_recordings!(check, 96, threshold: thresholds::<S>(), ratio: ratios());
@@ -148,11 +136,7 @@ fn all_pairs_of_8_bits() {
                 ben_multiplicative(&r, &h, 0.0, I8F8::ratio(ratio), true),
             ];
             for (scheme, expected) in schemes.iter().zip(expected) {
-                let mut encoder = scheme.encoder();
-                let mut spikes: Vec<_> =
-                    pair.iter().filter_map(|&r| encoder.encode(r)).map(Spike::sign).collect();
-                spikes.extend(encoder.finish().map(Spike::sign));
-                assert_eq!(spikes, expected, "{scheme:?} {pair:?}");
+                assert_eq!(spikes_of(scheme, &pair), expected, "{scheme:?} {pair:?}");
             }
         }
     }

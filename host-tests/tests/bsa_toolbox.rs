@@ -2,10 +2,10 @@
 //! `e1 <= e2 * threshold`; then `r[i+j+2] -= h[j]`. The last `F` samples never spike.
 
 use crate::common::rate::{
-    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
+    all_lengths, drawn_recordings, few_lengths, least, pairs_of_8_bits, spikes_of, triangle,
 };
-use crate::common::{flight_channels, hostile_recordings};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{between, flights, hostile_recordings};
+use fixed::types::I8F8;
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::ben_toolbox;
 use proptest::prelude::*;
@@ -55,20 +55,10 @@ fn waits_for_the_look_ahead() {
     assert_eq!(encoder.finish_next(), None);
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        let shift = channel.iter().copied().fold(f32::INFINITY, f32::min);
-        all_lengths!(check, f32, &triangle(1.0), &channel, 1.15, shift);
-        all_lengths!(check, f32, &triangle(0.1), &channel, 0.9, shift);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        check::<I16F16, 8>(&first_taps(&triangle(0.1)), &fixed, 0.9, I16F16::from_num(shift));
-        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-        check::<I8F8, 8>(&first_taps(&triangle(0.1)), &fixed, 0.9, I8F8::from_num(shift));
-        let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-        check::<i16, 8>(&first_taps(&triangle(10.0)), &counts, 0.9, (shift * 100.0) as i16);
-    }
-}
+flights!(S: Wire, |x, unit| {
+    few_lengths!(check, S, &triangle(unit), &x, 1.15, least(&x));
+    few_lengths!(check, S, &triangle(0.1 * unit), &x, 0.9, least(&x));
+});
 
 #[test]
 fn hostile() {
@@ -81,8 +71,8 @@ fn hostile() {
 }
 
 fn thresholds() -> impl Strategy<Value = f32> {
-    let all = crate::common::between(0.000_062, 3.999);
-    prop_oneof![crate::common::between(0.1, 1.5), all, Just(1.0_f32)]
+    let all = between(0.000_062, 3.999);
+    prop_oneof![between(0.1, 1.5), all, Just(1.0_f32)]
 }
 
 drawn_recordings!(check, 128, threshold: thresholds());
@@ -97,12 +87,8 @@ fn all_pairs_of_8_bits() {
         let scheme = BsaToolbox::try_new(taps, threshold).unwrap();
         for [a, b] in pairs_of_8_bits() {
             let x = [30, a, b, 50].map(I8F8::from_bits);
-            let mut encoder = scheme.encoder();
-            let mut spikes: Vec<_> =
-                x.iter().filter_map(|&x| encoder.encode(x)).map(Spike::sign).collect();
-            spikes.extend(encoder.finish().map(Spike::sign));
             let expected = ben_toolbox(&x.map(Wire::real), &h, 0.0, I8F8::ratio(threshold), true);
-            assert_eq!(spikes, expected, "{a} {b}");
+            assert_eq!(spikes_of(&scheme, &x), expected, "{a} {b}");
         }
     }
     check([1], 1.0);

@@ -1,7 +1,9 @@
 //! Burst coding: the larger the value, the more spikes, and the closer together.
 
-use crate::common::timing::{Lined, assert_law, beside, check, code_of, rising};
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::timing::{Lined, assert_law, beside, check, code_of};
+use crate::common::{
+    between, cases, drawn_recordings, flight_channels, hostile_recordings, ranges,
+};
 use fixed::types::I16F16;
 use host_tests::reference::{Bursts, edge};
 use proptest::prelude::*;
@@ -62,17 +64,17 @@ fn any_spikes_are_decoded() {
 
 #[test]
 fn refusals() {
-    let told = |result: Result<Burst<i16, 19>, ConfigError>| result.unwrap_err().to_string();
-    assert_eq!(told(Burst::try_new(0..=99, 0, 2..=10)), "spikes 0 must lie in 1..=255");
-    assert_eq!(told(Burst::try_new(0..=99, 5, 0..=10)), "shortest interval 0 must lie in 1..=10");
+    let says = |result: Result<Burst<i16, 19>, ConfigError>| result.unwrap_err().to_string();
+    assert_eq!(says(Burst::try_new(0..=99, 0, 2..=10)), "spikes 0 must lie in 1..=255");
+    assert_eq!(says(Burst::try_new(0..=99, 5, 0..=10)), "shortest interval 0 must lie in 1..=10");
     let descending = std::hint::black_box(9)..=8;
     assert_eq!(
-        told(Burst::try_new(0..=99, 5, descending)),
+        says(Burst::try_new(0..=99, 5, descending)),
         "shortest interval 9 must lie in 1..=8"
     );
-    assert_eq!(told(Burst::try_new(0..=99, 5, 3..=11)), "slots 19 must lie in 22..=256");
+    assert_eq!(says(Burst::try_new(0..=99, 5, 3..=11)), "slots 19 must lie in 22..=256");
     assert_eq!(
-        told(Burst::try_new(0..=99, 200, 1..=2)),
+        says(Burst::try_new(0..=99, 200, 1..=2)),
         "slots of the longest burst 395 must lie in 1..=256"
     );
     // In a range of one step every burst but the longest is of no value.
@@ -80,7 +82,7 @@ fn refusals() {
         Burst::<i16, 2>::try_new(0..=1, 3, 1..=1).unwrap_err().to_string(),
         "slots 2 must lie in 3..=256"
     );
-    assert!(told(Burst::try_new(9..=9, 5, 2..=10)).starts_with("min and max"));
+    assert!(says(Burst::try_new(9..=9, 5, 2..=10)).starts_with("min and max"));
     assert!(dynamic::Burst::<f32>::try_of(18, &(0.0..=1.0), 5, &(2..=10)).is_err());
     assert!(dynamic::Burst::<f32>::try_of(257, &(0.0..=1.0), 5, &(2..=10)).is_err());
     assert!(dynamic::Burst::<f32>::try_of(19, &(0.0..=1.0), 5, &(2..=10)).is_ok());
@@ -111,24 +113,16 @@ fn flights_and_hostile_recordings() {
     }
 }
 
-fn drawn<S: Lined + Drawn>() {
-    proptest!(cases(48), |(x in S::recordings(), a in S::value(), b in S::value())| {
-        let range = rising(a, b);
-        // Where an `f32` is as coarse as the cells, two edges may be one.
-        let [min, max] = range.map(spikewire::Sample::to_f64);
-        prop_assume!(max - min > (min.abs().max(max.abs()) / 1024.0).max(1e-40));
-        check_bursts::<S, 2>(range, 1, [1, 200], &x);
-        check_bursts::<S, 17>(range, 2, [1, 30], &x);
-        check_bursts::<S, 19>(range, 5, [2, 10], &x);
-        check_bursts::<S, 64>(range, 7, [3, 3], &x);
-        check_bursts::<S, 256>(range, 20, [1, 20], &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Lined, 48, (x in S::recordings(), range in ranges::<S>()) => {
+    // Where an `f32` is as coarse as the cells, two edges may be one.
+    let [min, max] = range.map(spikewire::Sample::to_f64);
+    prop_assume!(max - min > (min.abs().max(max.abs()) / 1024.0).max(1e-40));
+    check_bursts::<S, 2>(range, 1, [1, 200], &x);
+    check_bursts::<S, 17>(range, 2, [1, 30], &x);
+    check_bursts::<S, 19>(range, 5, [2, 10], &x);
+    check_bursts::<S, 64>(range, 7, [3, 3], &x);
+    check_bursts::<S, 256>(range, 20, [1, 20], &x);
+});
 
 /// Ranges of few samples, where edges fall together: no shape takes more cells than slots.
 #[test]
@@ -169,7 +163,7 @@ fn fewest_slots() {
 /// `f32` next to every edge.
 #[test]
 fn beside_the_edges() {
-    proptest!(cases(128), |(min in -3.0_f32..3.0, width in crate::common::between(0.01, 5.0))| {
+    proptest!(cases(128), |(min in -3.0_f32..3.0, width in between(0.01, 5.0))| {
         let range = [min, min + width];
         let counts = (0..5).map(|k| edge(range[0], range[1], k, 5));
         let intervals = (1..=8).map(|j| edge(range[0], range[1], j, 8));

@@ -4,8 +4,8 @@
 //! keep a recording; the reference takes two. Where all squares are exact, so is the comparison's
 //! bound: the variance may differ by the rounding of the two sums, a few 2⁻⁵³ of the mean square.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{drawn_recordings, flight_channels, flights, hostile_recordings};
+use fixed::types::I16F16;
 use host_tests::compare::{Wire, finite};
 use host_tests::flight::calibrated;
 use host_tests::reference::{Moments, calibrate};
@@ -95,15 +95,7 @@ fn thresholds_of_the_flights() {
     }
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        check(&channel);
-        check(&channel.iter().map(|&x| I16F16::from_num(x)).collect::<Vec<_>>());
-        check(&channel.iter().map(|&x| I8F8::from_num(x)).collect::<Vec<_>>());
-        check(&channel.iter().map(|&x| (x * 100.0) as i16).collect::<Vec<_>>());
-    }
-}
+flights!(S: Wire, |x, _unit| check(&x));
 
 #[test]
 fn hostile() {
@@ -112,12 +104,4 @@ fn hostile() {
     }
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let cases = &cases(256);
-    proptest!(cases, |(x in S::recordings())| check(&x));
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Wire, 256, (x in S::recordings()) => check(&x));

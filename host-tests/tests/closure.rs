@@ -287,11 +287,13 @@ fn window<const N: usize>(bits: u32, threshold: i16) -> Found {
 
 #[test]
 fn step_codes_of_few_bits_are_their_laws_in_every_state() {
-    let totals = follow(6, &[1, 3, 40, 1_000]);
+    let thresholds = [1, 3, 40, 1_000, i16::MAX];
+    let totals = follow(6, &thresholds);
     assert!(totals.iter().all(|found| found.0 > 500));
-    contrast(6, &[1, 3, 40, 1_000]);
+    contrast(6, &thresholds);
     adaptive_contrast([0..=2]);
     window::<2>(4, 1);
+    window::<2>(3, i16::MAX);
     window::<3>(3, 1);
 }
 

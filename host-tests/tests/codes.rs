@@ -18,7 +18,6 @@ mod dynamic;
 mod every_scheme;
 mod filter;
 mod first_spike;
-mod gaussian;
 mod histogram;
 mod hough;
 mod integrate;

@@ -111,7 +111,7 @@ fn compare<A: Start, B: Scheme<Sample = A::Sample>>(
 fn rates<S: Sample, const F: usize>(one: f64) {
     let at = |value: f64| S::from_f64(value * one);
     let longest = at(2.0 / F as f64);
-    let own: [S; F] = core::array::from_fn(|tap| {
+    let signed: [S; F] = core::array::from_fn(|tap| {
         // Some taps below 0, and the first is not.
         let sign = if tap % 3 == 1 { -0.25 } else { 1.0 };
         S::from_f64(longest.to_f64().max(one / 8.0) * sign)
@@ -119,7 +119,7 @@ fn rates<S: Sample, const F: usize>(one: f64) {
     let all = [
         Taps::<S, F>::try_shaped(Shape::Triangular, Scale::Peak(at(0.5))),
         Taps::try_shaped(Shape::Hann, Scale::Peak(at(0.3))),
-        Taps::try_new(own),
+        Taps::try_new(signed),
     ];
     let mut fires = [0; 4];
     for (number, taps) in all.into_iter().enumerate() {

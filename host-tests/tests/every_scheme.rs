@@ -1,8 +1,8 @@
 //! What a scheme needs that nothing can generate: a test with a reference of its own, and its rows in the docs.
 
-use catalogue::{Channel, Flight, State};
+use catalogue::{Channel, Flight, Storable};
 use host_tests::flight;
-use spikewire::{ConfigError, Scheme};
+use spikewire::ConfigError;
 use std::{any::type_name, collections::BTreeSet, fs, path::Path};
 
 /// The schemes' types, such as `StepForward`.
@@ -13,16 +13,13 @@ impl Flight for Types {
     type Sample = f32;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = f32>>(
         &mut self,
         _: &'static str,
         _: &'static str,
         _: &P,
         _: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = f32, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         let path = type_name::<P>().split('<').next().unwrap();
         self.0.insert(path.rsplit("::").next().unwrap().to_owned());
         Ok(())

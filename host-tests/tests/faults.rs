@@ -5,11 +5,14 @@
 //! calls exact must have their bits, every frame that it takes must be one that was sent, and every frame or item that is
 //! missing must have been counted.
 
+mod beside;
+
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
-use catalogue::{Channel, Flight, State};
+use beside::{Beside, CHANNELS, read, session_from, slot_ticks};
+use catalogue::{Channel, Flight, Storable};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -18,11 +21,10 @@ use spikewire::link::{
 };
 use spikewire::out::{Batch, SerialSink};
 use spikewire::{
-    Bank, Code, ConfigError, EventQueue, Item, Output, Overflow, Put, QueueView, Recovery, Sample,
-    Scheme, Source, Taken, Tick,
+    Bank, ConfigError, EventQueue, Item, Overflow, Put, QueueView, Recovery, Sample, Scheme,
+    Source, Taken, Tick,
 };
 
-const CHANNELS: usize = 2;
 /// The most events of a sample, over both channels.
 const EVENTS: usize = 256;
 /// Microseconds from sample to sample.
@@ -331,27 +333,17 @@ struct Sender<'a, P: Scheme> {
     now: u64,
     /// When the last sample was taken, in ticks.
     taken: u64,
-    encoders: [P::EncoderState; CHANNELS],
-    decoders: [P::DecoderState; CHANNELS],
+    beside: Beside<'a, P>,
     truth: VecDeque<Truth<P::Sample>>,
-    /// Samples since a channel had a spike.
-    silent: [u32; CHANNELS],
     offered: Offers,
     /// Losses that the queue told of, and those before this start.
-    told: u64,
+    reported: u64,
     lost_before: u32,
     not_finite: u32,
     errors: u64,
 }
 
-fn again<T: State>(bytes: &[u8]) -> T {
-    postcard::from_bytes(bytes).unwrap()
-}
-
-impl<'a, P> Sender<'a, P>
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+impl<'a, P: Storable> Sender<'a, P> {
     fn new(
         scheme: &'a P,
         start: &'a [u8],
@@ -360,12 +352,11 @@ where
         (session, first): (u32, Session),
         micros: u64,
     ) -> Self {
-        let has_slots = scheme.slots() > 1 && P::RECOVERY != Recovery::Keyframe;
-        let slot_ticks = if has_slots { PERIOD / scheme.slots() as u32 } else { 0 };
+        let slot_ticks = slot_ticks(scheme, PERIOD);
         let addresses = (CHANNELS * scheme.neurons()) as u16;
         let coding = Coding::for_channels(addresses, PERIOD as u16);
 
-        let bank = Bank::with_states(scheme, [(); CHANNELS].map(|()| again(start)))
+        let bank = Bank::with_states(scheme, [(); CHANNELS].map(|()| read(start)))
             .with_slot_ticks(slot_ticks);
         let transmitter = Transmitter::new(coding, first).with_fingerprint(bank.fingerprint());
         let recorded = Recorded { transmitter, session, line: line.clone(), framed: 0, last: None };
@@ -380,12 +371,10 @@ where
             first,
             now: micros * 1_000,
             taken: micros,
-            encoders: [(); CHANNELS].map(|()| again(start)),
-            decoders: [(); CHANNELS].map(|()| scheme.decoder_state()),
+            beside: Beside::new(scheme, start),
             truth: VecDeque::new(),
-            silent: [0; CHANNELS],
             offered: Offers::default(),
-            told: 0,
+            reported: 0,
             lost_before: queue.lost(),
             not_finite: 0,
             errors: 0,
@@ -414,15 +403,9 @@ where
         self.bank.encode_into(Tick::from_micros(self.taken), samples, queue);
         let last = self.truth.back().map(|last| last.values);
         let mut values = last.unwrap_or_default();
-        for channel in 0..CHANNELS {
-            self.not_finite += u32::from(!samples[channel].to_f64().is_finite());
-            let code = self.scheme.encode(&mut self.encoders[channel], samples[channel]).code();
-            if let Some(code) = code {
-                let has_spike = code.firings().next().is_some();
-                self.silent[channel] = if has_spike { 0 } else { self.silent[channel] + 1 };
-                values[channel] = self.scheme.decode(&mut self.decoders[channel], code);
-            }
-        }
+        let not_finite = samples.iter().filter(|sample| !sample.to_f64().is_finite());
+        self.not_finite += not_finite.count() as u32;
+        self.beside.sample(samples, &mut values);
         self.remember(values);
     }
 
@@ -446,19 +429,15 @@ where
     fn beat(&mut self) {
         let queue = Offered(self.queue, &mut self.offered);
         self.bank.keyframe_into(Tick::from_micros(self.taken), queue);
-        let Some(last) = self.truth.back_mut() else { return };
-        for channel in 0..CHANNELS {
-            if let Some(value) = self.scheme.keyframe(&self.encoders[channel]) {
-                self.scheme.resync(&mut self.decoders[channel], value);
-                last.values[channel] = value;
-            }
+        if let Some(last) = self.truth.back_mut() {
+            self.beside.keyframe(&mut last.values);
         }
     }
 
     /// Main's turn: all that waits, as far as the port takes it.
     fn send(&mut self) {
         let consumer = self.queue.consumer().unwrap();
-        let mut source = Told(consumer, &mut self.told);
+        let mut source = Told(consumer, &mut self.reported);
         loop {
             match self.sink.send(&mut source) {
                 Ok(0) => break,
@@ -475,7 +454,7 @@ where
     fn check_counts(&mut self) {
         assert!(self.queue.is_empty() && self.sink.waiting() == 0);
         let lost = u64::from(self.queue.lost() - self.lost_before);
-        assert_eq!(lost, self.told, "losses are told of in their place");
+        assert_eq!(lost, self.reported, "losses are told of in their place");
         let framed = self.sink.batch().framed;
         let due = self.offered.items - lost;
         assert!((framed..=framed + self.offered.breaks).contains(&due), "the others are in frames");
@@ -506,10 +485,7 @@ struct World<'a, P: Scheme> {
     tally: Tally,
 }
 
-impl<'a, P> World<'a, P>
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+impl<'a, P: Storable> World<'a, P> {
     fn new(
         scheme: &'a P,
         start: &'a [u8],
@@ -606,7 +582,11 @@ where
             Some(LateSamples) if slot_ticks == 0 && self.draw(5) == 0 => {
                 self.tally.injected += 1;
                 let half = u64::from(PERIOD / 2);
-                let most = if self.counts() { 5 * u64::from(PERIOD) / 8 - 1 } else { 2 * half - 1 };
+                let most = if self.senders[0].beside.counts() {
+                    5 * u64::from(PERIOD) / 8 - 1
+                } else {
+                    2 * half - 1
+                };
                 (half + 1 + self.draw(most - half)).cast_signed()
             }
             _ => 0,
@@ -614,7 +594,7 @@ where
         if self.fault() == Some(ClockBack) && slot_ticks == 0 && self.draw(20) == 0 {
             self.tally.injected += 1;
             let back = 1_000 * (1 + self.draw(10 * u64::from(PERIOD)));
-            let counts = self.counts();
+            let counts = self.senders[0].beside.counts();
             let sender = &mut self.senders[0];
             sender.now -= back.min(sender.now);
             if counts {
@@ -669,11 +649,6 @@ where
     fn restart_sender(&mut self, micros: u64, session: Option<Session>) {
         self.senders[0].restart(micros, session);
         self.tally.injected += 1;
-    }
-
-    /// Whether the code counts samples.
-    fn counts(&self) -> bool {
-        !matches!(self.scheme.recovery(), Recovery::Keyframe | Recovery::Spike)
     }
 
     fn restart_receiver(&mut self) {
@@ -733,8 +708,8 @@ where
         let line = self.line.borrow();
         let same = |sent: &&Sent| sent.number == frame.number();
         let sent = line.sent.iter().rev().find(same).expect("no frame is invented");
-        let own = FrameView::new(&sent.bytes).unwrap().0;
-        assert_eq!(format!("{own:?}"), format!("{frame:?}"), "no event is invented");
+        let original = FrameView::new(&sent.bytes).unwrap().0;
+        assert_eq!(format!("{original:?}"), format!("{frame:?}"), "no event is invented");
         let gap = received.gap.map_or(0, |gap| u64::from(gap.lost_frames));
         match self.delivered {
             Some((session, last)) if !received.is_start => {
@@ -769,24 +744,24 @@ where
         let truth = self.senders.each_ref().map(|sender| &sender.truth);
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
-            let own = self.values.iter().filter(|told| usize::from(told.0) == channel);
-            let own: Vec<_> = own.collect();
+            let heard = self.values.iter().filter(|claimed| usize::from(claimed.0) == channel);
+            let heard: Vec<_> = heard.collect();
             let is_throughout = before[channel].is_some() && are_all_told;
-            let first = if is_throughout { 0 } else { own.len().saturating_sub(1) };
-            if let Some(last) = own.last() {
+            let first = if is_throughout { 0 } else { heard.len().saturating_sub(1) };
+            if let Some(last) = heard.last() {
                 assert_eq!(last.2.to_bits32(), value.to_bits32());
             }
-            for &&(_, tick, told) in &own[first..] {
+            for &&(_, tick, claimed) in &heard[first..] {
                 let away =
                     |truth: &Truth<_>| tick.since(Tick::from_micros(truth.time)).unsigned_abs();
                 let all = truth.iter().flat_map(|truth| truth.iter().rev());
                 let same = all.filter(|truth| truth.session == session && away(truth) <= near);
                 // Between two samples, where one that was late was the first to be heard, it may be either.
                 let is_told = |truth: &Truth<P::Sample>| {
-                    truth.values[channel].to_bits32() == told.to_bits32()
+                    truth.values[channel].to_bits32() == claimed.to_bits32()
                 };
-                let own = same.min_by_key(|truth| (!is_told(truth), away(truth)));
-                self.tally.claim(told, own.map(|truth| truth.values[channel]));
+                let nearest = same.min_by_key(|truth| (!is_told(truth), away(truth)));
+                self.tally.claim(claimed, nearest.map(|truth| truth.values[channel]));
             }
         }
     }
@@ -795,23 +770,13 @@ where
         self.receiver.exact(channel as u16).is_some()
     }
 
-    /// Whether a channel must be exact after a keyframe and what its code needs to recover.
     fn is_due(&self, channel: usize) -> bool {
-        let sender = &self.senders[0];
-        match self.scheme.recovery() {
-            Recovery::Keyframe | Recovery::Samples(_) => true,
-            Recovery::TimedKeyframe(_) => self.scheme.keyframe(&sender.encoders[channel]).is_some(),
-            Recovery::Spike => sender.silent[channel] < BEAT,
-            Recovery::Fading(_) => false,
-        }
+        self.senders[0].beside.is_due(channel, BEAT)
     }
 
     /// A spell without the fault, after which all is known, and how long that took.
     fn calm(&mut self) {
-        let needed = match self.scheme.recovery() {
-            Recovery::Samples(samples) | Recovery::TimedKeyframe(samples) => samples as u32,
-            Recovery::Keyframe | Recovery::Spike | Recovery::Fading(_) => 0,
-        };
+        let needed = self.senders[0].beside.recovery();
         let is_damaged = matches!(self.fault, Cut | Spliced | Flipped1000 | Flipped100);
         let held_back = if is_damaged { HELD_BACK } else { 0 };
         let strays = if self.fault == Spliced { STRAYS * BEAT } else { 0 };
@@ -857,8 +822,7 @@ where
                 // spell all 48: their bits times the golden ratio.
                 let wrap = (1 << 48) + ((77 * (self.tally.spells - 1)) << 32);
                 let first = wrap - 1 - self.draw(20);
-                let bits = (first << 16).wrapping_mul(inverse(0x9E37_79B9_7F4A_7C15));
-                self.restart_sender(1_000_000, Some(Session::random(bits)));
+                self.restart_sender(1_000_000, Some(session_from(first)));
             }
             _ => {}
         }
@@ -911,9 +875,9 @@ impl Tally {
         }
     }
 
-    fn claim<S: Sample>(&mut self, told: S, truth: Option<S>) {
+    fn claim<S: Sample>(&mut self, claimed: S, truth: Option<S>) {
         self.exact += 1;
-        let is_right = truth.is_some_and(|truth| truth.to_bits32() == told.to_bits32());
+        let is_right = truth.is_some_and(|truth| truth.to_bits32() == claimed.to_bits32());
         self.wrong += u64::from(!is_right);
     }
 
@@ -945,16 +909,13 @@ impl<S: Sample> Flight for Soak<'_, S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         self.seed += 1;
         let policies = [Overflow::DropOldest, Overflow::DropNewest, Overflow::Refuse];
         let queue = || EventQueue::<256>::new(policies[self.seed as usize % 3]);
@@ -968,12 +929,6 @@ impl<S: Sample> Flight for Soak<'_, S> {
         self.tally.add(&tally);
         Ok(())
     }
-}
-
-/// The inverse of an odd number modulo 2⁶⁴.
-fn inverse(odd: u64) -> u64 {
-    (0..6)
-        .fold(odd, |inverse, _| inverse.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(inverse))))
 }
 
 fn soak<S: Sample>(unit: f64, faults: &[Fault], spells: u32) -> Tally {

@@ -1,8 +1,11 @@
 //! Filters before a code: the laws bit by bit, the textbook's response, and a filtered scheme end to end.
 
-use crate::common::{Drawn, between, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::{
+    between, drawn_recordings, flight_channels, flights, hostile_recordings, in_every_type,
+};
+use crate::states::goes_on;
 use fixed::types::{I8F8, I16F16};
-use host_tests::compare::{Wire, assert_same_values, encode};
+use host_tests::compare::{Wire, assert_same_values, encode, whole};
 use host_tests::reference::{
     Kind, Precise, coefficients, delay_at_rest, direct_form, filter_floats, filter_integers,
     textbook,
@@ -91,17 +94,6 @@ fn run<F: Filter>(filter: &F, samples: &[F::Sample]) -> Vec<F::Sample> {
     expected
 }
 
-/// The samples in units of the type's last place.
-fn whole<S: Sample>(samples: &[S]) -> Vec<i64> {
-    let one = match S::KIND {
-        SampleKind::F32 => unreachable!("integers"),
-        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => {
-            2_f64.powi(fraction.into())
-        }
-    };
-    samples.iter().map(|sample| (sample.to_f64() * one) as i64).collect()
-}
-
 /// The law's outputs, as the reference has them.
 fn law<S: Wire>(kind: Kind, corner: f32, samples: &[S]) -> Vec<f64> {
     let has_gain = S::KIND == SampleKind::F32;
@@ -111,7 +103,8 @@ fn law<S: Wire>(kind: Kind, corner: f32, samples: &[S]) -> Vec<f64> {
         return filter_floats(kind, &coefficients, &samples).into_iter().map(f64::from).collect();
     }
     let bits = 8 * size_of::<S>() as u32;
-    let outputs = filter_integers(kind, &coefficients, bits, &whole(samples));
+    let samples: Vec<i64> = samples.iter().copied().map(whole).collect();
+    let outputs = filter_integers(kind, &coefficients, bits, &samples);
     outputs.into_iter().map(|output| output as f64).collect()
 }
 
@@ -124,7 +117,7 @@ fn check<S: Wire>(kind: Kind, corner: f32, samples: &[S]) {
         let outputs: Vec<f32> = outputs.iter().map(|x| x.to_f64() as f32).collect();
         assert_same_values(&outputs, &expected);
     } else {
-        let outputs: Vec<f64> = whole(&outputs).into_iter().map(|x| x as f64).collect();
+        let outputs: Vec<f64> = outputs.into_iter().map(|x| whole(x) as f64).collect();
         assert_eq!(outputs, expected, "{kind:?} {corner}");
     }
 }
@@ -332,47 +325,28 @@ fn delays() {
     assert_eq!([first, second].map(|delay| (delay * 20.0).round()), [31.0, 55.0]); // tenths of ms
 }
 
-fn flown<S: Wire>(unit: f64) {
-    for channel in flight_channels().into_iter().step_by(5) {
-        let samples: Vec<S> = channel.iter().map(|&x| S::from_f64(f64::from(x) * unit)).collect();
-        for (kind, corner) in [
-            (Kind::FirstOrder, 40.0),
-            (Kind::LowPass(std::f32::consts::FRAC_1_SQRT_2), 40.0),
-            (Kind::Notch(3.0), 120.0),
-        ] {
-            check(kind, corner, &samples);
-            let filter = textbook(kind, f64::from(corner) / f64::from(RATE));
-            let doubles: Vec<f64> = samples.iter().map(|x| x.to_f64()).collect();
-            let largest = doubles.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-            // Half of a last place, and a little for coefficients of 29 fraction bits.
-            let near = if S::KIND == SampleKind::F32 {
-                2e-6 * largest
-            } else {
-                0.6 * 2_f64.powi(-i32::from(fraction::<S>()))
-            };
-            let outputs = Any::<S>::new(kind, corner).run(&samples);
-            for (output, exact) in outputs.iter().zip(direct_form(filter, &doubles)) {
-                assert!((output.to_f64() - exact).abs() <= near, "{kind:?}: {output:?} {exact}");
-            }
+/// Recorded flights: each bit as the law says, each value beside the textbook's.
+fn check_flown<S: Wire>(samples: &[S]) {
+    for (kind, corner) in [
+        (Kind::FirstOrder, 40.0),
+        (Kind::LowPass(std::f32::consts::FRAC_1_SQRT_2), 40.0),
+        (Kind::Notch(3.0), 120.0),
+    ] {
+        check(kind, corner, samples);
+        let filter = textbook(kind, f64::from(corner) / f64::from(RATE));
+        let doubles: Vec<f64> = samples.iter().map(|x| x.to_f64()).collect();
+        let largest = doubles.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        // Half of a last place, and a little for coefficients of 29 fraction bits.
+        let is_float = S::KIND == SampleKind::F32;
+        let near = if is_float { 2e-6 * largest } else { 0.6 * S::from_bits32(1).to_f64() };
+        let outputs = Any::<S>::new(kind, corner).run(samples);
+        for (output, exact) in outputs.iter().zip(direct_form(filter, &doubles)) {
+            assert!((output.to_f64() - exact).abs() <= near, "{kind:?}: {output:?} {exact}");
         }
     }
 }
 
-fn fraction<S: Sample>() -> u8 {
-    match S::KIND {
-        SampleKind::F32 => 0,
-        SampleKind::Fixed16 { fraction } | SampleKind::Fixed32 { fraction } => fraction,
-    }
-}
-
-/// Recorded flights: each bit as the law says, each value beside the textbook's.
-#[test]
-fn flights() {
-    flown::<f32>(1.0);
-    flown::<i16>(100.0);
-    flown::<I8F8>(1.0);
-    flown::<I16F16>(1.0);
-}
+flights!(S: Wire, |x, _unit| check_flown(&x[..x.len().min(700)]));
 
 #[test]
 fn hostile() {
@@ -445,17 +419,7 @@ fn kinds() -> impl Strategy<Value = Kind> {
     ]
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let (cases, corners) = (&cases(128), || between(1.0, 490.0));
-    proptest!(cases, |((x, kind, corner) in (S::recordings(), kinds(), corners()))| {
-        check(kind, corner, &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Wire, 128, (x in S::recordings(), kind in kinds(), corner in between(1.0, 490.0)) => check(kind, corner, &x));
 
 /// The codes of a filtered scheme are those of the scheme on filtered samples.
 fn filtered_of<S: Wire, P>(scheme: P, samples: &[S])
@@ -629,23 +593,11 @@ fn sizes() {
 /// States are written in flight and read back.
 #[test]
 fn states() {
-    fn goes_on<S: Sample>(samples: &[S], threshold: S) {
+    fn check<S: Sample>(threshold: S, unit: f64) {
         let scheme = Biquad::low_pass(40.0, RATE).before(StepForward::try_new(threshold).unwrap());
-        let mut whole = scheme.encoder();
-        for piece in samples.chunks(13) {
-            let bytes = postcard::to_allocvec(whole.state()).unwrap();
-            let state = postcard::from_bytes(&bytes).unwrap();
-            let mut again = spikewire::Encoder::with_state(&scheme, state);
-            assert!(scheme.fits(again.state()));
-            for &sample in piece {
-                assert_eq!(whole.encode(sample), again.encode(sample));
-            }
-        }
+        goes_on(&scheme, *scheme.encoder().state(), &host_tests::flight::flown(0, unit));
     }
-    let channel = &flight_channels()[0][..500];
-    goes_on(channel, 0.05);
-    let counts: Vec<i16> = channel.iter().map(|&x| (x * 1000.0) as i16).collect();
-    goes_on(&counts, 50);
-    let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-    goes_on(&fixed, I16F16::from_num(0.05));
+    check(0.05_f32, 1.0);
+    check(50_i16, 1000.0);
+    check(I16F16::from_num(0.05), 1.0);
 }

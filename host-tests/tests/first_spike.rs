@@ -1,7 +1,9 @@
 //! Time to first spike: slot `N - 1 - cell`, of even points, or of what lies above thresholds.
 
-use crate::common::timing::{Lined, assert_law, beside, check, rising};
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::timing::{Lined, assert_law, beside, check};
+use crate::common::{
+    between, cases, drawn_recordings, flight_channels, hostile_recordings, ranges,
+};
 use fixed::types::{I16F16, I32F0};
 use host_tests::reference::{edge, first_spike_above, first_spike_linear, log_thresholds};
 use proptest::prelude::*;
@@ -116,17 +118,17 @@ fn a_neuron_with_a_leak() {
 #[test]
 fn refusals() {
     let empty = |cell, cells| Some(ConfigError::EmptyCell { cell, cells });
-    let told = |result: Result<FirstSpike<i16, 4>, _>| result.err();
+    let error = |result: Result<FirstSpike<i16, 4>, _>| result.err();
     let names = |result: Result<FirstSpike<i16, 4>, ConfigError>| {
         result.unwrap_err().to_string().split(' ').next().unwrap().to_owned()
     };
-    assert_eq!(told(FirstSpike::try_linear(0..=2)), empty(2, 4));
-    assert_eq!(told(FirstSpike::try_new(0..=9, [-1, 2, 3, 4])), empty(0, 5));
-    assert_eq!(told(FirstSpike::try_new(0..=9, [1, 2, 3, 9])), empty(4, 5));
-    assert_eq!(told(FirstSpike::try_logarithmic(0..=100, 1000.0)), empty(1, 5));
+    assert_eq!(error(FirstSpike::try_linear(0..=2)), empty(2, 4));
+    assert_eq!(error(FirstSpike::try_new(0..=9, [-1, 2, 3, 4])), empty(0, 5));
+    assert_eq!(error(FirstSpike::try_new(0..=9, [1, 2, 3, 9])), empty(4, 5));
+    assert_eq!(error(FirstSpike::try_logarithmic(0..=100, 1000.0)), empty(1, 5));
     assert_eq!(names(FirstSpike::try_new(0..=9, [1, 2, 2, 4])), "edges");
     assert_eq!(
-        told(FirstSpike::try_new(0..=9, [1, 3, 2, 4])),
+        error(FirstSpike::try_new(0..=9, [1, 3, 2, 4])),
         Some(ConfigError::NotRising { parameter: "edges", index: 2, value: 2.0, previous: 3.0 })
     );
     assert_eq!(names(FirstSpike::try_linear(3..=3)), "min");
@@ -158,30 +160,24 @@ fn flights_and_hostile_recordings() {
         check_linear::<f32, 7>([-1e-40, 1e-40], &x);
         check_log::<f32, 8>([0.0, f32::MAX], 256.0, &x);
     }
+    // Drawn once, and wrong then.
+    check_log::<f32, 11>([2.332_518_9e-35, 2.693_714_6], 346.597_08, &[0.25, 1.25, 1.125, 0.625]);
+    check_log::<f32, 11>([-1e38, 3.119_407e-39], 642.818_05, &[0.0]);
 }
 
-fn drawn<S: Lined + Drawn>() {
-    proptest!(cases(48), |(x in S::recordings(), a in S::value(), b in S::value(), ratio in crate::common::between(1.5, 999.0))| {
-        let range = rising(a, b);
-        prop_assume!(range[0] < range[1]);
-        check_linear::<S, 2>(range, &x);
-        check_linear::<S, 13>(range, &x);
-        check_linear::<S, 256>(range, &x);
-        check_log::<S, 2>(range, 16.0, &x);
-        check_log::<S, 16>(range, 256.0, &x);
-        check_log::<S, 11>(range, ratio, &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Lined, 48, (x in S::recordings(), range in ranges::<S>(), ratio in between(1.5, 999.0)) => {
+    check_linear::<S, 2>(range, &x);
+    check_linear::<S, 13>(range, &x);
+    check_linear::<S, 256>(range, &x);
+    check_log::<S, 2>(range, 16.0, &x);
+    check_log::<S, 16>(range, 256.0, &x);
+    check_log::<S, 11>(range, ratio, &x);
+});
 
 /// `f32` next to every edge.
 #[test]
 fn beside_the_edges() {
-    proptest!(cases(128), |(min in -3.0_f32..3.0, width in crate::common::between(0.01, 5.0))| {
+    proptest!(cases(128), |(min in -3.0_f32..3.0, width in between(0.01, 5.0))| {
         let range = [min, min + width];
         let edges = (1..16).map(|c| edge(range[0], range[1], 2 * c - 1, 30));
         check_linear::<f32, 16>(range, &beside(edges));

@@ -120,22 +120,22 @@ fn ends_in_two_threads() {
         ours.lost()
     }
     fn drain(mut end: impl Source, producer: &thread::ScopedJoinHandle<u32>) -> [u32; 3] {
-        let (mut next, mut taken, mut told) = (0, 0, 0);
+        let (mut next, mut taken, mut reported) = (0, 0, 0);
         loop {
             let is_over = producer.is_finished();
             while let Some(Taken { lost, item }) = end.take() {
                 next += lost;
                 assert_eq!(item.tick().micros(), next);
-                (next, taken, told) = (next + 1, taken + 1, told + lost);
+                (next, taken, reported) = (next + 1, taken + 1, reported + lost);
             }
             if is_over {
-                return [next, taken, told];
+                return [next, taken, reported];
             }
         }
     }
-    let assert_whole = |[next, taken, told]: [u32; 3], lost| {
+    let assert_whole = |[next, taken, reported]: [u32; 3], lost| {
         assert_eq!(taken + lost, ITEMS);
-        assert_eq!(told + (ITEMS - next), lost);
+        assert_eq!(reported + (ITEMS - next), lost);
     };
     let mut queue = spsc::Queue::<Taken, 8>::new();
     let (producer, consumer) = queue.split();

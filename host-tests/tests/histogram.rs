@@ -1,7 +1,7 @@
 //! Histogram and quantiles.
 
-use crate::common::{Drawn, HOSTILE, cases, flight_channels, in_every_type};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{HOSTILE, drawn_recordings, flights, ranges};
+use fixed::types::I8F8;
 use host_tests::compare::{Wire, finite};
 use host_tests::reference::{even_cell, histogram, quantile_centres};
 use proptest::prelude::*;
@@ -109,30 +109,20 @@ fn constants_and_refusals() {
     );
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        check::<f32, 32>(-4.0, 4.0, 1000, &channel);
-        check::<f32, 7>(-0.1, 0.3, u16::MAX, &channel);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        check::<_, 32>(I16F16::from_num(-4), I16F16::from_num(4), 500, &fixed);
-    }
-}
+flights!(S: Wire, |x, unit| {
+    let at = |value: f64| S::from_f64(value * unit);
+    check::<S, 32>(at(-4.0), at(4.0), 1000, &x);
+    check::<S, 7>(at(-0.1), at(0.3), u16::MAX, &x);
+});
 
-fn drawn<S: Wire + Drawn>() {
-    let cases = &cases(64);
-    proptest!(cases, |((x, a, b, limit) in (S::recordings(), S::value(), S::value(), 1..70_u16))| {
-        let (min, max) = if a < b { (a, b) } else { (b, a) };
-        prop_assume!(min < max);
-        check::<S, 1>(min, max, limit, &x);
-        check::<S, 8>(min, max, limit, &x);
-        check::<S, 1000>(min, max, limit, &x);
-    });
-}
+drawn_recordings!(S: Wire, 64, (x in S::recordings(), [min, max] in ranges::<S>(), limit in 1..70_u16) => {
+    check::<S, 1>(min, max, limit, &x);
+    check::<S, 8>(min, max, limit, &x);
+    check::<S, 1000>(min, max, limit, &x);
+});
 
 #[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
+fn hostile() {
     check::<f32, 9>(-1e-45, 1e-45, 9, &HOSTILE);
     check::<f32, 9>(f32::MIN, f32::MAX, 9, &HOSTILE);
 }

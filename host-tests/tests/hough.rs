@@ -2,15 +2,14 @@
 //! `r[i+j] -= h[j]`.
 
 use crate::common::rate::{
-    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
+    all_lengths, drawn_recordings, few_lengths, least, pairs_of_8_bits, spikes_of, triangle,
 };
-use crate::common::{flight_channels, hostile_recordings};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{flights, hostile_recordings};
+use fixed::types::I8F8;
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::hough;
 use proptest::prelude::*;
 use spikewire::rate::{Hough, Taps};
-use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference.
 fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], shift: S) {
@@ -40,34 +39,10 @@ fn cases_by_hand() {
     }
 }
 
-#[test]
-fn waits_for_the_look_ahead() {
-    let taps = Taps::try_new([1.0_f32, 1.0, 1.0]).unwrap();
-    let scheme = Hough::new(taps);
-    assert_eq!((scheme.latency(), Hough::<f32, 3>::LATENCY), (2, 2));
-    let mut encoder = scheme.encoder();
-    let x = [1.0, f32::NAN, 1.0, 1.0, f32::NAN, 1.0];
-    let outputs = x.map(|x| encoder.encode(x));
-    assert_eq!(outputs, [None, None, None, Some(Spike::Up), None, Some(Spike::None)]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, None));
-    assert!(encoder.finish().eq([Spike::None; 2]));
-    assert_eq!(encoder.finish_next(), None);
-}
-
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        let shift = channel.iter().copied().fold(f32::INFINITY, f32::min);
-        all_lengths!(check, f32, &triangle(0.1), &channel, shift);
-        all_lengths!(check, f32, &triangle(1.0), &channel, shift);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        check::<I16F16, 8>(&first_taps(&triangle(0.1)), &fixed, I16F16::from_num(shift));
-        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-        check::<I8F8, 8>(&first_taps(&triangle(0.1)), &fixed, I8F8::from_num(shift));
-        let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-        check::<i16, 8>(&first_taps(&triangle(13.0)), &counts, (shift * 100.0) as i16);
-    }
-}
+flights!(S: Wire, |x, unit| {
+    few_lengths!(check, S, &triangle(0.1 * unit), &x, least(&x));
+    few_lengths!(check, S, &triangle(unit), &x, least(&x));
+});
 
 #[test]
 fn hostile() {
@@ -87,14 +62,13 @@ fn all_pairs_of_8_bits() {
         let taps = Taps::try_new(taps.map(I8F8::from_bits)).unwrap();
         let h = reals(taps.as_array());
         let scheme = Hough::new(taps);
-        let mut encoder = scheme.encoder();
         for pair in pairs_of_8_bits() {
             let pair = pair.map(I8F8::from_bits);
-            encoder.reset();
-            let mut spikes: Vec<_> =
-                pair.iter().filter_map(|&r| encoder.encode(r)).map(Spike::sign).collect();
-            spikes.extend(encoder.finish().map(Spike::sign));
-            assert_eq!(spikes, hough(&pair.map(Wire::real), &h, 0.0, true), "{pair:?}");
+            assert_eq!(
+                spikes_of(&scheme, &pair),
+                hough(&pair.map(Wire::real), &h, 0.0, true),
+                "{pair:?}"
+            );
         }
     }
     check([1]);
@@ -103,15 +77,4 @@ fn all_pairs_of_8_bits() {
     check([1, 1]);
     check([3, -2]);
     check([0, 100]);
-}
-
-/// Room beyond the spikes is not written to.
-#[test]
-fn a_decoded_slice_ends_with_its_spikes() {
-    let scheme = Hough::new(Taps::try_new([1.0_f32, 2.0, 3.0, 4.0]).unwrap());
-    let mut decoder = scheme.decoder();
-    let mut values = [-1.0; 8];
-    assert_eq!(decoder.decode_slice(&[Spike::Up, Spike::None], &mut values), 2);
-    assert_eq!(values, [1.0, 2.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0]);
-    assert_eq!(decoder.decode(Spike::None), 3.0);
 }

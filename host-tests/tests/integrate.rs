@@ -1,10 +1,12 @@
 //! Integrate-and-fire against its transcription, and its laws.
 
-use fixed::types::{I8F8, I16F16};
+use crate::common::refused;
+use crate::sigma_delta::{Check, in_every_type};
+use fixed::types::I16F16;
 use proptest::prelude::*;
 use spikewire::rate::IntegrateAndFire;
 use spikewire::temporal::Steps;
-use spikewire::{ConfigError, Sample, Scheme};
+use spikewire::{Sample, Scheme};
 
 use catalogue::plain::Plain;
 use catalogue::schemes::integrate::{transcribed, transcribed_decoder};
@@ -27,28 +29,28 @@ pub(crate) fn drawn() -> impl Strategy<Value = Vec<i16>> {
     proptest::collection::vec(-4000_i16..=4000, 1..200)
 }
 
-/// Encoder and decoder against the transcriptions, in every sample type: counts as they are, and 256 of them a 1.
-pub(crate) fn agrees(x: &[i16], threshold: i16, power: u8, is_leaky: bool) {
-    agrees_in(x, threshold, power, is_leaky);
-    let of = |x: i16| f32::from(x) / 256.0;
-    agrees_in(&x.iter().map(|&x| of(x)).collect::<Vec<_>>(), of(threshold), power, is_leaky);
-    let of = I8F8::from_bits;
-    agrees_in(&x.iter().map(|&x| of(x)).collect::<Vec<_>>(), of(threshold), power, is_leaky);
-    let of = |x: i16| I16F16::from_bits(i32::from(x) << 8);
-    agrees_in(&x.iter().map(|&x| of(x)).collect::<Vec<_>>(), of(threshold), power, is_leaky);
+/// Encoder and decoder against the transcriptions, with this threshold in counts.
+pub(crate) struct Agrees {
+    pub(crate) threshold: i16,
+    pub(crate) power: u8,
+    pub(crate) is_leaky: bool,
 }
 
-fn agrees_in<S: Plain>(x: &[S], threshold: S, power: u8, is_leaky: bool) {
-    let scheme = IntegrateAndFire::<S, 4>::new(threshold, power);
-    let scheme = if is_leaky { scheme.leaky() } else { scheme };
-    let mut counts = vec![0; x.len()];
-    transcribed(x, threshold, is_leaky.then_some(power), 4, &mut counts);
-    assert_eq!(counts_of(&scheme, x), counts);
-    let mut values = vec![S::default(); x.len()];
-    transcribed_decoder(&counts, threshold, power, &mut values);
-    let mut decoder = scheme.decoder();
-    let ours: Vec<S> = counts.iter().map(|&count| decoder.decode(Steps::new(count))).collect();
-    assert_eq!(ours, values);
+impl Check for Agrees {
+    fn check<S: Plain>(&mut self, x: &[S], of: impl Fn(i16) -> S) {
+        let Self { threshold, power, is_leaky } = *self;
+        let threshold = of(threshold);
+        let scheme = IntegrateAndFire::<S, 4>::new(threshold, power);
+        let scheme = if is_leaky { scheme.leaky() } else { scheme };
+        let mut counts = vec![0; x.len()];
+        transcribed(x, threshold, is_leaky.then_some(power), 4, &mut counts);
+        assert_eq!(counts_of(&scheme, x), counts);
+        let mut values = vec![S::default(); x.len()];
+        transcribed_decoder(&counts, threshold, power, &mut values);
+        let mut decoder = scheme.decoder();
+        let ours: Vec<S> = counts.iter().map(|&count| decoder.decode(Steps::new(count))).collect();
+        assert_eq!(ours, values);
+    }
 }
 
 /// How far each decoded value is from the same leaky mean of the samples.
@@ -113,35 +115,35 @@ fn integers_do_not_wrap() {
 
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
-    let parameter = |scheme: Result<Neuron<f32, 4>, ConfigError>| match scheme.unwrap_err() {
-        ConfigError::NotPositive { parameter, .. }
-        | ConfigError::NotFinite { parameter, .. }
-        | ConfigError::OutOfRange { parameter, .. } => parameter,
-        error => panic!("{error}"),
-    };
-    assert_eq!(parameter(Neuron::try_new(0.0, 3)), "threshold");
-    assert_eq!(parameter(Neuron::try_new(1e32, 3)), "threshold");
-    assert_eq!(parameter(Neuron::try_new(1.0, 0)), "power of the mean");
-    assert_eq!(parameter(Neuron::try_new(1.0, 16)), "power of the mean");
-    assert_eq!(parameter(Neuron::new(1.0, 3).try_with_reference(f32::NAN)), "reference");
-    assert_eq!(parameter(Neuron::new(1.0, 3).try_with_most(5)), "most spikes a sample");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(0.0, 3)), "threshold");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(1e32, 3)), "threshold");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(1.0, 0)), "power of the mean");
+    assert_eq!(refused(Neuron::<f32, 4>::try_new(1.0, 16)), "power of the mean");
+    assert_eq!(refused(Neuron::<_, 4>::new(1.0, 3).try_with_reference(f32::NAN)), "reference");
+    assert_eq!(refused(Neuron::<f32, 4>::new(1.0, 3).try_with_most(5)), "most spikes a sample");
+}
+
+#[test]
+fn a_sample_has_as_many_slots_as_spikes() {
+    assert_eq!(Neuron::<f32, 4>::new(1.0, 3).slots(), 4);
+    assert_eq!(Neuron::<f32, 127>::new(1.0, 3).with_most(4).slots(), 4);
 }
 
 proptest! {
     #[test]
     fn as_transcribed(x in drawn(), threshold in 1_i16..2000, power in 1_u8..8) {
-        agrees(&x, threshold, power, false);
+        in_every_type(&x, Agrees { threshold, power, is_leaky: false });
     }
 
     /// The spikes tell the integral of the samples, to less than one.
     #[test]
     fn the_integral_never_drifts(x in drawn(), threshold in 512_i16..4000, reference in -90_i16..90) {
         let scheme = Neuron::<i16, 8>::new(threshold, 3).with_reference(reference);
-        let (mut sum, mut told) = (0, 0);
+        let (mut sum, mut coded) = (0, 0);
         for (count, x) in counts_of(&scheme, &x).into_iter().zip(x) {
             sum += i32::from(x) - i32::from(reference);
-            told += i32::from(count) * i32::from(threshold);
-            prop_assert!((sum - told).abs() < i32::from(threshold));
+            coded += i32::from(count) * i32::from(threshold);
+            prop_assert!((sum - coded).abs() < i32::from(threshold));
         }
     }
 

@@ -1,7 +1,9 @@
 //! Latency-phase: neurons fire at the first peak of their oscillation from the latency on.
 
-use crate::common::timing::{Lined, assert_law, beside, check, code_of, rising, spikes_of};
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::timing::{Lined, assert_law, beside, check, code_of, spikes_of};
+use crate::common::{
+    between, cases, drawn_recordings, flight_channels, hostile_recordings, ranges,
+};
 use fixed::types::I16F16;
 use host_tests::reference::{Oscillation, edge, latency_phase, latency_phase_decode};
 use proptest::prelude::*;
@@ -77,12 +79,12 @@ fn any_spikes_are_decoded() {
 
 #[test]
 fn refusals() {
-    let told =
+    let says =
         |result: Result<LatencyPhase<i16, 2, 16, 4>, ConfigError>| result.unwrap_err().to_string();
-    assert_eq!(told(LatencyPhase::try_new(0..=99, 0)), "spacing 0 must lie in 1..=2");
-    assert_eq!(told(LatencyPhase::try_new(0..=99, 3)), "spacing 3 must lie in 1..=2");
+    assert_eq!(says(LatencyPhase::try_new(0..=99, 0)), "spacing 0 must lie in 1..=2");
+    assert_eq!(says(LatencyPhase::try_new(0..=99, 3)), "spacing 3 must lie in 1..=2");
     let phased = LatencyPhase::try_new(0..=99, 1).unwrap().try_with_phase(4);
-    assert_eq!(told(phased), "phase 4 must lie in 0..=3");
+    assert_eq!(says(phased), "phase 4 must lie in 0..=3");
     let coarse = LatencyPhase::<i16, 2, 16, 4>::try_new(0..=9, 1);
     assert_eq!(coarse.err(), Some(ConfigError::EmptyCell { cell: 2, cells: 16 }));
     let of = |neurons, latencies, period| {
@@ -113,27 +115,18 @@ fn flights_and_hostile_recordings() {
     }
 }
 
-fn drawn<S: Lined + Drawn>() {
-    proptest!(cases(48), |(x in S::recordings(), a in S::value(), b in S::value(), phase in 0..4_u16)| {
-        let range = rising(a, b);
-        prop_assume!(range[0] < range[1]);
-        check_phases::<S, 1, 2, 1>(range, 1, 0, &x);
-        check_phases::<S, 1, 16, 4>(range, 4, phase, &x);
-        check_phases::<S, 4, 16, 4>(range, 1, phase, &x);
-        check_phases::<S, 3, 20, 16>(range, 5, phase, &x);
-        check_phases::<S, 2, 129, 128>(range, 64, phase, &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Lined, 48, (x in S::recordings(), range in ranges::<S>(), phase in 0..4_u16) => {
+    check_phases::<S, 1, 2, 1>(range, 1, 0, &x);
+    check_phases::<S, 1, 16, 4>(range, 4, phase, &x);
+    check_phases::<S, 4, 16, 4>(range, 1, phase, &x);
+    check_phases::<S, 3, 20, 16>(range, 5, phase, &x);
+    check_phases::<S, 2, 129, 128>(range, 64, phase, &x);
+});
 
 /// `f32` next to every edge.
 #[test]
 fn beside_the_edges() {
-    proptest!(cases(128), |(min in -3.0_f32..3.0, width in crate::common::between(0.01, 5.0))| {
+    proptest!(cases(128), |(min in -3.0_f32..3.0, width in between(0.01, 5.0))| {
         let range = [min, min + width];
         let edges = (1..32).map(|c| edge(range[0], range[1], c, 32));
         check_phases::<f32, 4, 32, 4>(range, 1, 0, &beside(edges));

@@ -14,9 +14,10 @@
 //! | after a keyframe a decoder holds the encoder's base | here; with losses `link_outage` and `faults` |
 //! | scaling by powers of two scales, and changes no spike | here |
 //! | a larger threshold gives no more spikes: TBR and MW, not SF | here |
+//! | step codes go on from the last value of a past | here; the moving window's in `moving_window` |
 
 use crate::common::{cases, in_every_type};
-use catalogue::{Channel, Flight, State};
+use catalogue::{Channel, Flight, State, Storable};
 use fixed::types::I16F16;
 use host_tests::compare::{Wire, decode, encode};
 use host_tests::flight;
@@ -27,7 +28,9 @@ use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::{
     AdaptiveContrast, AdaptiveStepForward, MovingWindow, SendOnDelta, StepForward, TemporalContrast,
 };
-use spikewire::{Code, ConfigError, NeuronSpike, Output, Recovery, Sample, Scheme, Spike, Start};
+use spikewire::{
+    Code, ConfigError, NeuronSpike, Output, Polarity, Recovery, Sample, Scheme, Spike, Start,
+};
 
 /// What a decoder beside the encoder holds after each sample, from the first sample on.
 fn followed<P: Start>(scheme: &P, x: &[P::Sample]) -> Vec<P::Sample> {
@@ -136,6 +139,31 @@ fn hough_never_exceeds_the_signal() {
     });
 }
 
+/// Of a past only the last value counts; an empty one changes nothing, and one whose last value is not finite is counted.
+#[test]
+fn step_codes_go_on_from_the_last_value_of_a_past() {
+    fn check<P: Start<Sample = f32>>(scheme: &P) {
+        let mut encoder = scheme.encoder();
+        for (past, rejected, keyframe) in [
+            (&[][..], 0, None),
+            (&[9.0, f32::NAN], 1, None),
+            (&[f32::NAN, 9.0, 2.0], 1, Some(2.0)),
+            (&[], 1, Some(2.0)),
+            (&[f32::NEG_INFINITY], 2, Some(2.0)),
+        ] {
+            encoder.prime(past);
+            assert_eq!((encoder.rejected(), encoder.keyframe()), (rejected, keyframe), "{past:?}");
+        }
+        let code = encoder.encode(3.5).code().unwrap();
+        assert!(code.firings().map(|firing| firing.polarity).eq([Polarity::Up]));
+    }
+    check(&TemporalContrast::new(1.0));
+    check(&AdaptiveContrast::new(1.0, 4));
+    check(&StepForward::new(1.0));
+    check(&AdaptiveStepForward::new(1.0, 4));
+    check(&SendOnDelta::<_, 4>::new(1.0));
+}
+
 /// From the start, and after any past as soon as the past is forgotten: at once, in a window's length, or where the
 /// baseline has come near.
 #[test]
@@ -219,12 +247,12 @@ fn scaling_by_powers_of_two_scales() {
         let (mut encoder, mut scaled) = (one.encoder(), other.encoder());
         let (mut decoder, mut decoder_scaled) = (one.decoder(), other.decoder());
         for &x in x {
-            let (code, own) = (encoder.encode(x).code(), scaled.encode(scale * x).code());
+            let (code, twin) = (encoder.encode(x).code(), scaled.encode(scale * x).code());
             let firings = |code: P::Code| code.firings().collect::<Vec<_>>();
-            assert_eq!(code.map(firings), own.map(firings), "{x} times {scale}");
-            if let (Some(code), Some(own)) = (code, own) {
+            assert_eq!(code.map(firings), twin.map(firings), "{x} times {scale}");
+            if let (Some(code), Some(twin)) = (code, twin) {
                 let value = (scale * decoder.decode(code)).to_bits();
-                assert_eq!(value, decoder_scaled.decode(own).to_bits());
+                assert_eq!(value, decoder_scaled.decode(twin).to_bits());
             }
         }
     }
@@ -345,16 +373,13 @@ impl<S: Sample> Flight for Laws<S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         let start = postcard::to_allocvec(&start).unwrap();
         let whole = in_pieces(scheme, &start, &self.samples, &[1]);
         let pieces = in_pieces(scheme, &start, &self.samples, &self.lengths);

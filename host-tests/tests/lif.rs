@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use spikewire::Scheme;
 
-use crate::integrate::{Neuron, SIGNAL, agrees, counts_of, drawn, mean_error};
+use crate::integrate::{Agrees, Neuron, SIGNAL, counts_of, drawn, mean_error};
+use crate::sigma_delta::in_every_type;
 
 const TEN: Neuron<i16, 1> = Neuron::new(10, 3).leaky();
 
@@ -24,7 +25,7 @@ fn a_small_signal_is_silent() {
 proptest! {
     #[test]
     fn as_transcribed(x in drawn(), threshold in 1_i16..2000, power in 1_u8..8) {
-        agrees(&x, threshold, power, true);
+        in_every_type(&x, Agrees { threshold, power, is_leaky: true });
     }
 
     #[test]

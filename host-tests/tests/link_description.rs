@@ -1,6 +1,7 @@
 //! A sender and a receiver that have other schemes: no value is exact, for any code, from the first frame or from later on.
 
-use catalogue::{Channel, Flight, State};
+use crate::beside::{CHANNELS, Items, slot_ticks};
+use catalogue::{Channel, Flight, Storable};
 use fixed::types::I16F16;
 use host_tests::flight;
 use spikewire::filter::{Biquad, FirstOrder};
@@ -10,26 +11,15 @@ use spikewire::link::{
 use spikewire::population::Position;
 use spikewire::temporal::{SendOnDelta, StepForward, TemporalContrast};
 use spikewire::{
-    Bank, ConfigError, Fingerprint, FromItems, Item, Put, Recovery, Sample, SampleKind, Scheme,
-    Start, Tick,
+    Bank, ConfigError, Fingerprint, FromItems, Recovery, Sample, SampleKind, Scheme, Start, Tick,
 };
 
-const CHANNELS: usize = 2;
 const EVENTS: usize = 256;
 const PERIOD: u16 = 2_500;
 const SAMPLES: usize = 120;
 const BEAT: usize = 8;
 /// Equal channels in their order, and in the other one.
 const LABELS: [&str; 2] = ["2500 us; gyro_x; gyro_y", "2500 us; gyro_y; gyro_x"];
-
-#[derive(Default)]
-struct Items(Vec<Item>);
-
-impl Put for &mut Items {
-    fn put(&mut self, item: Item) {
-        self.0.push(item);
-    }
-}
 
 /// What a sender with a description sent.
 struct Sent {
@@ -76,11 +66,6 @@ fn heard<'a, P: Scheme, const N: usize>(
     (exact, receiver.withheld(0))
 }
 
-fn slot_ticks<P: Scheme>(scheme: &P) -> u32 {
-    let has_slots = scheme.slots() > 1 && P::RECOVERY != Recovery::Keyframe;
-    if has_slots { u32::from(PERIOD) / scheme.slots() as u32 } else { 0 }
-}
-
 /// Every code once as a sender; then as a receiver of all that was sent.
 struct Pairs<'a, S> {
     samples: &'a [S],
@@ -94,17 +79,14 @@ impl<S: Sample> Flight for Pairs<'_, S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
-        let slot_ticks = slot_ticks(scheme);
+    ) -> Result<(), ConfigError> {
+        let slot_ticks = slot_ticks(scheme, PERIOD.into());
         let start = postcard::to_allocvec(&start).unwrap();
         let states = [(); CHANNELS].map(|()| (scheme, postcard::from_bytes(&start).unwrap()));
         let mut bank = Bank::per_channel_with_states(states).with_slot_ticks(slot_ticks);
@@ -211,8 +193,8 @@ fn never<P: Start<Sample = f32>, const N: usize, const M: usize>(
 #[test]
 fn no_mistake_in_a_description_goes_unnoticed() {
     let thresholds: Vec<f32> = (1..=8).map(|step| step as f32 * 0.02).collect();
-    let schemes: Vec<_> = thresholds.iter().map(|&own| StepForward::new(own)).collect();
-    let send: Vec<_> = thresholds.iter().map(|&own| SendOnDelta::<f32, 16>::new(own)).collect();
+    let schemes: Vec<_> = thresholds.iter().map(|&step| StepForward::new(step)).collect();
+    let send: Vec<_> = thresholds.iter().map(|&step| SendOnDelta::<f32, 16>::new(step)).collect();
     let mut pairs = 0;
     for (at, one) in schemes.iter().enumerate() {
         for (other_at, other) in schemes.iter().enumerate().filter(|(place, _)| *place != at) {
@@ -282,7 +264,7 @@ fn the_fingerprint_comes_soon_and_costs_a_byte_a_frame() {
     {
         let mut bank = Bank::<_, 1>::new(&STEP);
         let mut link = Transmitter::for_bank(&bank, 2_500, Session::counted(7));
-        let (mut told, mut frames, mut silent) = (0, 0, 0);
+        let (mut described, mut frames, mut silent) = (0, 0, 0);
         let mut before = Tick::from(0);
         for number in 0..2_000 {
             let tick = Tick::from(number * pause);
@@ -298,7 +280,7 @@ fn the_fingerprint_comes_soon_and_costs_a_byte_a_frame() {
                 frames += 1;
                 if let Some(fingerprint) = view.fingerprint() {
                     assert_eq!(fingerprint, bank.fingerprint());
-                    told += 1;
+                    described += 1;
                     before = tick;
                 }
                 silent = silent.max(tick.since(before));
@@ -309,7 +291,7 @@ fn the_fingerprint_comes_soon_and_costs_a_byte_a_frame() {
             "{pause}: {silent} µs without a fingerprint"
         );
         let is_frequent = pause <= 125_000;
-        assert!(4 * told <= frames + 4 || !is_frequent, "{told} in {frames} frames");
+        assert!(4 * described <= frames + 4 || !is_frequent, "{described} in {frames} frames");
     }
 }
 
@@ -354,6 +336,6 @@ fn a_described_sender_is_not_believed_before_its_fingerprint() {
     let receiver = || Receiver::per_channel([&POSITION; 2]);
     assert_eq!(heard(receiver(), &without), (0, Some(Withheld::Unknown)));
     assert!(heard(receiver(), &frames).0 > 100);
-    let told = receiver().with_fingerprint(Fingerprint::from_bits(9)).fingerprint();
-    assert_eq!(told.bits(), 9);
+    let fingerprint = receiver().with_fingerprint(Fingerprint::from_bits(9)).fingerprint();
+    assert_eq!(fingerprint.bits(), 9);
 }

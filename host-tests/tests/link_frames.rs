@@ -2,6 +2,7 @@
 
 use core::num::NonZeroU16;
 
+use crate::beside::session_from;
 use proptest::prelude::*;
 use spikewire::link::{
     Coding, FrameView, Framer, LinkError, MAX_FRAME, MIN_FRAME, Reader, Received, Session,
@@ -28,17 +29,19 @@ fn keyframe<S: Sample>(tick: u32, address: u16, value: S) -> Keyframe {
     Keyframe::new(tick.into(), address, value)
 }
 
-fn any_event() -> impl Strategy<Value = Event> {
-    let tick = prop_oneof![0_u32..10, 0_u32..100_000, any::<u32>()];
+/// Events at these ticks.
+fn events_at(tick: impl Strategy<Value = u32>) -> impl Strategy<Value = Event> {
     let address = prop_oneof![0_u16..6, any::<u16>()];
     (tick, address, any::<bool>()).prop_map(|(tick, address, is_up)| event(tick, address, is_up))
 }
 
+fn any_event() -> impl Strategy<Value = Event> {
+    events_at(prop_oneof![0_u32..10, 0_u32..100_000, any::<u32>()])
+}
+
 /// Events as a sender has them, whose time does not go back far.
 fn steady_event() -> impl Strategy<Value = Event> {
-    let (tick, address) =
-        (prop_oneof![0_u32..10, 0_u32..60_000], prop_oneof![0_u16..6, any::<u16>()]);
-    (tick, address, any::<bool>()).prop_map(|(tick, address, is_up)| event(tick, address, is_up))
+    events_at(prop_oneof![0_u32..10, 0_u32..60_000])
 }
 
 fn any_coding() -> impl Strategy<Value = Coding> {
@@ -97,7 +100,7 @@ fn the_bytes_are_those_of_the_specification() {
 
 #[test]
 fn errors_are_told_in_words() {
-    for (error, told) in [
+    for (error, message) in [
         (LinkError::Truncated { needed: 22, found: 7 }, "the frame has 22 bytes, but 7 are here"),
         (LinkError::NotAFrame { found: 9 }, "a frame does not begin with 0x09"),
         (LinkError::Version { found: 2 }, "version 2 of the link is not known"),
@@ -107,7 +110,7 @@ fn errors_are_told_in_words() {
         ),
         (LinkError::Full, "the frame is full"),
     ] {
-        assert_eq!(error.to_string(), told);
+        assert_eq!(error.to_string(), message);
     }
 }
 
@@ -540,19 +543,19 @@ fn sessions_do_not_meet() {
 #[test]
 fn an_earlier_session_that_goes_on_is_a_start() {
     let (three, five) = (session(3, 60), session(5, 40));
-    let (told, reader) = read(three[..35].iter().chain(&five[..2]).chain(&three[35..]));
-    assert_eq!(told.len(), 35 + 2 + 10);
-    assert_eq!(told[37], (3, 35 + 15, 0, true));
+    let (taken, reader) = read(three[..35].iter().chain(&five[..2]).chain(&three[35..]));
+    assert_eq!(taken.len(), 35 + 2 + 10);
+    assert_eq!(taken[37], (3, 35 + 15, 0, true));
     assert_eq!(reader.late(), 15);
 
-    let (told, reader) = read(three[..35].iter().chain(&five[..2]).chain(&three));
-    assert_eq!(told.len(), 35 + 2 + 45);
-    assert_eq!(told[37], (3, 15, 0, true), "a session that is used again, too");
+    let (taken, reader) = read(three[..35].iter().chain(&five[..2]).chain(&three));
+    assert_eq!(taken.len(), 35 + 2 + 45);
+    assert_eq!(taken[37], (3, 15, 0, true), "a session that is used again, too");
     assert_eq!(reader.late(), 15);
 
     let between = (0..30).flat_map(|n| [&three[n], &five[n]]);
-    let (told, reader) = read(between);
-    assert_eq!((told.len(), reader.late()), (1 + 30, 29), "never while the present one goes on");
+    let (taken, reader) = read(between);
+    assert_eq!((taken.len(), reader.late()), (1 + 30, 29), "never while the present one goes on");
 }
 
 #[test]
@@ -560,10 +563,10 @@ fn frames_sent_twice_or_late_are_delivered_once() {
     let frames = session(1, 600);
     let order = [0, 0, 1, 3, 2, 2, 3, 4, 4, 1, 300, 200, 45, 44, 43];
     let (read, reader) = read(order.map(|number| &frames[number]));
-    let told: Vec<_> =
+    let taken: Vec<_> =
         read.iter().map(|&(_, place, lost, is_start)| (place, lost, is_start)).collect();
     let expected = [(0, 0, true), (1, 0, false), (3, 1, false), (4, 0, false), (300, 295, false)];
-    assert_eq!(told, expected, "one of more than 256 back is late, too");
+    assert_eq!(taken, expected, "one of more than 256 back is late, too");
     assert_eq!((reader.repeated(), reader.late()), (2 + 1, 3 + 4));
 }
 
@@ -571,7 +574,7 @@ fn frames_sent_twice_or_late_are_delivered_once() {
 fn what_was_on_its_way_before_a_reboot_is_late() {
     let sessions: Vec<_> = (1..6).map(|number| session(number, 300)).collect();
     let frame = |session: usize, number: usize| &sessions[session][number];
-    let (told, reader) = read([
+    let (taken, reader) = read([
         frame(0, 0),
         frame(1, 0),
         frame(0, 1),
@@ -580,18 +583,19 @@ fn what_was_on_its_way_before_a_reboot_is_late() {
         frame(0, 2),
         frame(2, 1),
     ]);
-    assert_eq!(told, [(1, 0, 0, true), (2, 0, 0, true), (3, 0, 0, true), (3, 1, 0, false)]);
+    assert_eq!(taken, [(1, 0, 0, true), (2, 0, 0, true), (3, 0, 0, true), (3, 1, 0, false)]);
     assert_eq!(reader.late(), 3);
     // Up to 255 frames after what was delivered of it, a session was on its way; farther on it has gone on.
     for (number, is_start) in [(256, false), (257, true)] {
-        let (told, reader) = read([frame(0, 0), frame(1, 0), frame(0, number)]);
-        assert_eq!((told.len(), reader.late()), if is_start { (3, 0) } else { (2, 1) }, "{number}");
-        assert_eq!(reader.frames() as usize, told.len());
+        let (taken, reader) = read([frame(0, 0), frame(1, 0), frame(0, number)]);
+        let expected = if is_start { (3, 0) } else { (2, 1) };
+        assert_eq!((taken.len(), reader.late()), expected, "{number}");
+        assert_eq!(reader.frames() as usize, taken.len());
     }
     // A number that comes again much later is a session of its own.
-    let (told, reader) =
+    let (taken, reader) =
         read(sessions[0][..1].iter().chain(&sessions[1][..256]).chain(&sessions[0][1..3]));
-    assert_eq!(told[256..], [(2, 255, 0, false), (1, 1, 0, true), (1, 2, 0, false)]);
+    assert_eq!(taken[256..], [(2, 255, 0, false), (1, 1, 0, true), (1, 2, 0, false)]);
     assert_eq!(reader.late(), 0);
 }
 
@@ -600,8 +604,8 @@ fn what_was_on_its_way_before_a_reboot_is_late() {
 fn the_time_of_a_sender_goes_on() {
     const MOST: u64 = 1 << 30;
     let mut framer = Framer::new(Coding::for_channels(1, 1), Session::random(9));
-    let mut send = |told: &[u64], at: u64| {
-        for &now in told {
+    let mut send = |observed: &[u64], at: u64| {
+        for &now in observed {
             framer.observe(Tick::from_micros(now));
         }
         let mut buffer = [0; MIN_FRAME];
@@ -613,9 +617,9 @@ fn the_time_of_a_sender_goes_on() {
     assert_eq!(send(&[], start), (start, false, 0));
     assert_eq!(send(&[], start + MOST), (start + MOST, false, 0));
     let mut now = start + MOST;
-    let told: Vec<u64> = (1..=50).map(|step| now + step * MOST).collect();
-    now = told[49] - 300; // an item may be older than the time
-    assert_eq!(send(&told, now), (now, false, 0));
+    let observed: Vec<u64> = (1..=50).map(|step| now + step * MOST).collect();
+    now = observed[49] - 300; // an item may be older than the time
+    assert_eq!(send(&observed, now), (now, false, 0));
     assert_eq!(send(&[], now - 1_000), (now - 1_000, false, 0), "and out of order");
     assert_eq!(send(&[], now + MOST), (now + MOST, true, 1));
     assert_eq!(send(&[], now), (now, false, 1));
@@ -640,31 +644,26 @@ fn a_frame_that_lasts_minutes_is_no_silence() {
 /// A first frame is a start, wherever its number lies: ahead of what came, behind it, or the same.
 #[test]
 fn a_first_frame_is_a_start_unless_it_is_the_one_that_came() {
-    // The bits that `Session` spreads to this number.
-    let inverse = (0..6).fold(0x9E37_79B9_7F4A_7C15_u64, |inverse, _| {
-        inverse.wrapping_mul(2_u64.wrapping_sub(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(inverse)))
-    });
-    let at = |first: u64, address| {
-        frames_of(Session::random((first << 16).wrapping_mul(inverse)), address, 40)
-    };
+    let at = |first, address| frames_of(session_from(first), address, 40);
+    let goes_on = |&(_, _, lost, is_start): &(u16, u32, u32, bool)| lost == 0 && !is_start;
     let old = at(1_000, 1);
     for first in [1_000, 1_001, 1_019, 1_020, 1_021, 1_300, 900, 999, 1_000 + (1 << 24)] {
         let new = at(first, 2);
-        let (told, reader) = read(old[..20].iter().chain(&new));
-        assert_eq!(told[20..].len(), 40, "{first}");
-        assert_eq!((told[20], reader.late()), ((2, 0, 0, true), 0), "{first}");
-        assert!(told[21..].iter().all(|&(_, _, lost, is_start)| lost == 0 && !is_start), "{first}");
+        let (taken, reader) = read(old[..20].iter().chain(&new));
+        assert_eq!(taken[20..].len(), 40, "{first}");
+        assert_eq!((taken[20], reader.late()), ((2, 0, 0, true), 0), "{first}");
+        assert!(taken[21..].iter().all(goes_on), "{first}");
     }
     // The frame that came, once more or late, is none.
-    let (told, reader) = read(old[..20].iter().chain(&old[..1]).chain(&old[20..]));
-    assert_eq!((told.len(), reader.late()), (40, 1));
-    let (told, reader) = read(old[..1].iter().chain(&old[..1]));
-    assert_eq!((told.len(), reader.repeated()), (1, 1));
+    let (taken, reader) = read(old[..20].iter().chain(&old[..1]).chain(&old[20..]));
+    assert_eq!((taken.len(), reader.late()), (40, 1));
+    let (taken, reader) = read(old[..1].iter().chain(&old[..1]));
+    assert_eq!((taken.len(), reader.repeated()), (1, 1));
     // Without its first frame, a session that comes again shows by other bytes of the frame that came last.
     let again = at(1_000, 3);
-    let (told, _) = read(old[..20].iter().chain(&again[15..]));
-    assert_eq!(told[20], (3, 19, 0, true));
-    assert!(told[21..].iter().all(|&(_, _, lost, is_start)| lost == 0 && !is_start));
+    let (taken, _) = read(old[..20].iter().chain(&again[15..]));
+    assert_eq!(taken[20], (3, 19, 0, true));
+    assert!(taken[21..].iter().all(goes_on));
 }
 
 /// What a gap and what a start is, by numbers and by times.
@@ -681,7 +680,7 @@ fn gaps_end_where_no_outage_lasts() {
         bytes.extend(crc32(&bytes).to_le_bytes());
         bytes
     };
-    let told = |number: u64, tick: u32| {
+    let heard = |number: u64, tick: u32| {
         let mut reader = Reader::<MIN_FRAME>::new();
         let stream = [frame(1 << 30, 1_000_000), frame(number, tick)].concat();
         let mut input = &stream[..];
@@ -704,6 +703,6 @@ fn gaps_end_where_no_outage_lasts() {
         (next - 300, 1_000_000 + 65_536, None),
         (next - 300, 1_000_000 + 65_537, Some((None, true))),
     ] {
-        assert_eq!(told(number, tick), expected, "{number} at {tick}");
+        assert_eq!(heard(number, tick), expected, "{number} at {tick}");
     }
 }

@@ -6,7 +6,8 @@
 
 use std::collections::VecDeque;
 
-use catalogue::{Channel, Flight, State};
+use crate::beside::{Beside, CHANNELS, Items, read, session_from, slot_ticks};
+use catalogue::{Channel, Flight, State, Storable};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -14,26 +15,14 @@ use spikewire::link::{
     CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Reader, Receiver, Session, Transmitter,
 };
 use spikewire::{
-    Bank, Code, ConfigError, Fingerprint, FromItems, Item, Output, Put, Recovery, Sample, Scheme,
-    Tick,
+    Bank, ConfigError, Fingerprint, FromItems, Item, Put, Recovery, Sample, Scheme, Tick,
 };
 
-const CHANNELS: usize = 2;
 /// The most events of a sample, over both channels.
 const EVENTS: usize = 256;
 /// How many samples back a value may be.
 const REMEMBERED: usize = 12_000;
 const YEAR: u64 = 365 * 24 * 3_600 * 1_000_000;
-
-/// What an interrupt puts into a queue.
-#[derive(Default)]
-struct Items(Vec<Item>);
-
-impl Put for &mut Items {
-    fn put(&mut self, item: Item) {
-        self.0.push(item);
-    }
-}
 
 /// What was claimed, and how much of it was wrong.
 #[derive(Clone, Copy, Debug, Default)]
@@ -89,11 +78,8 @@ struct World<'a, P: Scheme> {
     transmitter: Transmitter,
     items: Items,
     // The truth.
-    encoders: [P::EncoderState; CHANNELS],
-    decoders: [P::DecoderState; CHANNELS],
+    beside: Beside<'a, P>,
     truth: VecDeque<Truth<P::Sample>>,
-    /// Samples since a channel had a spike.
-    silent: [u32; CHANNELS],
     /// The number of the next sample, and of the first one that main has not sent.
     number: u64,
     unsent: Option<u64>,
@@ -106,14 +92,7 @@ struct World<'a, P: Scheme> {
     claims: Claims,
 }
 
-fn again<T: State>(bytes: &[u8]) -> T {
-    postcard::from_bytes(bytes).unwrap()
-}
-
-impl<'a, P> World<'a, P>
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+impl<'a, P: Storable> World<'a, P> {
     fn new(
         scheme: &'a P,
         start: &P::EncoderState,
@@ -123,8 +102,8 @@ where
         let mut random = Pcg32::seed_from_u64(seed);
         let start = postcard::to_allocvec(start).unwrap();
         let period = [1_000, 2_500, 4_999][random.next_u32() as usize % 3];
-        let has_slots = scheme.slots() > 1 && P::RECOVERY != Recovery::Keyframe;
-        let slot_ticks = if has_slots { period / scheme.slots() as u32 } else { 0 };
+        let slot_ticks = slot_ticks(scheme, period);
+        let has_slots = slot_ticks > 0;
         let least = if has_slots { slot_ticks } else { period };
         let jitter = [0, (least - 1) / 8][random.next_u32() as usize % 2];
         // A clock of which the receiver knows little takes more heartbeats.
@@ -164,10 +143,8 @@ where
             bank: bank(scheme, &start, slot_ticks),
             transmitter: transmitter(period, Session::counted(session), Fingerprint::from_bits(0)),
             items: Items::default(),
-            encoders: [(); CHANNELS].map(|()| again(&start)),
-            decoders: [(); CHANNELS].map(|()| scheme.decoder_state()),
+            beside: Beside::new(scheme, &start),
             truth: VecDeque::new(),
-            silent: [0; CHANNELS],
             number: 0,
             unsent: None,
             claimed: [0; CHANNELS],
@@ -216,8 +193,7 @@ where
             _ => self.last.wrapping_add(1 + ahead),
         };
         self.first = first & ((1 << 48) - 1);
-        // The bits that `Session` spreads to this number.
-        Session::random((self.first << 16).wrapping_mul(inverse(0x9E37_79B9_7F4A_7C15)))
+        session_from(self.first)
     }
 
     /// The sender starts again, after any time of which nobody knows; `is_heard` if its first frame arrives.
@@ -240,8 +216,7 @@ where
         self.items.0.clear();
         self.bank = bank(self.scheme, &self.start, self.slot_ticks);
         self.transmitter = transmitter(self.period, session, self.bank.fingerprint());
-        self.encoders = [(); CHANNELS].map(|()| again(&self.start));
-        self.decoders = [(); CHANNELS].map(|()| self.scheme.decoder_state());
+        self.beside = Beside::new(self.scheme, &self.start);
         self.truth.clear();
         let mut frame = [0; 64];
         let mut first = self.transmitter; // a copy
@@ -249,7 +224,6 @@ where
         let bytes = first.next_frame(FromItems([beat].into_iter()), &mut frame).unwrap();
         self.first = FrameView::new(bytes.unwrap()).unwrap().0.number();
         (self.last, self.is_first_heard) = (self.first, false);
-        self.silent = [0; CHANNELS];
         self.unsent = None;
         self.claimed = [0; CHANNELS];
     }
@@ -268,25 +242,13 @@ where
         self.bank.encode_into(Tick::from_micros(self.taken), samples, &mut self.items);
         let mut values =
             self.truth.back().map_or([P::Sample::default(); CHANNELS], |last| last.values);
-        for channel in 0..CHANNELS {
-            let state = &mut self.encoders[channel];
-            if let Some(code) = self.scheme.encode(state, samples[channel]).code() {
-                let has_spike = code.firings().next().is_some();
-                self.silent[channel] = if has_spike { 0 } else { self.silent[channel] + 1 };
-                values[channel] = self.scheme.decode(&mut self.decoders[channel], code);
-            }
-        }
+        self.beside.sample(samples, &mut values);
         if self.truth.len() == REMEMBERED {
             self.truth.pop_front();
         }
         self.truth.push_back(Truth { number: self.number, time: self.taken, values });
         self.unsent.get_or_insert(self.number);
         self.number += 1;
-    }
-
-    /// Whether the code counts samples.
-    fn counts(&self) -> bool {
-        !matches!(self.scheme.recovery(), Recovery::Keyframe | Recovery::Spike)
     }
 
     /// How late a sample is: half a period or more, which codes that count samples notice up to five eighths.
@@ -296,7 +258,7 @@ where
             return 0;
         }
         let period = u64::from(self.period);
-        let most = if self.counts() { 5 * period / 8 } else { period };
+        let most = if self.beside.counts() { 5 * period / 8 } else { period };
         period / 2 + 1 + self.draw(most - period / 2 - 1)
     }
 
@@ -309,7 +271,7 @@ where
         let step = self.draw(far).cast_signed();
         let back = step.min(self.now.cast_signed() - i64::from(2 * self.period)).max(0);
         self.now = self.now.wrapping_add_signed(if self.draw(2) == 0 { step } else { -back });
-        if self.counts() || self.slot_ticks > 0 {
+        if self.beside.counts() || self.slot_ticks > 0 {
             (&mut self.items).put(Item::Break(Tick::from_micros(self.now)));
         }
     }
@@ -326,12 +288,8 @@ where
     /// A keyframe of each channel that has one, or a heartbeat, after the last sample.
     fn beat(&mut self) {
         self.bank.keyframe_into(Tick::from_micros(self.taken), &mut self.items);
-        let Some(last) = self.truth.back_mut() else { return };
-        for channel in 0..CHANNELS {
-            if let Some(value) = self.scheme.keyframe(&self.encoders[channel]) {
-                self.scheme.resync(&mut self.decoders[channel], value);
-                last.values[channel] = value;
-            }
+        if let Some(last) = self.truth.back_mut() {
+            self.beside.keyframe(&mut last.values);
         }
     }
 
@@ -394,20 +352,20 @@ where
         for channel in 0..CHANNELS {
             let Some(value) = after[channel] else { continue };
             let was_exact = before[channel].is_some();
-            let own: Vec<_> =
-                self.values.iter().filter(|told| usize::from(told.0) == channel).collect();
-            let first = if was_exact && are_all_told { 0 } else { own.len().saturating_sub(1) };
-            if let Some(last) = own.last() {
+            let heard: Vec<_> =
+                self.values.iter().filter(|claimed| usize::from(claimed.0) == channel).collect();
+            let first = if was_exact && are_all_told { 0 } else { heard.len().saturating_sub(1) };
+            if let Some(last) = heard.last() {
                 assert_eq!(last.2.to_bits32(), value.to_bits32());
             }
-            for &&(_, tick, told) in &own[first..] {
+            for &&(_, tick, claimed) in &heard[first..] {
                 let from = self.truth.partition_point(|truth| truth.number < self.claimed[channel]);
                 // Ticks come again after 2³² µs: of samples with such a tick one has the value.
                 let is_near = |truth: &&Truth<P::Sample>| {
                     tick.since(Tick::from_micros(truth.time)).unsigned_abs() <= self.near
                 };
                 let is_told = |truth: &&Truth<P::Sample>| {
-                    truth.values[channel].to_bits32() == told.to_bits32()
+                    truth.values[channel].to_bits32() == claimed.to_bits32()
                 };
                 if let Some(truth) = self.truth.range(from..).filter(is_near).find(is_told) {
                     self.claimed[channel] = truth.number;
@@ -472,7 +430,7 @@ where
 
     /// The signal rests; if the code is then at rest too, for a long time without a sample.
     fn rest(&mut self, loss: f64) {
-        let needed = self.recovery() as u32 + 40;
+        let needed = self.beside.recovery() + 40;
         let all = self.samples;
         let lowest = |a: &P::Sample, b: &P::Sample| if b < a { *b } else { *a };
         let lowest = all.iter().fold(all[0], |a, b| lowest(&a, b));
@@ -482,23 +440,16 @@ where
             self.sample(resting);
         }
         self.send(loss);
-        if self.silent.iter().all(|&silent| silent >= needed) {
+        if self.beside.silent.iter().all(|&silent| silent >= needed) {
             let span = self.span();
             self.pass(span);
-        }
-    }
-
-    fn recovery(&self) -> usize {
-        match self.scheme.recovery() {
-            Recovery::Samples(samples) | Recovery::TimedKeyframe(samples) => samples,
-            Recovery::Keyframe | Recovery::Spike | Recovery::Fading(_) => 0,
         }
     }
 
     /// The link is whole again for as long as the code needs: then all is known.
     fn whole(&mut self) {
         // A sender whose first frame was lost tells its fingerprint with every fourth frame at the latest.
-        let samples = 6 * self.beat + self.recovery() as u32 + 5;
+        let samples = 6 * self.beat + self.beside.recovery() + 5;
         let from = self.truth.len();
         let is_attack = std::mem::take(&mut self.is_attack);
         for sample in 1..=samples {
@@ -511,18 +462,7 @@ where
         }
         self.is_attack = is_attack;
         for channel in 0..CHANNELS {
-            let is_due = match P::RECOVERY {
-                Recovery::Keyframe => true,
-                Recovery::TimedKeyframe(_) => {
-                    self.scheme.keyframe(&self.encoders[channel]).is_some()
-                }
-                Recovery::Samples(_) => {
-                    self.scheme.recovery() != Recovery::Spike || self.silent[channel] < self.beat
-                }
-                Recovery::Spike => self.silent[channel] < self.beat,
-                Recovery::Fading(_) => false,
-            };
-            let is_due = is_due && from > 0;
+            let is_due = from > 0 && self.beside.is_due(channel, self.beat);
             let is_there = self.receiver.exact(channel as u16).is_some();
             self.claims.due += u64::from(is_due);
             self.claims.withheld += u64::from(is_due && !is_there);
@@ -560,19 +500,13 @@ where
 }
 
 impl Claims {
-    fn add<S: Sample>(&mut self, told: S, truth: S) {
-        if told.to_bits32() == truth.to_bits32() {
+    fn add<S: Sample>(&mut self, claimed: S, truth: S) {
+        if claimed.to_bits32() == truth.to_bits32() {
             self.right += 1;
         } else {
             self.wrong += 1;
         }
     }
-}
-
-/// The inverse of an odd number modulo 2⁶⁴.
-fn inverse(odd: u64) -> u64 {
-    (0..6)
-        .fold(odd, |inverse, _| inverse.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(inverse))))
 }
 
 fn transmitter(period: u32, session: Session, fingerprint: Fingerprint) -> Transmitter {
@@ -584,7 +518,7 @@ fn bank<'a, P>(scheme: &'a P, start: &[u8], slot_ticks: u32) -> Bank<&'a P, CHAN
 where
     P: Scheme<EncoderState: State>,
 {
-    let states = [(); CHANNELS].map(|()| again(start));
+    let states = [(); CHANNELS].map(|()| read(start));
     Bank::with_states(scheme, states).with_slot_ticks(slot_ticks)
 }
 
@@ -602,16 +536,13 @@ impl<S: Sample> Flight for Outages<S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         let mut sum = 0;
         for seed in self.seeds.clone() {
             let mut world = World::new(scheme, &start, &self.samples, (seed, self.is_attack));
@@ -639,44 +570,42 @@ fn claims<S: Sample>(unit: f64, seeds: std::ops::Range<u64>, turns: u32, is_atta
     visitor.claims
 }
 
-#[test]
-fn what_is_called_exact_is_so_after_any_outage() {
-    assert!(claims::<f32>(1.0, 0..1, 8, false) > 20_000);
-    assert!(claims::<i16>(1000.0, 1..2, 8, false) > 20_000);
+fn some_claims(turns: u32, is_attack: bool) {
+    assert!(claims::<f32>(1.0, 0..1, turns, is_attack) > 20_000);
+    assert!(claims::<i16>(1000.0, 1..2, turns, is_attack) > 20_000);
 }
 
-/// The same for 10⁸ claims.
-#[test]
-#[ignore = "minutes"]
-fn what_is_called_exact_is_so_after_a_hundred_million() {
+/// Goes on with further seeds until there are so many claims.
+fn all_claims(wanted: u64, first_seed: u64, is_attack: bool) {
     let mut sum = 0;
-    for round in (1_000..).step_by(20) {
-        sum += claims::<f32>(1.0, round..round + 10, 60, false);
-        sum += claims::<i16>(1000.0, round + 10..round + 20, 60, false);
+    for seed in (first_seed..).step_by(20) {
+        sum += claims::<f32>(1.0, seed..seed + 10, 60, is_attack);
+        sum += claims::<i16>(1000.0, seed + 10..seed + 20, 60, is_attack);
         println!("{sum} claims");
-        if sum > 100_000_000 {
+        if sum > wanted {
             break;
         }
     }
+}
+
+#[test]
+fn what_is_called_exact_is_so_after_any_outage() {
+    some_claims(8, false);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn what_is_called_exact_is_so_after_a_hundred_million() {
+    all_claims(100_000_000, 1_000, false);
 }
 
 #[test]
 fn an_attack_makes_nothing_wrong_exact() {
-    assert!(claims::<f32>(1.0, 0..1, 12, true) > 20_000);
-    assert!(claims::<i16>(1000.0, 1..2, 12, true) > 20_000);
+    some_claims(12, true);
 }
 
-/// The same for 2 · 10⁷ claims.
 #[test]
 #[ignore = "minutes"]
 fn an_attack_of_twenty_million_makes_nothing_wrong_exact() {
-    let mut sum = 0;
-    for round in (5_000..).step_by(20) {
-        sum += claims::<f32>(1.0, round..round + 10, 60, true);
-        sum += claims::<i16>(1000.0, round + 10..round + 20, 60, true);
-        println!("{sum} claims");
-        if sum > 20_000_000 {
-            break;
-        }
-    }
+    all_claims(20_000_000, 5_000, true);
 }

@@ -9,13 +9,19 @@ use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
 use spikewire::temporal::{AdaptiveStepForward, StepForward};
 use spikewire::timing::FirstSpike;
 use spikewire::{
-    Bank, EventQueue, FromItems, Item, Keyframe, Output, Overflow, Recovery, Sample, Source, Spike,
-    Start, Tick, dynamic,
+    Bank, Event, EventQueue, FromItems, Item, Keyframe, Output, Overflow, Polarity, Recovery,
+    Sample, Scheme, Schemes, Spike, Start, Tick, dynamic,
 };
 
 const CHANNELS: usize = 2;
 const PERIOD: u32 = 1_000;
 const SAMPLES: u32 = 600;
+
+static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
+static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
+static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
+static STEP: StepForward<f32> = StepForward::new(0.5);
+static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
 
 /// How a run goes.
 #[derive(Clone, Copy, Debug)]
@@ -117,7 +123,6 @@ fn check<P: Start<Sample = f32>>(scheme: &'static P, slot_ticks: u32, jitter: u3
 
 #[test]
 fn rate_codes_are_exact_again_after_their_filter() {
-    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
     static THRESHOLD: ThresholdHough<f32, 7> = ThresholdHough::new(Taps::triangular(0.5), 0.2);
     static TOOLBOX: BsaToolbox<f32, 7> = BsaToolbox::new(Taps::triangular(0.5), 0.9);
     for jitter in [0, 124] {
@@ -129,18 +134,49 @@ fn rate_codes_are_exact_again_after_their_filter() {
 
 #[test]
 fn population_codes_are_exact_again_at_their_next_spike() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
-    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
     check(&POSITION, 0, 0);
     check(&POSITION, 0, 499);
     check(&SLOTS, PERIOD / 50, 0);
 }
 
+/// A transmitter, and the reader at the far end.
+struct Line {
+    transmitter: Transmitter,
+    reader: Reader<MAX_FRAME>,
+}
+
+impl Line {
+    /// A line for these channels, with a sample every `period` µs.
+    fn new(channels: u16, period: u16) -> Self {
+        let coding = Coding::for_channels(channels, period);
+        Self { transmitter: Transmitter::new(coding, Session::counted(1)), reader: Reader::new() }
+    }
+
+    /// Sends items, and returns the values of the samples that they end, each with its channel.
+    fn send<T: Schemes<N>, const N: usize, const EVENTS: usize>(
+        &mut self,
+        items: impl IntoIterator<Item = Item>,
+        receiver: &mut Receiver<T, N, EVENTS>,
+    ) -> Vec<(u16, <T::Scheme as Scheme>::Sample)> {
+        let (mut source, mut buffer) = (FromItems(items.into_iter()), [0; MAX_FRAME]);
+        let mut values = Vec::new();
+        while let Some(mut bytes) = self.transmitter.next_frame(&mut source, &mut buffer).unwrap() {
+            while let Some(received) = self.reader.next_frame(&mut bytes) {
+                receiver.apply(&received, |channel, _, value| values.push((channel, value)));
+            }
+        }
+        values
+    }
+}
+
+/// A spike of channel 1 at this time.
+fn spike_at(micros: u64) -> Item {
+    Item::Event(Event { tick: Tick::from_micros(micros), address: 1, polarity: Polarity::Up })
+}
+
 /// An event without room belongs to a channel that is not exact until it has recovered.
 #[test]
 fn a_sample_with_more_events_than_there_is_room_for_is_not_exact() {
-    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
-    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
     for seed in 0..10 {
         let way = Way { seed, jitter: 0, loss: 0, slot_ticks: 0 };
         assert!(run::<_, 1>(&HOUGH, wave, way) > 20);
@@ -152,19 +188,13 @@ fn a_sample_with_more_events_than_there_is_room_for_is_not_exact() {
 /// What `advance` does for a value that nothing follows.
 #[test]
 fn a_sample_is_over_when_time_has_passed() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
-    let queue = EventQueue::<8>::new(Overflow::Refuse);
     let mut bank = Bank::<_, 1>::new(&POSITION);
-    let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), Session::counted(1));
     let mut receiver = Receiver::<_, 1>::new(&POSITION);
-    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut items = Vec::new();
     for (tick, sample) in [(1_000, 0.5), (2_000, 1.0)] {
-        bank.encode_into(Tick::from(tick), [sample], &queue);
+        bank.encode(Tick::from(tick), [sample], |event| items.push(Item::Event(event)));
     }
-    let mut buffer = [0; 64];
-    let mut consumer = queue.consumer().unwrap();
-    let mut bytes = transmitter.next_frame(&mut consumer, &mut buffer).unwrap().unwrap();
-    receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+    Line::new(9, 1_000).send(items, &mut receiver);
     assert_eq!(receiver.exact(0), None, "before the first sample something may have been lost");
     receiver.advance(Tick::from(2_400), |_, _, _| ());
     assert_eq!(receiver.exact(0), None);
@@ -176,9 +206,7 @@ fn a_sample_is_over_when_time_has_passed() {
 
 #[test]
 fn what_does_not_belong_is_counted() {
-    use spikewire::{Event, Polarity};
-    static STEP: StepForward<f32> = StepForward::new(0.5);
-    assert_eq!(<StepForward<f32> as spikewire::Scheme>::RECOVERY, Recovery::Keyframe);
+    assert_eq!(<StepForward<f32> as Scheme>::RECOVERY, Recovery::Keyframe);
     let tick = Tick::from(5);
     let items = [
         Item::Keyframe(Keyframe::new(tick, 10, 1.5_f32)),
@@ -188,14 +216,7 @@ fn what_does_not_belong_is_counted() {
         Item::Event(Event { tick, address: 10, polarity: Polarity::Up }),
     ];
     let mut receiver = Receiver::<_, 2, 0>::new(&STEP).with_first_address(10);
-    let mut reader = Reader::<MAX_FRAME>::new();
-    let mut transmitter = Transmitter::new(Coding::for_channels(2, 1), Session::counted(1));
-    let mut source = FromItems(items.into_iter());
-    let mut buffer = [0; 64];
-    while let Some(mut bytes) = transmitter.next_frame(&mut source, &mut buffer).unwrap() {
-        receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
-    }
-    assert!(source.take().is_none());
+    Line::new(2, 1).send(items, &mut receiver);
     assert_eq!((receiver.exact(0), receiver.exact(1)), (Some(2.0), None));
     assert_eq!((receiver.outside(), receiver.misfits()), (2, 1));
     assert_eq!(f32::from_bits32(2.0_f32.to_bits32()), 2.0);
@@ -203,7 +224,6 @@ fn what_does_not_belong_is_counted() {
 
 #[test]
 fn a_first_address_can_be_set_at_run_time() {
-    static STEP: StepForward<f32> = StepForward::new(0.5);
     let receiver = || Receiver::<_, 2, 0>::new(&STEP);
     let mut behind = receiver().with_slot_ticks(7).try_with_first_address(10).unwrap();
     assert_eq!(
@@ -212,14 +232,10 @@ fn a_first_address_can_be_set_at_run_time() {
     );
     let items =
         [9, 10].map(|address| Item::Keyframe(Keyframe::new(Tick::from(5), address, 1.5_f32)));
-    let mut transmitter = Transmitter::new(Coding::for_channels(2, 1), Session::counted(1));
-    let mut buffer = [0; 64];
-    let mut source = FromItems(items.into_iter());
-    let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
-    let mut reader = Reader::<MAX_FRAME>::new();
-    behind.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+    let mut line = Line::new(2, 1);
+    line.send(items, &mut behind);
     assert_eq!((behind.exact(0), behind.outside()), (Some(1.5), 1));
-    assert_eq!((reader.frames(), transmitter.leaps()), (1, 0));
+    assert_eq!((line.reader.frames(), line.transmitter.leaps()), (1, 0));
     let error = receiver().try_with_first_address(0xFFFF).err().unwrap();
     assert_eq!(error.to_string(), "first address 65535 must lie in 0..=65534");
 }
@@ -241,24 +257,22 @@ fn a_transmitter_counts_the_silences_that_it_cannot_measure() {
 #[test]
 fn what_is_withheld_has_a_reason_in_words() {
     let slots = Withheld::Slots { slots: 50, slot_ticks: 21, period: 1_000 };
-    for (reason, told) in [
+    for (reason, message) in [
         (Withheld::Keyframe, "no keyframe since the start or the last loss"),
         (Withheld::Samples(3), "3 more samples without a loss are needed"),
         (slots, "50 sub-timesteps of 21 µs are longer than the link's period of 1000 µs"),
         (Withheld::Always, "the error of this code fades, and is never 0"),
     ] {
-        assert_eq!(reason.to_string(), told);
+        assert_eq!(reason.to_string(), message);
     }
 }
 
 /// Addresses count neurons: a code of many has as many a channel.
 #[test]
 fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let tick = Tick::from(5);
     let mut receiver = Receiver::<_, 2>::new(&POSITION);
-    let mut reader = Reader::<MAX_FRAME>::new();
-    let mut transmitter = Transmitter::new(Coding::for_channels(18, 1), Session::counted(1));
+    let mut line = Line::new(18, 1);
     let keyframe = |address| Item::Keyframe(Keyframe::new(tick, address, 1.5_f32));
     let heartbeat = |address| Item::Heartbeat { tick, address };
     for (items, outside, misfits) in [
@@ -267,10 +281,7 @@ fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
         ([heartbeat(0), heartbeat(17)], 1, 3),
         ([heartbeat(17), heartbeat(18)], 2, 3),
     ] {
-        let mut source = FromItems(items.into_iter());
-        let mut buffer = [0; 64];
-        let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
-        receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+        line.send(items, &mut receiver);
         assert_eq!((receiver.outside(), receiver.misfits()), (outside, misfits), "{items:?}");
         assert_eq!(receiver.exact(0), None, "the code has no keyframes");
     }
@@ -279,49 +290,33 @@ fn what_does_not_belong_to_a_code_of_many_neurons_is_counted() {
 /// A sample is over when the next begins, or another session: its value comes then, if it had events.
 #[test]
 fn the_last_sample_before_a_restart_is_decoded() {
-    use spikewire::Scheme;
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let mut receiver = Receiver::<_, 1>::new(&POSITION);
-    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut line = Line::new(9, 1_000);
     let mut send = |session, item| {
         let session = Session::counted(session);
-        let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), session);
-        let mut buffer = [0; 64];
-        let mut source = FromItems([item].into_iter());
-        let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
-        let mut values = Vec::new();
-        let frame = reader.next_frame(&mut bytes).unwrap();
-        receiver.apply(&frame, |_, _, value| values.push(value));
-        values
+        line.transmitter = Transmitter::new(Coding::for_channels(9, 1_000), session);
+        line.send([item], &mut receiver)
     };
     let mut event = None;
     Bank::<_, 1>::new(&POSITION).encode(Tick::from(1_000), [0.5], |first| event = Some(first));
     let heartbeat = Item::Heartbeat { tick: Tick::from(9_000), address: 0 };
     assert!(send(1, Item::Event(event.unwrap())).is_empty());
     let value = POSITION.decoder().decode(POSITION.encoder().encode(0.5));
-    assert_eq!(send(2, heartbeat), [value]);
+    assert_eq!(send(2, heartbeat), [(0, value)]);
     assert!(send(3, heartbeat).is_empty(), "no event came since");
 }
 
-/// A link of one bank, whose samples are frames of their own.
-struct Line<'a, P: Start, const N: usize> {
+/// A line behind one bank, whose samples are frames of their own.
+struct Link<'a, P: Start, const N: usize> {
     bank: Bank<&'a P, N>,
-    transmitter: Transmitter,
-    reader: Reader<MAX_FRAME>,
+    line: Line,
     now: Tick,
 }
 
-impl<'a, P: Start, const N: usize> Line<'a, P, N> {
+impl<'a, P: Start, const N: usize> Link<'a, P, N> {
     fn new(scheme: &'a P, slot_ticks: u32) -> Self {
-        Self {
-            bank: Bank::new(scheme).with_slot_ticks(slot_ticks),
-            transmitter: Transmitter::new(
-                Coding::for_channels(8, PERIOD as u16),
-                Session::counted(1),
-            ),
-            reader: Reader::new(),
-            now: Tick::from(77),
-        }
+        let bank = Bank::new(scheme).with_slot_ticks(slot_ticks);
+        Self { bank, line: Line::new(8, PERIOD as u16), now: Tick::from(77) }
     }
 
     /// Sends a sample, with a heartbeat behind it, unless its frames are lost.
@@ -336,9 +331,9 @@ impl<'a, P: Start, const N: usize> Line<'a, P, N> {
         self.bank.encode_into(self.now, [sample; N], &queue);
         self.bank.keyframe_into(self.now, &queue);
         let (mut consumer, mut buffer) = (queue.consumer().unwrap(), [0; MAX_FRAME]);
-        while let Some(mut bytes) = self.transmitter.next_frame(&mut consumer, &mut buffer).unwrap()
-        {
-            while !is_lost && let Some(received) = self.reader.next_frame(&mut bytes) {
+        let Line { transmitter, reader } = &mut self.line;
+        while let Some(mut bytes) = transmitter.next_frame(&mut consumer, &mut buffer).unwrap() {
+            while !is_lost && let Some(received) = reader.next_frame(&mut bytes) {
                 receiver.apply(&received, |_, _, _| ());
             }
         }
@@ -349,9 +344,8 @@ impl<'a, P: Start, const N: usize> Line<'a, P, N> {
 /// Even points have no value for silence: after a loss a sample that is not finite says nothing.
 #[test]
 fn silence_is_exact_only_where_it_has_a_value() {
-    static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
     static ABOVE: FirstSpike<f32, 10> = FirstSpike::logarithmic(0.0..=9.0, 100.0);
-    let mut linear = Line::<_, 1>::new(&LINEAR, 100);
+    let mut linear = Link::<_, 1>::new(&LINEAR, 100);
     let mut receiver = Receiver::new(&LINEAR).with_slot_ticks(100).with_clock_tolerance(0);
     linear.send(1.0, false, &mut receiver);
     assert_eq!(linear.send(1.0, false, &mut receiver), Some(1.0));
@@ -362,25 +356,24 @@ fn silence_is_exact_only_where_it_has_a_value() {
     assert_eq!(linear.send(3.0, false, &mut receiver), Some(3.0));
     assert_eq!(linear.send(f32::NAN, false, &mut receiver), Some(3.0), "it holds");
 
-    let mut above = Line::<_, 1>::new(&ABOVE, 100);
+    let mut above = Link::<_, 1>::new(&ABOVE, 100);
     let mut receiver = Receiver::new(&ABOVE).with_slot_ticks(100).with_clock_tolerance(0);
     above.send(0.0, true, &mut receiver);
     above.send(0.0, false, &mut receiver);
-    let silence = spikewire::Scheme::decoder(&ABOVE).decode(None);
+    let silence = ABOVE.decoder().decode(None);
     assert_eq!(above.send(0.0, false, &mut receiver), Some(silence));
 }
 
 /// Values that sub-timesteps tell are never exact where these are not known, and it is told why.
 #[test]
 fn without_its_sub_timesteps_a_code_has_no_value() {
-    static SLOTS: Slots<f32, 8, 50> = Slots::new(0.0..=2.0, 1.5);
     let fly = |slot_ticks: u32| {
-        let mut line = Line::<_, 1>::new(&SLOTS, 20);
+        let mut link = Link::<_, 1>::new(&SLOTS, 20);
         let mut receiver =
             Receiver::new(&SLOTS).with_slot_ticks(slot_ticks).with_clock_tolerance(0);
-        assert_eq!(line.send(0.7, true, &mut receiver), None);
+        assert_eq!(link.send(0.7, true, &mut receiver), None);
         for sample in [0.5, 1.0, 1.5, 0.2, 0.4] {
-            line.send(sample, false, &mut receiver);
+            link.send(sample, false, &mut receiver);
         }
         (receiver.exact(0).is_some(), receiver.withheld(0))
     };
@@ -398,12 +391,10 @@ fn without_its_sub_timesteps_a_code_has_no_value() {
 #[test]
 fn a_code_of_one_sub_timestep_needs_no_length_of_it() {
     let scheme = dynamic::RankOrder::<f32>::try_linear(9, 1, &(0.0..=2.0)).unwrap();
-    let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), Session::counted(1));
     let mut receiver = Receiver::<_, 1>::new(&scheme);
-    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut line = Line::new(9, 1_000);
     for sample in 0..3 {
-        let frame = spikes_at(&mut transmitter, sample * 1_000);
-        receiver.apply(&reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+        line.send([spike_at(sample * 1_000)], &mut receiver);
     }
     assert_eq!((receiver.exact(0), receiver.withheld(0)), (Some(scheme.centres()[1]), None));
 }
@@ -411,24 +402,16 @@ fn a_code_of_one_sub_timestep_needs_no_length_of_it() {
 /// What a receiver of two channels passes on of keyframes a second apart.
 fn passed_on<P: Start<Sample = f32>>(scheme: &P, address: u16) -> Vec<u16> {
     let mut receiver = Receiver::<_, 2>::new(scheme);
-    let mut reader = Reader::<MAX_FRAME>::new();
-    let mut transmitter = Transmitter::new(Coding::for_channels(9, 1_000), Session::counted(1));
-    let mut channels = Vec::new();
-    for seconds in 1..4_u32 {
-        let keyframe = Keyframe::new(Tick::from(seconds * 1_000_000), address, 1.5_f32);
-        let mut source = FromItems([Item::Keyframe(keyframe)].into_iter());
-        let mut buffer = [0; 64];
-        let mut bytes = transmitter.next_frame(&mut source, &mut buffer).unwrap().unwrap();
-        let frame = reader.next_frame(&mut bytes).unwrap();
-        receiver.apply(&frame, |channel, _, _| channels.push(channel));
-    }
-    channels
+    let mut line = Line::new(9, 1_000);
+    let keyframe = |seconds: u32| Keyframe::new(Tick::from(seconds * 1_000_000), address, 1.5_f32);
+    let keyframes = (1..4).map(|seconds| Item::Keyframe(keyframe(seconds)));
+    let values = keyframes.flat_map(|keyframe| line.send([keyframe], &mut receiver));
+    values.map(|(channel, _)| channel).collect()
 }
 
 /// A keyframe is a sample's end only where samples are counted, and only if it belongs to a channel.
 #[test]
 fn a_keyframe_passes_on_its_own_channel() {
-    static STEP: StepForward<f32> = StepForward::new(0.5);
     static ADAPTIVE: AdaptiveStepForward<f32> = AdaptiveStepForward::new(0.5, 4);
     assert_eq!(passed_on(&STEP, 1), [1, 1, 1]);
     assert!(passed_on(&STEP, 2).is_empty() && passed_on(&ADAPTIVE, 2).is_empty());
@@ -439,28 +422,15 @@ fn a_keyframe_passes_on_its_own_channel() {
 /// Ten sub-timesteps of 20 µs in a period of 1000: what comes later than the last belongs to none.
 #[test]
 fn an_event_after_the_last_sub_timestep_is_a_misfit() {
-    static LINEAR: FirstSpike<f32, 10> = FirstSpike::linear(0.0..=9.0);
     let misfits = |slot: u32| {
-        let mut line = Line::<_, 2>::new(&LINEAR, 20);
+        let mut link = Link::<_, 2>::new(&LINEAR, 20);
         let mut receiver = Receiver::new(&LINEAR).with_slot_ticks(20).with_clock_tolerance(0);
-        line.send(1.0, false, &mut receiver);
-        let at = line.now + PERIOD + slot * 20;
-        let frame = spikes_at(&mut line.transmitter, at.micros().into());
-        receiver.apply(&line.reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+        link.send(1.0, false, &mut receiver);
+        let at = link.now + PERIOD + slot * 20;
+        link.line.send([spike_at(at.micros().into())], &mut receiver);
         receiver.misfits()
     };
     assert_eq!([0, 9, 10, 11].map(misfits), [0, 0, 1, 1]);
-}
-
-/// A frame of events of channel 1 at these samples.
-fn spikes_at(transmitter: &mut Transmitter, micros: u64) -> Vec<u8> {
-    let event = spikewire::Event {
-        tick: Tick::from_micros(micros),
-        address: 1,
-        polarity: spikewire::Polarity::Up,
-    };
-    let mut source = spikewire::FromEvents([event].into_iter());
-    transmitter.next_frame(&mut source, &mut [0; 64]).unwrap().unwrap().to_vec()
 }
 
 /// Each channel's filter runs as empty as it is long, whichever is the first.
@@ -471,16 +441,14 @@ fn filters_of_different_lengths_run_empty_each() {
     };
     let (short, long) = (filter(&[0.2; 3]), filter(&[0.1; 15]));
     let mut receiver = Receiver::<_, 2>::per_channel([&short, &long]);
-    let mut reader = Reader::<MAX_FRAME>::new();
-    let mut transmitter = Transmitter::new(Coding::for_channels(2, 1_000), Session::counted(1));
-    let mut beside = spikewire::Scheme::decoder(&long);
+    let mut line = Line::new(2, 1_000);
+    let mut beside = long.decoder();
     let mut truth = Vec::new();
     let mut exact = 0;
     for sample in 0..200_usize {
         let has_spike = sample % 8 == 0;
         if has_spike {
-            let frame = spikes_at(&mut transmitter, sample as u64 * 1_000);
-            receiver.apply(&reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+            line.send([spike_at(sample as u64 * 1_000)], &mut receiver);
             if let Some(value) = receiver.exact(1) {
                 assert_eq!(value, truth[sample - 1], "{sample}");
                 exact += 1;
@@ -494,25 +462,22 @@ fn filters_of_different_lengths_run_empty_each() {
 /// A filter is empty after any silence, of which the sender was told; and samples go on from there.
 #[test]
 fn a_rate_code_knows_how_long_it_was_silent() {
-    static HOUGH: Hough<f32, 7> = Hough::new(Taps::triangular(0.5));
     const MINUTE: u64 = 60_000_000;
     for minutes in [1, 35, 36, 40, 71, 72, 90, 143, 1_000, 100_000] {
         let mut receiver = Receiver::<_, 2>::new(&HOUGH);
-        let mut reader = Reader::<MAX_FRAME>::new();
-        let mut transmitter = Transmitter::new(Coding::for_channels(2, 1_000), Session::counted(1));
-        let mut beside = spikewire::Scheme::decoder(&HOUGH);
+        let mut line = Line::new(2, 1_000);
+        let mut beside = HOUGH.decoder();
         let silent = minutes * MINUTE + (1 << 32) * (minutes / 90);
         let times = (0..20).chain(silent / 1_000..silent / 1_000 + 20).map(|time| time * 1_000);
         let mut before = (0, 0.0);
         for time in times {
             for now in (before.0..time).step_by(1 << 29) {
-                transmitter.observe(Tick::from_micros(now));
+                line.transmitter.observe(Tick::from_micros(now));
             }
             for _ in 0..(time.saturating_sub(before.0) / 1_000).saturating_sub(1).min(7) {
                 before.1 = beside.decode(Spike::None);
             }
-            let frame = spikes_at(&mut transmitter, time);
-            receiver.apply(&reader.next_frame(&mut &frame[..]).unwrap(), |_, _, _| ());
+            line.send([spike_at(time)], &mut receiver);
             if time > 10_000 {
                 assert_eq!(receiver.exact(1), Some(before.1), "{minutes} minutes, {time}");
             }
@@ -564,12 +529,12 @@ fn fly<P: Start<Sample = f32>>(
             let frame = reader.next_frame(&mut bytes).unwrap();
             let mut last = None;
             receiver.apply(&frame, |_, tick, value| last = Some((tick, value)));
-            if let (Some(told), Some(exact)) = (last, receiver.exact(0)) {
-                assert_eq!(told.1, exact);
+            if let (Some(end), Some(exact)) = (last, receiver.exact(0)) {
+                assert_eq!(end.1, exact);
                 // Where the clock steps, a sample without events is told of where it was due.
                 let is_near =
-                    |tick: Tick| tick.since(told.0).unsigned_abs() <= u32::from(LATE_PERIOD) / 2;
-                let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == told.1);
+                    |tick: Tick| tick.since(end.0).unsigned_abs() <= u32::from(LATE_PERIOD) / 2;
+                let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == end.1);
                 heard.right += usize::from(is_right);
                 heard.wrong += usize::from(!is_right);
             }
@@ -597,7 +562,6 @@ fn a_clock_that_steps_back_before_a_keyframe_makes_nothing_wrong() {
 /// All events of a sample have its tick, so that it ends where another tick begins, however late that is.
 #[test]
 fn samples_of_a_population_code_may_be_late_by_anything() {
-    static POSITION: Position<f32, 9> = Position::linear(0.0..=2.0);
     let period = u32::from(LATE_PERIOD);
     for late in [0, 1, 1_249, 1_250, 1_251, 2_000, 2_499, 7_000] {
         let ticks = (0..300).map(|at| 1_000_000 + at * period + at % 2 * late);

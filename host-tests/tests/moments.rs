@@ -1,7 +1,7 @@
 //! Mean and deviation: exact in fixed point, within rounding in `f32`.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
-use fixed::types::{I8F8, I16F16, I32F0};
+use crate::common::{drawn_recordings, flights, hostile_recordings};
+use fixed::types::{I8F8, I32F0};
 use host_tests::compare::{Wire, finite};
 use proptest::prelude::*;
 use spikewire::{ConfigError, Moments};
@@ -86,15 +86,7 @@ fn more_samples_than_it_takes() {
     assert_eq!(moments.mean(), Ok(3.0));
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        check(&channel);
-        check(&channel.iter().map(|&x| I16F16::from_num(x)).collect::<Vec<_>>());
-        check(&channel.iter().map(|&x| I8F8::from_num(x)).collect::<Vec<_>>());
-        check(&channel.iter().map(|&x| (x * 100.0) as i16).collect::<Vec<_>>());
-    }
-}
+flights!(S: Wire, |x, _unit| check(&x));
 
 #[test]
 fn hostile() {
@@ -103,12 +95,4 @@ fn hostile() {
     }
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let cases = &cases(256);
-    proptest!(cases, |(x in S::recordings())| check(&x));
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Wire, 256, (x in S::recordings()) => check(&x));

@@ -1,6 +1,6 @@
 //! MW, moving window: a spike when the sample leaves the band around the mean of the `N` before.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::{drawn_recordings, flights, flown_channels, hostile_recordings};
 use fixed::types::{I8F8, I16F16, I32F0};
 use host_tests::compare::{
     Wire, assert_same_values, assert_step_spikes, check_step_decoder, decode, encode, finite,
@@ -120,29 +120,32 @@ fn whole_recordings_from_their_first_sample() {
         assert_same_values(&ours, &saturated::<S>(&expected));
         signs[0] != 0
     }
-    let mut count = 0;
-    for channel in flight_channels() {
-        let x = &channel[..300];
-        count += usize::from(check::<_, 6>(x, 0.01));
-        let fixed: Vec<_> = x.iter().map(|&x| I16F16::from_num(x)).collect();
-        count += usize::from(check::<_, 6>(&fixed, I16F16::from_num(0.01)));
-        let fixed: Vec<_> = x.iter().map(|&x| I8F8::from_num(x)).collect();
-        count += usize::from(check::<_, 2>(&fixed, I8F8::DELTA));
+    fn count<S: Wire, const N: usize>(threshold: S) -> usize {
+        flown_channels(1.0).iter().filter(|x| check::<S, N>(&x[..300], threshold)).count()
     }
+    let thresholds = (0.01_f32, I16F16::from_num(0.01), I8F8::DELTA);
+    let count =
+        count::<_, 6>(thresholds.0) + count::<_, 6>(thresholds.1) + count::<_, 2>(thresholds.2);
     assert!(count > 3, "{count} recordings spiked at their first sample");
 }
 
-/// The last `N` of a longer past fill the window; a shorter one is ignored, as is what comes before them.
+/// The last `N` of a longer past fill the window; a shorter one is ignored, as is what comes before them. A window that is
+/// not finite is counted, and ignored.
 #[test]
 fn pasts_of_any_length() {
     let scheme = MovingWindow::<f32, 2>::new(1.0);
     let mut encoder = scheme.encoder();
-    for past in [&[][..], &[9.0], &[f32::NAN]] {
+    for (past, rejected, keyframe) in [
+        (&[][..], 0, None),
+        (&[9.0], 0, None),
+        (&[f32::NAN], 0, None),
+        (&[1.0, f32::NAN], 1, None),
+        (&[f32::NAN, 9.0, 1.0, 2.0], 1, Some(2.0)),
+        (&[f32::INFINITY, 9.0], 2, Some(2.0)),
+    ] {
         encoder.prime(past);
-        assert_eq!((encoder.rejected(), encoder.keyframe()), (0, None), "{past:?}");
+        assert_eq!((encoder.rejected(), encoder.keyframe()), (rejected, keyframe), "{past:?}");
     }
-    encoder.prime(&[f32::NAN, 9.0, 1.0, 2.0]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, Some(2.0)));
     assert_eq!(encoder.encode(2.5), Spike::None);
     assert_eq!(encoder.encode(3.5), Spike::Up);
 }
@@ -180,19 +183,6 @@ fn the_width_of_a_sum_does_not_show() {
 }
 
 #[test]
-fn a_rejected_priming_window_is_counted_and_ignored() {
-    let scheme = MovingWindow::<f32, 2>::try_new(1.0).unwrap();
-    let mut encoder = scheme.encoder();
-    encoder.prime(&[1.0, f32::NAN]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
-    encoder.prime(&[1.0, 2.0]);
-    encoder.prime(&[f32::INFINITY, 9.0]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(2.0)));
-    assert_eq!(encoder.encode(2.5), Spike::None);
-    assert_eq!(encoder.encode(3.5), Spike::Up);
-}
-
-#[test]
 fn the_keyframe_is_the_last_sample_of_a_full_window() {
     let scheme = MovingWindow::<f32, 3>::try_new(1.0).unwrap();
     let mut encoder = scheme.encoder();
@@ -202,20 +192,9 @@ fn the_keyframe_is_the_last_sample_of_a_full_window() {
     }
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        for threshold in [0.01_f32, 0.25] {
-            check_all(&channel, threshold, &channel);
-            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-            check::<_, 6>(&fixed, I16F16::from_num(threshold), &fixed);
-            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-            check::<_, 5>(&fixed, I8F8::from_num(threshold), &fixed);
-            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-            check::<_, 64>(&counts, (threshold * 100.0) as i16, &counts);
-        }
-    }
-}
+flights!(S: Wire, |x, unit| for threshold in [0.01, 0.25] {
+    check_all(&x, S::from_f64(threshold * unit), &x);
+});
 
 #[test]
 fn hostile() {
@@ -270,37 +249,6 @@ fn does_not_drift() {
     assert_eq!(encoder.encode(0.102), Spike::Up);
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let fill = proptest::collection::vec(S::value(), 0..7);
-    let cases = &cases(96);
-    proptest!(cases, |((x, threshold, fill) in (S::recordings(), S::positive(), fill))| {
-        check_all(&x, threshold, &fill);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
-
-/// All sums of a window of two within 8 bits, with all samples, in the middle and at both ends of
-/// the type.
-#[test]
-fn all_pairs_of_8_bits() {
-    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
-        for threshold in [1, 100, i16::MAX] {
-            let scheme = MovingWindow::<I8F8, 2>::try_new(I8F8::from_bits(threshold)).unwrap();
-            let mut encoder = scheme.encoder();
-            let pairs = (from..to).map(|a| (a, a)).chain((from..to).map(|a| (a, a + 1)));
-            for window in pairs.map(|(a, b)| [a, b].map(I8F8::from_bits)) {
-                let before = window.map(Wire::real);
-                for x in (from..=to).map(I8F8::from_bits) {
-                    let expected =
-                        moving_window(&[x.real()], 2, scheme.threshold().real(), Some(&before));
-                    encoder.prime(&window);
-                    assert_eq!([encoder.encode(x).sign()], *expected, "{x} after {window:?}");
-                }
-            }
-        }
-    }
-}
+drawn_recordings!(S: Wire, 96, (x in S::recordings(), threshold in S::positive(), fill in proptest::collection::vec(S::value(), 0..7)) => {
+    check_all(&x, threshold, &fill);
+});

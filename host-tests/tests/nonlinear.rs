@@ -1,12 +1,17 @@
 //! Non-linear receptive fields: the strongest response, and its spikes in slots.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
+use crate::common::{
+    Drawn, between, cases, drawn_recordings, flight_channels, hostile_recordings, in_every_type,
+};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
-use host_tests::compare::{Wire, assert_same_values, check_position, decode, encode, finite};
+use host_tests::compare::{
+    Wire, assert_same_values, check_position, decode, encode, finite, whole,
+};
 use host_tests::reference::{
     companded_centres, field_edges, fields_are_regions, float_levels, integer_levels,
     integer_weighted_mean, level_radii, slots_decode, slots_of_levels, spacing_widths, strongest,
 };
+use proptest::collection::vec;
 use proptest::prelude::*;
 use spikewire::population::{Gaussian, Neuron, NeuronSlots, NonLinearSlots, Position};
 use spikewire::{Code, ConfigError, Histogram, Sample, Scheme};
@@ -65,15 +70,12 @@ macro_rules! fields {
             fn levels(self, centres: &[Self], sigmas: &[f64], n: u16) -> Vec<u16> {
                 let unit = unit::<Self>();
                 let sigmas: Vec<f64> = sigmas.iter().map(|sigma| sigma / unit).collect();
-                let whole = |value: Self| (value.to_f64() / unit) as i64;
                 let centres: Vec<i64> = centres.iter().copied().map(whole).collect();
                 integer_levels(whole(self), &centres, &sigmas, n)
             }
             fn mean(levels: &[u16], centres: &[Self], _: u16) -> Option<Self> {
-                let unit = unit::<Self>();
-                let whole = |value: &Self| (value.to_f64() / unit) as i64;
-                let centres: Vec<i64> = centres.iter().map(whole).collect();
-                integer_weighted_mean(levels, &centres).map(|mean| Self::nearest(mean as f64 * unit))
+                let centres: Vec<i64> = centres.iter().copied().map(whole).collect();
+                integer_weighted_mean(levels, &centres).map(|mean| Self::from_bits32(mean as u32))
             }
             const ROUNDED: f64 = 0.0;
         }
@@ -339,10 +341,10 @@ fn companded_fields_are_regions() {
 /// Companded centres in every type are exact centres, rounded once.
 fn companded_as_drawn<S: Wire + Drawn + PartialOrd>() {
     let companding = prop_oneof![
-        crate::common::between(0.01, 999.0),
+        between(0.01, 999.0),
         (0..=30_u8).prop_map(f32::from).prop_filter("above 0", |&companding| companding > 0.0),
         (1e-30_f32..1e-3),
-        crate::common::positive_float(),
+        f32::positive(),
     ];
     proptest!(cases(32), |(a in S::value(), b in S::value(), companding in companding)| {
         let [min, max] = if a < b { [a, b] } else { [b, a] };
@@ -397,32 +399,21 @@ fn hostile() {
     }
 }
 
-fn drawn<S: Fields + Drawn + PartialOrd>() {
-    let list = proptest::collection::vec(S::value(), 7);
-    let beta = prop_oneof![Just(1.5_f32), crate::common::between(0.3, 4.0)];
-    let widths = proptest::collection::vec(crate::common::between(0.2, 4.0), 7);
-    let cases = &cases(96);
-    proptest!(cases, |((mut list, beta, widths, x, floor) in (list, beta, widths, S::recordings(), 1..10_u16))| {
-        list.sort_by(|a, b| a.partial_cmp(b).unwrap());
-        prop_assume!(list.windows(2).all(|pair| pair[0] < pair[1]));
-        let centres: [S; 7] = list.try_into().unwrap();
-        let mut x = x;
-        x.extend(centres);
-        check_both::<S, 7, 10>(centres, beta, floor, &x);
-        check_both::<S, 7, 256>(centres, beta, 1, &x);
-        let widths: [f32; 7] = widths.try_into().unwrap();
-        let sigmas = widths.map(f64::from);
-        check_winner(Gaussian::try_with_widths(centres, widths), &centres, &sigmas, &x);
-        if let Ok(scheme) = NonLinearSlots::<S, 7, 10>::try_new(centres, widths) {
-            check_slots(&scheme, &sigmas, floor, &x);
-        }
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Fields, 96, (mut list in vec(S::value(), 7), beta in prop_oneof![Just(1.5_f32), between(0.3, 4.0)],
+    widths in vec(between(0.2, 4.0), 7), mut x in S::recordings(), floor in 1..10_u16) => {
+    list.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    prop_assume!(list.windows(2).all(|pair| pair[0] < pair[1]));
+    let centres: [S; 7] = list.try_into().unwrap();
+    x.extend(centres);
+    check_both::<S, 7, 10>(centres, beta, floor, &x);
+    check_both::<S, 7, 256>(centres, beta, 1, &x);
+    let widths: [f32; 7] = widths.try_into().unwrap();
+    let sigmas = widths.map(f64::from);
+    check_winner(Gaussian::try_with_widths(centres, widths), &centres, &sigmas, &x);
+    if let Ok(scheme) = NonLinearSlots::<S, 7, 10>::try_new(centres, widths) {
+        check_slots(&scheme, &sigmas, floor, &x);
+    }
+});
 
 /// The winner of every value is the least `|x - mu| / sigma`, by whole numbers; the lower of two alike.
 #[test]

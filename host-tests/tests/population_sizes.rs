@@ -4,7 +4,7 @@
 //! for integers, and in whole numbers of 2⁻¹⁴⁹ for floats.
 #![allow(clippy::cast_possible_wrap, reason = "there are at most 1024 neurons")]
 
-use crate::common::cases;
+use crate::common::{between, cases};
 use host_tests::compare::{Wire, check_position};
 use host_tests::reference::{even_centres, nearest_even};
 use num_bigint::BigInt;
@@ -168,12 +168,8 @@ fn float_ranges_far_from_zero() {
             assert!(places < 4, "{M}: {min}..={max}");
         }
     }
-    let start = prop_oneof![
-        1.0_f32..9.0,
-        crate::common::between(1e3, 1e7),
-        crate::common::between(1e30, 1e38),
-        crate::common::between(1e-30, 1e-20)
-    ];
+    let start =
+        prop_oneof![1.0_f32..9.0, between(1e3, 1e7), between(1e30, 1e38), between(1e-30, 1e-20)];
     proptest!(cases(6), |(start in start, places in 1..9_u32, more in 0..99_u32)| {
         for start in [start, -start] {
             every_size!(check(start, places, more));

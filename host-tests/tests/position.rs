@@ -1,15 +1,17 @@
 //! Position coding: the neuron with the nearest centre fires; halfway the lower one, outside the one
-//! at that end.
+//! at that end. GRF with one spike is the same with even centres: the nearest has the largest response.
 
-use crate::common;
-
-use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
+use crate::common::{
+    Drawn, HOSTILE, between, cases, flights, float, hostile_recordings, in_every_integer, ranges,
+};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_position, encode, reals};
-use host_tests::reference::{even_centres, gaussian_centres, nearest, nearest_even};
+use host_tests::reference::{
+    even_centres, gaussian_centres, nearest, nearest_even, receptive_field_width,
+};
 use proptest::prelude::*;
 use spikewire::Scheme;
-use spikewire::population::{Neuron, Position};
+use spikewire::population::{Gaussian, Neuron, Position};
 
 /// The user's centres against the reference.
 fn check<S: Wire, const M: usize>(values: [S; M], x: &[S]) {
@@ -33,6 +35,13 @@ fn check_gaussian_spaced<S: Wire, const M: usize>(min: S, max: S, x: &[S]) {
     let values = gaussian_centres(min.to_f64(), max.to_f64(), M);
     let values: Vec<_> = values.into_iter().map(|value| S::nearest(value).real()).collect();
     check_position(&scheme, x, &values, |x| nearest(x, &values));
+}
+
+/// Linear centres, if the type is fine enough for them.
+fn check_linear_if_fine<S: Wire, const M: usize>([min, max]: [S; 2], x: &[S]) {
+    if Position::<S, M>::try_linear(min..=max).is_ok() {
+        check_linear::<S, M>(min, max, x);
+    }
 }
 
 /// Each value, and its neighbours to either side.
@@ -96,7 +105,6 @@ fn linear_centres() {
     assert_eq!(neurons, [0, 0, 1, 1, 2, 2, 2, 3, 3]);
 }
 
-/// What is built at compile time is what is built in flight.
 /// Gaussian-spaced centres in 32 bits are exact centres, rounded once.
 #[test]
 fn gaussian_spaced_centres_are_exact() {
@@ -107,14 +115,14 @@ fn gaussian_spaced_centres_are_exact() {
             assert_eq!(ours, I32F0::nearest(exact));
         }
     }
-    proptest!(cases(64), |(a in I32F0::value(), b in I32F0::value())| {
-        let (min, max) = if a < b { (a, b) } else { (b, a) };
+    proptest!(cases(64), |([min, max] in ranges::<I32F0>())| {
         check::<3>(min, max);
         check::<20>(min, max);
         check::<101>(min, max);
     });
 }
 
+/// What is built at compile time is what is built in flight.
 #[test]
 fn constants() {
     static LINEAR: Position<f32, 20> = Position::linear(-9.0..=9.1);
@@ -129,19 +137,28 @@ fn constants() {
     assert_eq!(WORDS, Position::try_gaussian_spaced(I16F16::ZERO..=I16F16::MAX).unwrap());
 }
 
+/// Of fields of one width the strongest response, wherever the responses do not underflow, is that of the nearest centre.
 #[test]
-fn flights() {
-    for channel in flight_channels() {
-        let max = channel.iter().copied().fold(f32::MIN, f32::max);
-        let min = channel.iter().copied().fold(f32::MAX, f32::min);
-        check_linear::<f32, 20>(min, max, &channel);
-        check_gaussian_spaced::<f32, 21>(min, max, &channel);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        check_linear::<I16F16, 20>(I16F16::from_num(min), I16F16::from_num(max), &fixed);
-        let counts: Vec<_> = channel.iter().map(|&x| (x * 3000.0) as i16).collect();
-        check_linear::<i16, 20>((min * 3000.0) as i16, (max * 3000.0) as i16, &counts);
+fn the_nearest_centre_has_the_strongest_response() {
+    const M: usize = 20;
+    let (min, max) = (-9.0_f32, 9.1_f32);
+    let scheme = Gaussian::<f32, M>::try_linear(min..=max).unwrap();
+    let mu = even_centres(min.into(), max.into(), M);
+    let sigma = receptive_field_width(min.into(), max.into(), M, 1.5);
+    let x: Vec<_> = (-1000..=1000).map(|i| i as f32 * 0.01).collect();
+    for (x, neuron) in x.iter().zip(encode(&scheme, &x).outputs) {
+        let response = |mu: f64| (-(f64::from(*x) - mu).powi(2) / (2.0 * sigma.powi(2))).exp();
+        let winner = response(mu[usize::from(neuron.unwrap().index())]);
+        assert!(mu.iter().all(|&mu| response(mu) <= winner), "{x}");
     }
 }
+
+flights!(S: Wire, |x, unit| {
+    let at = |value: f64| S::from_f64(value * unit);
+    check_linear::<S, 20>(at(-9.0), at(9.0), &x);
+    check_linear::<S, 15>(at(-1.0), at(2.0), &x);
+    check_gaussian_spaced::<S, 21>(at(-9.0), at(9.0), &x);
+});
 
 #[test]
 fn hostile() {
@@ -149,14 +166,15 @@ fn hostile() {
         check([-1.0, -1e-45, 0.0, 1e-45, 1e38], &x);
         check([f32::MIN, 0.0, f32::MAX], &x);
         check_linear::<f32, 3>(f32::MIN / 2.0, f32::MAX / 2.0, &x);
+        check_linear::<f32, 4>(0.0, 1.0, &x);
         check_linear::<f32, 20>(-1e-38, 1e-38, &x);
+        check_linear_if_fine::<f32, 20>([-1e-40, 1e-40], &x);
         check_gaussian_spaced::<f32, 5>(f32::MIN, f32::MAX, &x);
     }
 }
 
 fn rising(count: usize) -> impl Strategy<Value = Vec<f32>> {
-    let value =
-        prop_oneof![-4.0_f32..4.0, (-40..40_i8).prop_map(f32::from), common::finite_float()];
+    let value = prop_oneof![-4.0_f32..4.0, (-40..40_i8).prop_map(f32::from), f32::value()];
     proptest::collection::vec(value, count..4 * count).prop_filter_map("rising", move |mut list| {
         list.sort_by(f32::total_cmp);
         list.dedup_by(|a, b| a == b);
@@ -210,65 +228,52 @@ fn around_edges<S: Wire>(min: S, max: S, m: usize) -> Vec<S> {
         .collect()
 }
 
-/// The same in integers, with ranges from the finest to the widest.
+/// The same in integers, with ranges from the finest to the widest, and any samples.
 fn drawn_edges<S: Wire + Drawn>() {
-    fn check<S: Wire, const M: usize>(min: S, max: S) {
-        if Position::<S, M>::try_linear(min..=max).is_ok() {
-            let x: Vec<_> = around_edges(min, max, M).into_iter().step_by(1 + M / 64).collect();
-            check_linear::<S, M>(min, max, &x);
-        }
+    fn check<S: Wire, const M: usize>([min, max]: [S; 2], x: &[S]) {
+        let edges = around_edges(min, max, M).into_iter().step_by(1 + M / 64);
+        check_linear_if_fine::<S, M>(
+            [min, max],
+            &edges.chain(x.iter().copied()).collect::<Vec<_>>(),
+        );
     }
-    let cases = &cases(48);
-    proptest!(cases, |((a, b) in (S::value(), S::value()))| {
-        let (min, max) = if a < b { (a, b) } else { (b, a) };
-        prop_assume!(min < max);
-        check::<S, 3>(min, max);
-        check::<S, 4>(min, max);
-        check::<S, 20>(min, max);
-        check::<S, 65>(min, max);
-        check::<S, 1000>(min, max);
+    proptest!(cases(48), |(range in ranges::<S>(), x in S::recordings())| {
+        check::<S, 3>(range, &x);
+        check::<S, 4>(range, &x);
+        check::<S, 20>(range, &x);
+        check::<S, 65>(range, &x);
+        check::<S, 1000>(range, &x);
     });
 }
 
 #[test]
 fn edges_of_integer_ranges() {
-    drawn_edges::<i16>();
-    drawn_edges::<I8F8>();
-    drawn_edges::<I1F15>();
-    drawn_edges::<I16F16>();
-    drawn_edges::<I32F0>();
+    in_every_integer!(drawn_edges);
 }
 
 /// Ranges so fine that a spacing is a few last places of a float: all floats within.
 #[test]
 fn spacings_of_a_few_last_places() {
-    proptest!(cases(256), |(min in prop_oneof![-9.0_f32..9.0, crate::common::between(1e-40, 1e-36)], last in 20..400_u32)| {
+    proptest!(cases(256), |(min in prop_oneof![-9.0_f32..9.0, between(1e-40, 1e-36)], last in 20..400_u32)| {
         let mut x = vec![min];
         x.extend((0..last).scan(min, |x, _| {
             *x = x.next_up();
             Some(*x)
         }));
         let max = x[x.len() - 1];
-        if Position::<f32, 20>::try_linear(min..=max).is_ok() {
-            check_linear::<f32, 20>(min, max, &x);
-        }
-        if Position::<f32, 65>::try_linear(min..=max).is_ok() {
-            check_linear::<f32, 65>(min, max, &x);
-        }
+        check_linear_if_fine::<f32, 20>([min, max], &x);
+        check_linear_if_fine::<f32, 65>([min, max], &x);
     });
 }
 
 /// Ranges of every size, from subnormals to half of all floats.
 #[test]
 fn ranges_of_every_size() {
-    proptest!(cases(256), |(a in common::finite_float(), b in common::finite_float())| {
-        let (min, max) = if a < b { (a, b) } else { (b, a) };
-        if Position::<f32, 20>::try_linear(min..=max).is_ok() {
-            let edges = halves(&even_centres(min.into(), max.into(), 20));
-            let mut x = around(edges);
-            x.extend(common::HOSTILE);
-            check_linear::<f32, 20>(min, max, &x);
-        }
+    proptest!(cases(256), |([min, max] in ranges::<f32>(), mut x in f32::recordings())| {
+        x.extend(around(halves(&even_centres(min.into(), max.into(), 20))));
+        x.extend(HOSTILE);
+        check_linear_if_fine::<f32, 3>([min, max], &x);
+        check_linear_if_fine::<f32, 20>([min, max], &x);
     });
 }
 
@@ -282,7 +287,7 @@ fn edges_of_ranges() {
         let spaced: Vec<_> = spaced.into_iter().map(|value| f64::from(value as f32)).collect();
         check_gaussian_spaced::<f32, M>(min, max, &around(halves(&spaced)));
     }
-    proptest!(cases(128), |(min in -100.0_f32..100.0, width in crate::common::between(0.01, 100.0))| {
+    proptest!(cases(128), |(min in -100.0_f32..100.0, width in between(0.01, 100.0))| {
         let max = min + width;
         check_both::<3>(min, max);
         check_both::<4>(min, max);
@@ -309,11 +314,7 @@ fn drawn_recordings() {
         let values: [f32; 5] = list.try_into().unwrap();
         check(values, &x);
     });
-    integers::<i16>();
-    integers::<I8F8>();
-    integers::<I1F15>();
-    integers::<I16F16>();
-    integers::<I32F0>();
+    in_every_integer!(integers);
 }
 
 #[test]
@@ -322,6 +323,7 @@ fn all_65536_inputs() {
     check([i16::MIN, -30_000, -1, 0, 2, 5, i16::MAX], &counts);
     check_linear::<_, 20>(-20_000_i16, 25_001, &counts);
     check_linear::<_, 3>(i16::MIN + 1, i16::MAX, &counts);
+    check_linear::<_, 64>(i16::MIN + 1000, i16::MAX - 1000, &counts);
     check_gaussian_spaced::<_, 21>(-20_000_i16, 25_001, &counts);
     let bits: Vec<_> = counts.iter().copied().map(I8F8::from_bits).collect();
     check_linear::<_, 20>(I8F8::from_num(-9), I8F8::from_num(9.1), &bits);

@@ -4,8 +4,8 @@
 use std::convert::Infallible;
 
 use crate::common::fields::Fields;
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
-use fixed::types::{I1F15, I8F8, I16F16};
+use crate::common::{between, drawn_recordings, flights, hostile_recordings, ranges};
+use fixed::types::{I1F15, I8F8};
 use host_tests::compare::{assert_same_values, decode, finite, run};
 use host_tests::reference::probabilistic_from_levels;
 use proptest::prelude::*;
@@ -138,19 +138,10 @@ fn restart() {
     assert_eq!(script.drawn, 6);
 }
 
-#[test]
-fn flights() {
-    for (seed, channel) in flight_channels().iter().enumerate() {
-        let generator = Pcg32::seed_from_u64(seed as u64);
-        check::<f32, _, 15, 16>((-4.0, 4.0, 1.5), &generator, channel);
-        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-        let range = (I8F8::from_num(-4), I8F8::from_num(4), 1.5);
-        check::<I8F8, _, 15, 16>(range, &generator, &fixed);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        let range = (I16F16::from_num(-4), I16F16::from_num(4), 1.5);
-        check::<I16F16, _, 4, 256>(range, &generator, &fixed);
-    }
-}
+flights!(S: Fields, |x, unit| {
+    let [min, max] = [-4.0, 4.0].map(|end| S::from_f64(end * unit));
+    check_all(min, max, 1.5, 9, &x);
+});
 
 #[test]
 fn hostile() {
@@ -161,21 +152,9 @@ fn hostile() {
     }
 }
 
-fn drawn<S: Fields + Drawn>() {
-    let parameters =
-        (S::recordings(), S::value(), S::value(), crate::common::between(0.3, 4.0), any::<u64>());
-    let cases = &cases(64);
-    proptest!(cases, |((x, a, b, beta, seed) in parameters)| {
-        let (min, max) = if a < b { (a, b) } else { (b, a) };
-        prop_assume!(min < max);
-        check_all(min, max, beta, seed, &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Fields, 64, (x in S::recordings(), [min, max] in ranges::<S>(), beta in between(0.3, 4.0), seed in any::<u64>()) => {
+    check_all(min, max, beta, seed, &x);
+});
 
 /// All inputs, with a script that comes by every number a draw can be, and its neighbours.
 #[test]

@@ -1,12 +1,13 @@
 //! Rank order coding: the nearest neurons fire, the nearest first.
 
-use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings};
-use fixed::types::{I1F15, I8F8, I16F16, I32F0};
-use host_tests::compare::{assert_same_values, decode, encode};
+use crate::common::{
+    Drawn, cases, flight_channels, float, hostile_recordings, in_every_integer, ranges,
+};
+use host_tests::compare::{Wire, assert_same_values, decode, encode, whole};
 use host_tests::reference::{nearest_first, rank_order_value};
 use proptest::prelude::*;
 use spikewire::population::{RankOrder, SlotSpikes};
-use spikewire::{ConfigError, Sample, Scheme};
+use spikewire::{ConfigError, Scheme};
 
 /// Neurons in the order of their slots.
 fn order_of<const M: usize, const K: usize>(spikes: SlotSpikes<M, K>) -> Vec<usize> {
@@ -15,15 +16,8 @@ fn order_of<const M: usize, const K: usize>(spikes: SlotSpikes<M, K>) -> Vec<usi
     pairs.into_iter().map(|(_, neuron)| neuron.into()).collect()
 }
 
-fn whole<S: Sample>(value: S) -> i64 {
-    match size_of::<S>() {
-        2 => i64::from((value.to_bits32() as u16).cast_signed()),
-        _ => i64::from(value.to_bits32().cast_signed()),
-    }
-}
-
 /// Encoder, decoder, and the decoder after any number of spikes, in integers.
-fn check<S: Sample + host_tests::compare::Wire, const M: usize, const K: usize>(
+fn check<S: Wire, const M: usize, const K: usize>(
     scheme: &RankOrder<S, M, K>,
     min: S,
     max: S,
@@ -183,23 +177,21 @@ fn drawn_floats() {
     });
 }
 
-fn check_centres<S: host_tests::compare::Wire, const K: usize>(centres: [S; 7], x: &[S]) {
+fn check_centres<S: Wire, const K: usize>(centres: [S; 7], x: &[S]) {
     if let Ok(scheme) = RankOrder::<S, 7, K>::try_new(centres) {
         check(&scheme, centres[0], centres[6], x);
     }
 }
 
-fn drawn<S: host_tests::compare::Wire + Drawn + Ord>() {
+fn drawn<S: Wire + Drawn + Ord>() {
     let list = proptest::collection::btree_set(S::value(), 7);
-    proptest!(cases(96), |(set in list, x in S::recordings(), a in S::value(), b in S::value())| {
+    proptest!(cases(96), |(set in list, mut x in S::recordings(), [min, max] in ranges::<S>())| {
         let list: Vec<_> = set.into_iter().collect();
         let centres: [S; 7] = list.try_into().unwrap();
-        let mut x = x;
         x.extend(centres);
         check_centres::<S, 1>(centres, &x);
         check_centres::<S, 4>(centres, &x);
         check_centres::<S, 7>(centres, &x);
-        let (min, max) = (a.min(b), a.max(b));
         if let Ok(scheme) = RankOrder::<S, 15, 3>::try_linear(min..=max) {
             check(&scheme, min, max, &x);
         }
@@ -208,11 +200,7 @@ fn drawn<S: host_tests::compare::Wire + Drawn + Ord>() {
 
 #[test]
 fn drawn_recordings() {
-    drawn::<i16>();
-    drawn::<I8F8>();
-    drawn::<I1F15>();
-    drawn::<I16F16>();
-    drawn::<I32F0>();
+    in_every_integer!(drawn);
 }
 
 #[test]

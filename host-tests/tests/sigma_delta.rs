@@ -1,10 +1,11 @@
 //! Sigma-delta against its transcription, and its means.
 
+use crate::common::{rate::spikes_of, refused};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare;
 use proptest::prelude::*;
 use spikewire::rate::{Average, Averaging, SigmaDelta, Window};
-use spikewire::{ConfigError, Sample, Scheme, Spike};
+use spikewire::{Sample, Scheme, Spike};
 
 use catalogue::plain::{self, Plain};
 use catalogue::schemes::sigma_delta::transcribed;
@@ -28,14 +29,6 @@ pub(crate) fn in_every_type(x: &[i16], mut check: impl Check) {
 /// What is checked in every sample type, with what a count becomes.
 pub(crate) trait Check {
     fn check<S: Plain>(&mut self, x: &[S], of: impl Fn(i16) -> S);
-}
-
-pub(crate) fn spikes_of<P: spikewire::Start<Code = Spike, Output = Spike>>(
-    scheme: &P,
-    x: &[P::Sample],
-) -> Vec<i8> {
-    let mut encoder = scheme.encoder();
-    x.iter().map(|&x| encoder.encode(x).sign()).collect()
 }
 
 pub(crate) fn values_of<P: Scheme<Code = Spike>>(scheme: &P, spikes: &[i8]) -> Vec<P::Sample> {
@@ -111,12 +104,7 @@ fn what_is_not_finite_is_counted_and_ignored() {
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
     fn parameter<S: Sample>(min: S, max: S) -> &'static str {
-        match SigmaDelta::try_new(min..=max, Average::new(1)).unwrap_err() {
-            ConfigError::NotFinite { parameter, .. }
-            | ConfigError::NotRising { parameter, .. }
-            | ConfigError::OutOfRange { parameter, .. } => parameter,
-            error => panic!("{error}"),
-        }
+        refused(SigmaDelta::try_new(min..=max, Average::new(1)))
     }
     assert_eq!(parameter(f32::NAN, 1.0), "min");
     assert_eq!(parameter(0.0, f32::INFINITY), "max");
@@ -160,9 +148,9 @@ proptest! {
         let scheme = SigmaDelta::new(-1000_i16..=3000, Average::new(1));
         let spikes = spikes_of(&scheme, &x);
         let (from, to) = (from.min(x.len()), to.min(x.len()).max(from.min(x.len())));
-        let told: i32 = spikes[from..to].iter().map(|&spike| i32::from(spike) * 4000).sum();
+        let coded: i32 = spikes[from..to].iter().map(|&spike| i32::from(spike) * 4000).sum();
         let sum: i32 = x[from..to].iter().map(|&x| i32::from(x).clamp(-1000, 3000) + 1000).sum();
-        prop_assert!((told - sum).abs() < 4000);
+        prop_assert!((coded - sum).abs() < 4000);
     }
 
     #[test]

@@ -56,7 +56,7 @@ fn errors_keep_their_kinds() {
         (old::ErrorKind::Other, ErrorKind::Other),
     ];
     for (error, kind) in kinds {
-        let told = Io06(Port { room: 0, flushed: false, error }).write(&[0]).unwrap_err();
-        assert_eq!((told.kind(), told.to_string()), (kind, format!("{error:?}")));
+        let seen = Io06(Port { room: 0, flushed: false, error }).write(&[0]).unwrap_err();
+        assert_eq!((seen.kind(), seen.to_string()), (kind, format!("{error:?}")));
     }
 }

@@ -1,7 +1,7 @@
 //! GRF with sub-timesteps: a response of level `k` of `N` fires in slot `N - k`.
 
 use crate::common::fields::Fields;
-use crate::common::{Drawn, cases, flight_channels, float, hostile_recordings, in_every_type};
+use crate::common::{between, cases, drawn_recordings, flights, float, hostile_recordings, ranges};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{assert_same_values, decode, encode, finite, reals};
 use host_tests::reference::{Precise, slots_of_levels};
@@ -116,16 +116,10 @@ fn constants() {
     assert_eq!(reals(FLOATS.centres()), *FLOATS.centres());
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        check::<f32, 15, 10>(-4.0, 4.0, 1.5, 1, &channel);
-        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-        check::<I8F8, 15, 10>(I8F8::from_num(-4), I8F8::from_num(4), 1.5, 1, &fixed);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        check::<I16F16, 4, 100>(I16F16::from_num(-4), I16F16::from_num(4), 1.5, 7, &fixed);
-    }
-}
+flights!(S: Fields, |x, unit| {
+    let [min, max] = [-4.0, 4.0].map(|end| S::from_f64(end * unit));
+    check_all(min, max, 1.5, &x);
+});
 
 #[test]
 fn hostile() {
@@ -136,26 +130,15 @@ fn hostile() {
     }
 }
 
-fn drawn<S: Fields + Drawn>() {
-    let beta = prop_oneof![Just(1.5_f32), crate::common::between(0.3, 4.0)];
-    let cases = &cases(64);
-    proptest!(cases, |((x, a, b, beta) in (S::recordings(), S::value(), S::value(), beta))| {
-        let (min, max) = if a < b { (a, b) } else { (b, a) };
-        prop_assume!(min < max);
-        check_all(min, max, beta, &x);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
+drawn_recordings!(S: Fields, 64, (x in S::recordings(), [min, max] in ranges::<S>(), beta in prop_oneof![Just(1.5_f32), between(0.3, 4.0)]) => {
+    check_all(min, max, beta, &x);
+});
 
 /// Samples within the range, and next to the edges between neurons.
 #[test]
 fn within_the_range() {
     let x = proptest::collection::vec(-0.5_f32..1.5, 40);
-    proptest!(cases(128), |(x in x, min in -3.0_f32..3.0, width in crate::common::between(0.1, 5.0))| {
+    proptest!(cases(128), |(x in x, min in -3.0_f32..3.0, width in between(0.1, 5.0))| {
         let max = min + width;
         let mut x: Vec<_> = x.into_iter().map(|x| min + x * width).collect();
         x.extend((0..=13_u8).map(|i| min + f32::from(i) * width / 13.0));
@@ -168,7 +151,7 @@ fn within_the_range() {
 #[test]
 fn a_floor_halfway_between_two_neurons() {
     let halfway = |n: f64, floor: f64| 2.0 * (2.0 * (n / (floor - 0.5)).ln()).sqrt();
-    proptest!(cases(512), |(min in -3.0_f32..3.0, width in crate::common::between(0.1, 5.0))| {
+    proptest!(cases(512), |(min in -3.0_f32..3.0, width in between(0.1, 5.0))| {
         let max = min + width;
         let edges = (0..=3_u8).map(|i| min + f32::from(i) * (max - min) / 3.0);
         let x: Vec<_> = edges.flat_map(|x| [x.next_down(), x, x.next_up()]).collect();
@@ -239,7 +222,7 @@ fn levels_that_end_next_to_a_sample() {
 #[test]
 fn distances_about_32_bits_long() {
     let range = (20..30_u32, 0..1_000_000).prop_map(|(bits, more)| (1 << bits) + more);
-    proptest!(cases(128), |(min in -1_000_000..1_000_000_i32, range in range, beta in crate::common::between(0.3, 4.0))| {
+    proptest!(cases(128), |(min in -1_000_000..1_000_000_i32, range in range, beta in between(0.3, 4.0))| {
         let x: Vec<_> = (-64..=64_i32)
             .flat_map(|part| [min.saturating_add(part.saturating_mul(range >> 4)), part << 24])
             .map(I32F0::from_bits)
@@ -253,7 +236,7 @@ fn distances_about_32_bits_long() {
 #[test]
 fn the_ends_of_levels() {
     let end = || proptest::num::i32::ANY;
-    proptest!(cases(32), |(a in end(), b in end(), beta in crate::common::between(0.3, 4.0))| {
+    proptest!(cases(32), |(a in end(), b in end(), beta in between(0.3, 4.0))| {
         let [min, max] = if a < b { [a, b] } else { [b, a] };
         let ends = [min, max].map(I32F0::from_bits);
         let Ok(scheme) = Slots::<I32F0, 5, 10>::try_new(ends[0]..=ends[1], beta) else { return Ok(()) };

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use catalogue::{Channel, Flight, State};
+use catalogue::{Channel, Flight, State, Storable};
 use fixed::types::{I8F8, I16F16};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
@@ -35,10 +35,11 @@ fn firings(code: impl Code) -> Vec<NeuronSpike> {
 }
 
 /// Codes the samples in pieces, and before each goes on from the states as they were, and from what was read back.
-fn goes_on<P>(scheme: &P, mut encoder: P::EncoderState, samples: &[P::Sample])
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+pub(crate) fn goes_on<P: Storable>(
+    scheme: &P,
+    mut encoder: P::EncoderState,
+    samples: &[P::Sample],
+) {
     let mut decoder = scheme.decoder_state();
     let mut rest = samples;
     for length in [0, 1, 2, 10, 57, 1, 300, 500, usize::MAX] {
@@ -85,10 +86,7 @@ where
 }
 
 /// Goes on from states of which some bits, or all, are not what was written; it must end, and tells how many were read.
-fn survives<P>(scheme: &P, mut encoder: P::EncoderState, samples: &[P::Sample]) -> usize
-where
-    P: Scheme<EncoderState: State, DecoderState: State>,
-{
+fn survives<P: Storable>(scheme: &P, mut encoder: P::EncoderState, samples: &[P::Sample]) -> usize {
     let mut decoder = scheme.decoder_state();
     for &sample in &samples[..50] {
         if let Some(code) = scheme.encode(&mut encoder, sample).code() {
@@ -147,16 +145,13 @@ impl<S: Sample> Flight for Reboots<S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         let fresh = write(&start);
         let first = scheme.encode(&mut read(&fresh), self.samples[0]);
         let taken = scheme.encode_slice(&mut read(&fresh), &self.samples[..9], &mut [first; 5]);
@@ -256,8 +251,8 @@ fn a_length_that_is_not_the_types_is_refused() {
     for length in [0, 39, 41] {
         let mut other = state.clone();
         other["ring"] = vec![0; length].into();
-        let told = format!("invalid length {length}, expected 40 items");
-        assert_eq!(refused::<<Long as Scheme>::EncoderState>(&other), told);
+        let message = format!("invalid length {length}, expected 40 items");
+        assert_eq!(refused::<<Long as Scheme>::EncoderState>(&other), message);
     }
 }
 

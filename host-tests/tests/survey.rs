@@ -1,6 +1,6 @@
 //! The survey before arming: its verdicts, and the laws of the thresholds that it gives.
 
-use crate::common::{cases, flight_channels};
+use crate::common::{between, cases, flown_channels};
 use fixed::types::{I8F8, I16F16};
 use host_tests::compare::Wire;
 use proptest::prelude::*;
@@ -119,12 +119,11 @@ fn check<S: Wire>(fit: Fit<'_, S, 64>, x: &[S], share: f32) {
     }
 }
 
-fn check_flights<S: Wire>(sample: fn(f32) -> S, limit: f32, change: f32) {
-    let conditions =
-        Conditions::try_new(788, sample(-limit)..=sample(limit), sample(change)).unwrap();
+fn check_flights<S: Wire>(unit: f64, limit: f64) {
+    let [least, most, change] = [-limit, limit, 16.0].map(S::from_f64);
+    let conditions = Conditions::try_new(788, least..=most, change).unwrap();
     let mut fit_channels = 0;
-    for channel in flight_channels() {
-        let x: Vec<S> = channel.iter().map(|&x| sample(x)).collect();
+    for x in flown_channels::<S>(unit) {
         let survey = watched::<S, 64>(conditions, &x);
         // At rest some channels do not move by a unit of 16 bits.
         let Ok(fit) = survey.verdict() else { continue };
@@ -138,10 +137,10 @@ fn check_flights<S: Wire>(sample: fn(f32) -> S, limit: f32, change: f32) {
 
 #[test]
 fn shares_of_the_flights() {
-    check_flights::<f32>(|x| x, 160.0, 16.0);
-    check_flights::<I16F16>(I16F16::from_num, 160.0, 16.0);
-    check_flights::<I8F8>(I8F8::from_num, 127.0, 16.0);
-    check_flights::<i16>(|x| (x * 100.0) as i16, 16_000.0, 16.0);
+    check_flights::<f32>(1.0, 160.0);
+    check_flights::<I16F16>(1.0, 160.0);
+    check_flights::<I8F8>(1.0, 127.0);
+    check_flights::<i16>(100.0, 16_000.0);
 }
 
 #[test]
@@ -150,7 +149,7 @@ fn shares_of_drawn_signals() {
     let cases = &cases(512);
     proptest!(cases, |(
         steps in proptest::collection::vec(-80..=80_i16, 3..200),
-        share in crate::common::between(0.005, 1.0),
+        share in between(0.005, 1.0),
     )| {
         let x: Vec<i16> = steps.iter().scan(0_i16, |x, step| { *x += step; Some(*x) }).collect();
         let survey = watched::<i16, 64>(conditions, &x);

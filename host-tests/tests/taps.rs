@@ -1,6 +1,6 @@
 //! The filters of the rate codes: shapes, scales, and where their sums end.
 
-use crate::common::cases;
+use crate::common::{between, cases};
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
 use host_tests::compare::{Wire, check_rate, check_rate_decoder, reals};
 use host_tests::reference::{
@@ -84,7 +84,7 @@ fn shapes() {
 
 #[test]
 fn drawn_shapes() {
-    proptest!(cases(128), |(scale in crate::common::between(1e-3, 1e3))| {
+    proptest!(cases(128), |(scale in between(1e-3, 1e3))| {
         check_all(scale);
         check_all(I16F16::from_num(scale));
     });

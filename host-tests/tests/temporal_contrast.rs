@@ -1,14 +1,13 @@
 //! TBR, temporal contrast: `d = x[i] - x[i-1]`; up if `d > threshold`, down if `d < -threshold`.
 
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings, in_every_type};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{drawn_recordings, flights, hostile_recordings};
 use host_tests::compare::{
     Wire, assert_step_spikes, check_step_decoder, encode, finite, run, signs_of,
 };
 use host_tests::reference::temporal_contrast;
 use proptest::prelude::*;
+use spikewire::Scheme;
 use spikewire::temporal::TemporalContrast;
-use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference, unprimed and primed.
 fn check<S: Wire>(x: &[S], threshold: S, step: S, primed: S) {
@@ -62,31 +61,6 @@ fn integers_do_not_wrap() {
     }
 }
 
-/// Of a longer past only the last value counts; an empty one changes nothing.
-#[test]
-fn pasts_of_any_length() {
-    let scheme = TemporalContrast::new(1.0_f32);
-    let mut encoder = scheme.encoder();
-    encoder.prime(&[]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, None));
-    encoder.prime(&[f32::NAN, 9.0, 2.0]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (0, Some(2.0)));
-    encoder.prime(&[]);
-    assert_eq!(encoder.encode(3.5), Spike::Up);
-}
-
-#[test]
-fn a_rejected_priming_value_is_counted_and_ignored() {
-    let scheme = TemporalContrast::try_new(1.0_f32).unwrap();
-    let mut encoder = scheme.encoder();
-    encoder.prime(&[f32::NAN]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (1, None));
-    assert_eq!(encoder.encode(5.0), Spike::None);
-    encoder.prime(&[f32::INFINITY]);
-    assert_eq!((encoder.rejected(), encoder.keyframe()), (2, Some(5.0)));
-    assert_eq!(encoder.encode(7.0), Spike::Up);
-}
-
 #[test]
 fn the_keyframe_is_the_last_sample() {
     let scheme = TemporalContrast::try_new(1.0_f32).unwrap();
@@ -99,21 +73,10 @@ fn the_keyframe_is_the_last_sample() {
     }
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        for threshold in [0.01_f32, 0.15, 0.5] {
-            check(&channel, threshold, 2.0 * threshold, channel[0]);
-            let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-            check(&fixed, I16F16::from_num(threshold), I16F16::from_num(threshold), fixed[0]);
-            let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-            check(&fixed, I8F8::from_num(threshold), I8F8::from_num(threshold), fixed[0]);
-            let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-            let threshold = (threshold * 100.0) as i16;
-            check(&counts, threshold, threshold, counts[0]);
-        }
-    }
-}
+flights!(S: Wire, |x, unit| for threshold in [0.01, 0.15, 0.5] {
+    let [threshold, step] = [1.0, 2.0].map(|times| S::from_f64(times * threshold * unit));
+    check(&x, threshold, step, x[0]);
+});
 
 #[test]
 fn hostile() {
@@ -124,38 +87,6 @@ fn hostile() {
     }
 }
 
-fn drawn<S: Wire + Drawn>() {
-    let cases = &cases(256);
-    let parameters = (S::recordings(), S::positive(), S::positive(), S::value());
-    proptest!(cases, |((x, threshold, step, primed) in parameters)| {
-        check(&x, threshold, step, primed);
-    });
-}
-
-#[test]
-fn drawn_recordings() {
-    in_every_type!(drawn);
-}
-
-/// All pairs of predecessor and sample within 8 bits, in the middle and at both ends of the type.
-#[test]
-fn all_pairs_of_8_bits() {
-    for (from, to) in [(-128, 127), (i16::MIN, i16::MIN + 255), (i16::MAX - 255, i16::MAX)] {
-        for threshold in [1, 2, 100, 255, i16::MAX] {
-            let scheme = TemporalContrast::try_new(I8F8::from_bits(threshold)).unwrap();
-            for previous in (from..=to).map(I8F8::from_bits) {
-                let mut encoder = scheme.encoder();
-                for x in (from..=to).map(I8F8::from_bits) {
-                    encoder.prime(&[previous]);
-                    let expected = temporal_contrast(
-                        &[x.real()],
-                        scheme.threshold().real(),
-                        Some(previous.real()),
-                    );
-                    assert_eq!([encoder.encode(x).sign()], *expected);
-                    assert_eq!(encoder.keyframe(), Some(x));
-                }
-            }
-        }
-    }
-}
+drawn_recordings!(S: Wire, 256, (x in S::recordings(), threshold in S::positive(), step in S::positive(), primed in S::value()) => {
+    check(&x, threshold, step, primed);
+});

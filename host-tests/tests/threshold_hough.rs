@@ -2,16 +2,15 @@
 //! if `error <= threshold`; then `r[i+j] -= h[j]`.
 
 use crate::common::rate::{
-    all_lengths, drawn_recordings, few_lengths, first_taps, pairs_of_8_bits, triangle,
+    all_lengths, drawn_recordings, few_lengths, least, pairs_of_8_bits, spikes_of, triangle,
 };
-use crate::common::{Drawn, cases, flight_channels, hostile_recordings};
-use fixed::types::{I8F8, I16F16};
+use crate::common::{Drawn, between, cases, flights, hostile_recordings};
+use fixed::types::I8F8;
 use host_tests::compare::{Wire, check_rate, encode, reals, signs_of};
 use host_tests::reference::threshold_hough;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use spikewire::rate::{Hough, Taps, ThresholdHough};
-use spikewire::{Scheme, Spike};
 
 /// Encoder and decoder against the reference.
 fn check<S: Wire, const F: usize>(taps: &Taps<S, F>, x: &[S], threshold: S, shift: S) {
@@ -61,22 +60,10 @@ fn a_threshold_that_a_large_shortfall_hits() {
     });
 }
 
-#[test]
-fn flights() {
-    for channel in flight_channels() {
-        let shift = channel.iter().copied().fold(f32::INFINITY, f32::min);
-        all_lengths!(check, f32, &triangle(0.1), &channel, 0.05, shift);
-        all_lengths!(check, f32, &triangle(1.0), &channel, 0.85, shift);
-        let fixed: Vec<_> = channel.iter().map(|&x| I16F16::from_num(x)).collect();
-        let (threshold, base) = (I16F16::from_num(0.85), I16F16::from_num(shift));
-        check::<I16F16, 8>(&first_taps(&triangle(1.0)), &fixed, threshold, base);
-        let fixed: Vec<_> = channel.iter().map(|&x| I8F8::from_num(x)).collect();
-        let (threshold, base) = (I8F8::from_num(0.85), I8F8::from_num(shift));
-        check::<I8F8, 8>(&first_taps(&triangle(1.0)), &fixed, threshold, base);
-        let counts: Vec<_> = channel.iter().map(|&x| (x * 100.0) as i16).collect();
-        check::<i16, 8>(&first_taps(&triangle(100.0)), &counts, 85, (shift * 100.0) as i16);
-    }
-}
+flights!(S: Wire, |x, unit| {
+    few_lengths!(check, S, &triangle(0.1 * unit), &x, S::from_f64(0.05 * unit), least(&x));
+    few_lengths!(check, S, &triangle(unit), &x, S::from_f64(0.85 * unit), least(&x));
+});
 
 #[test]
 fn hostile() {
@@ -98,7 +85,7 @@ drawn_recordings!(check, 128, threshold: thresholds::<S>());
 /// order of the sum would decide some of them otherwise.
 #[test]
 fn at_the_limit() {
-    let taps = proptest::array::uniform8(crate::common::between(0.1, 1.0));
+    let taps = proptest::array::uniform8(between(0.1, 1.0));
     let x = proptest::collection::vec(-1.0_f32..1.5, 8..40);
     proptest!(cases(512), |(x in x, taps in taps, window in any::<prop::sample::Index>())| {
         let window = &x[window.index(x.len() - 7)..][..8];
@@ -145,15 +132,10 @@ fn all_pairs_of_8_bits() {
         let threshold = I8F8::from_bits(threshold);
         let h = reals(taps.as_array());
         let scheme = ThresholdHough::try_new(taps, threshold).unwrap();
-        let mut encoder = scheme.encoder();
         for pair in pairs_of_8_bits() {
             let pair = pair.map(I8F8::from_bits);
-            encoder.reset();
-            let mut spikes: Vec<_> =
-                pair.iter().filter_map(|&r| encoder.encode(r)).map(Spike::sign).collect();
-            spikes.extend(encoder.finish().map(Spike::sign));
             let expected = threshold_hough(&pair.map(Wire::real), &h, 0.0, threshold.real(), true);
-            assert_eq!(spikes, expected, "{pair:?}");
+            assert_eq!(spikes_of(&scheme, &pair), expected, "{pair:?}");
         }
     }
     check([1], 0);

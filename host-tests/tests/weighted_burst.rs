@@ -1,10 +1,11 @@
 //! Weighted bursts against their transcription, and their error.
 
+use crate::common::{rate::spikes_of, refused};
 use proptest::prelude::*;
+use spikewire::Scheme;
 use spikewire::rate::{Average, SigmaDelta, WeightedBurst, Window};
-use spikewire::{ConfigError, Scheme};
 
-use crate::sigma_delta::{Check, drawn, in_every_type, spikes_of, values_of};
+use crate::sigma_delta::{Check, drawn, in_every_type, values_of};
 use catalogue::plain::{self, Plain};
 use catalogue::schemes::burst_weighted::transcribed;
 
@@ -45,19 +46,8 @@ fn what_is_not_finite_ends_a_burst() {
 
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
-    let parameter = |min, max, unit, doublings| match WeightedBurst::<f32, _>::try_new(
-        min..=max,
-        unit,
-        doublings,
-        Average::new(1),
-    ) {
-        Err(
-            ConfigError::NotFinite { parameter, .. }
-            | ConfigError::NotPositive { parameter, .. }
-            | ConfigError::NotRising { parameter, .. }
-            | ConfigError::OutOfRange { parameter, .. },
-        ) => parameter,
-        other => panic!("{other:?}"),
+    let parameter = |min, max, unit, doublings| {
+        refused(WeightedBurst::<f32, _>::try_new(min..=max, unit, doublings, Average::new(1)))
     };
     assert_eq!(parameter(1.0, 0.0, 1.0, 0), "min and max");
     assert_eq!(parameter(0.0, 1.0, 0.0, 0), "weight");
@@ -101,22 +91,22 @@ proptest! {
         let one = WeightedBurst::new(-1000_i16..=3000, unit, doublings, Window::<1>::new(0));
         let spikes = spikes_of(&one, &x);
         let mut gain = 0;
-        let told: Vec<i64> = spikes.iter().map(|&spike| {
+        let meant: Vec<i64> = spikes.iter().map(|&spike| {
             let weight = (i64::from(spike) * i64::from(unit)) << gain;
             gain = if spike == 1 { doublings.min(gain + 1) } else { 0 };
             weight
         }).collect();
         let most = (i64::from(doublings + 1) * i64::from(unit)) << doublings;
         let mut left = 0;
-        for (told, x) in told.iter().zip(x) {
-            left += i64::from(x.clamp(-1000, 3000)) + 1000 - told;
+        for (meant, x) in meant.iter().zip(x) {
+            left += i64::from(x.clamp(-1000, 3000)) + 1000 - meant;
             prop_assert!((0..most).contains(&left), "{} of {}", left, most);
         }
         let window = WeightedBurst::new(-1000_i16..=3000, unit, doublings, Window::<1>::new(power));
         let values = values_of(&window, &spikes);
         for (i, value) in values.into_iter().enumerate() {
             let first = (i + 1).saturating_sub(1 << power);
-            let sum: i64 = told[first..=i].iter().sum();
+            let sum: i64 = meant[first..=i].iter().sum();
             let half = (1_i64 << power) / 2;
             prop_assert_eq!(i64::from(value), ((sum + half) >> power) - 1000);
         }

@@ -1,5 +1,6 @@
 //! Queues, links and sinks, as one program: what its files share is compiled and linked once.
 
+mod beside;
 mod bus;
 mod common;
 mod interleaving_world;

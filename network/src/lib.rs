@@ -34,7 +34,7 @@ pub use neuron::{Cuba, CubaLi, CubaLif, Li, Lif, Neuron};
 pub use number::Number;
 pub use recurrence::{Forward, Full, OneToOne, Recurrence};
 pub use reset::{
-    Reset, Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate,
+    NoReset, Reset, Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate,
 };
 pub use spikes::Spikes;
 pub use weights::Weights;

@@ -15,6 +15,7 @@ use core::fmt::Debug;
 /// | [`Subtract`] | Sinabs, Rockpool, `SpikingJelly` with a soft reset |
 /// | [`SubtractLate`] | snnTorch |
 /// | [`SubtractNoDelay`] | snnTorch with `reset_delay=False` |
+/// | [`NoReset`] | snnTorch with `reset_mechanism="none"` |
 pub trait Reset: Copy + Debug + Sealed + 'static {
     /// Whether a spike subtracts the threshold, rather than setting the potential.
     #[doc(hidden)]
@@ -57,12 +58,17 @@ pub struct SubtractLate;
 #[derive(Clone, Copy, Debug)]
 pub struct SubtractNoDelay;
 
+/// Leaves the potential of a neuron that fires as it is.
+#[derive(Clone, Copy, Debug)]
+pub struct NoReset;
+
 impl Sealed for ToValue {}
 impl Sealed for ToValueLate {}
 impl Sealed for ToValueHeld {}
 impl Sealed for Subtract {}
 impl Sealed for SubtractLate {}
 impl Sealed for SubtractNoDelay {}
+impl Sealed for NoReset {}
 
 impl Reset for ToValue {
     const SUBTRACTS: bool = false;
@@ -129,5 +135,15 @@ impl Reset for SubtractNoDelay {
         let fires = (if *v > threshold { less } else { integrated }) > threshold;
         *v = if fires { less } else { integrated };
         fires
+    }
+}
+
+impl Reset for NoReset {
+    const SUBTRACTS: bool = false;
+
+    #[inline(always)]
+    fn fire<V: Number>(v: &mut V, integrate: impl FnOnce(V) -> V, threshold: V, _reset: V) -> bool {
+        *v = integrate(*v);
+        *v > threshold
     }
 }

@@ -4,8 +4,8 @@
 #![expect(clippy::indexing_slicing, reason = "a test may panic")]
 
 use spikewire_network::{
-    Cuba, CubaLif, Forward, Full, Layer, Lif, Network, Neuron, Recurrence, Reset, State, Subtract,
-    SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Values, Weights,
+    Cuba, CubaLif, Forward, Full, Layer, Lif, Network, Neuron, NoReset, Recurrence, Reset, State,
+    Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Values, Weights,
 };
 
 const INPUT: [f32; 16] =
@@ -71,6 +71,12 @@ fn zero_a_step_late() {
 fn held_through_the_next_step() {
     let expected = [3., 4.5, 0., 4., 3., 6.5, 0., 0., 0., 6., 0., -4., 0., 7., 0., 8.];
     expect(run(lif::<ToValueHeld>(), Forward, &INPUT), "0100010001000101", &expected);
+}
+
+#[test]
+fn a_spike_may_leave_the_potential() {
+    let expected = [3., 4.5, 2.25, 5.125, 3.5625, 6.78125];
+    expect(run(lif::<NoReset>(), Forward, &INPUT), "0101011001100111", &expected);
 }
 
 #[test]

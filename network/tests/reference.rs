@@ -10,8 +10,8 @@
 
 use proptest::prelude::*;
 use spikewire_network::{
-    Cuba, Full, Layer, Li, Lif, Network, Reset, State, Subtract, SubtractLate, SubtractNoDelay,
-    ToValue, ToValueHeld, ToValueLate, Weights,
+    Cuba, Full, Layer, Li, Lif, Network, NoReset, Reset, State, Subtract, SubtractLate,
+    SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
 /// A generator of random bits: arrays of thousands of weights are too large for proptest's strategies.
@@ -40,6 +40,7 @@ enum Rule {
     Subtract,
     SubtractLate,
     SubtractNoDelay,
+    NoReset,
 }
 
 /// A number type with the operations of a neuron, each rounded.
@@ -111,7 +112,7 @@ impl<K: Kind> Plain<K> {
             Rule::ToValue if self.is_above(u) => (self.reset, true),
             Rule::Subtract if self.is_above(u) => (less, true),
             Rule::ToValue | Rule::Subtract => (u, false),
-            Rule::ToValueLate => (u, self.is_above(u)),
+            Rule::ToValueLate | Rule::NoReset => (u, self.is_above(u)),
             Rule::ToValueHeld => {
                 let v = if fired_before { self.reset } else { u };
                 (v, self.is_above(v))
@@ -322,6 +323,7 @@ macro_rules! every_rule {
         $run::<Subtract, $hidden>(Rule::Subtract, $($arguments),*);
         $run::<SubtractLate, $hidden>(Rule::SubtractLate, $($arguments),*);
         $run::<SubtractNoDelay, $hidden>(Rule::SubtractNoDelay, $($arguments),*);
+        $run::<NoReset, $hidden>(Rule::NoReset, $($arguments),*);
     };
 }
 

@@ -127,6 +127,17 @@ impl fmt::Display for ConfigError {
 
 impl core::error::Error for ConfigError {}
 
+/// The value of a `Result`, or a return with its error: `?`, which functions of constants cannot use.
+macro_rules! tri {
+    ($result:expr) => {
+        match $result {
+            Ok(value) => value,
+            Err(error) => return Err(error),
+        }
+    };
+}
+pub(crate) use tri;
+
 /// Checks that a value is above 0 and finite.
 pub(crate) const fn positive(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
     if value > 0.0 && value.is_finite() {
@@ -142,18 +153,14 @@ pub(crate) const LARGEST_STEP: f32 = 1e31;
 
 /// Checks that a value is above 0 and at most [`LARGEST_STEP`].
 pub(crate) const fn step(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
-    match positive(parameter, value) {
-        Ok(()) => within(parameter, value, f32::from_bits(1), LARGEST_STEP),
-        error => error,
-    }
+    tri!(positive(parameter, value));
+    within(parameter, value, f32::from_bits(1), LARGEST_STEP)
 }
 
 /// Checks that a value is finite and within ±[`LARGEST_STEP`].
 pub(crate) const fn offset(parameter: &'static str, value: f64) -> Result<(), ConfigError> {
-    match finite(parameter, value) {
-        Ok(()) => within(parameter, value, -LARGEST_STEP, LARGEST_STEP),
-        error => error,
-    }
+    tri!(finite(parameter, value));
+    within(parameter, value, -LARGEST_STEP, LARGEST_STEP)
 }
 
 /// Checks that a value lies within `min..=max`.
@@ -193,11 +200,9 @@ pub(crate) const fn ratio(parameter: &'static str, value: f32) -> Result<(), Con
 
 /// Checks that `min < max` and both are finite.
 pub(crate) const fn range(min: f64, max: f64) -> Result<(), ConfigError> {
-    match (finite("min", min), finite("max", max)) {
-        (Err(error), _) | (_, Err(error)) => Err(error),
-        _ if min < max => Ok(()),
-        _ => Err(not_rising("min and max", 1, max, min)),
-    }
+    tri!(finite("min", min));
+    tri!(finite("max", max));
+    if min < max { Ok(()) } else { Err(not_rising("min and max", 1, max, min)) }
 }
 
 /// The error of a value that does not exceed the value before it.

@@ -18,6 +18,43 @@ pub struct Event {
     pub polarity: Polarity,
 }
 
+/// The methods that set the addresses and the length of sub-timesteps of a bank or of what decodes one, in these fields.
+macro_rules! addressed {
+    (
+        $(#[$first_doc:meta])* $($first:ident).+;
+        $(#[$slot_doc:meta])* $($slot_ticks:ident).+;
+    ) => {
+        $(#[$first_doc])*
+        ///
+        /// # Panics
+        /// Panics if the last address is above 65 535; at compile time where it initialises a constant.
+        #[must_use]
+        pub const fn with_first_address(mut self, first_address: u16) -> Self {
+            $crate::error::unwrap($crate::error::first_address(first_address, Self::ADDRESSES));
+            self.$($first).+ = first_address;
+            self
+        }
+
+        $(#[$first_doc])*
+        ///
+        /// # Errors
+        /// Returns an error if the last address is above 65 535.
+        pub fn try_with_first_address(mut self, first_address: u16) -> Result<Self, ConfigError> {
+            $crate::error::first_address(first_address, Self::ADDRESSES)?;
+            self.$($first).+ = first_address;
+            Ok(self)
+        }
+
+        $(#[$slot_doc])*
+        #[must_use]
+        pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
+            self.$($slot_ticks).+ = slot_ticks;
+            self
+        }
+    };
+}
+pub(crate) use addressed;
+
 #[cfg(feature = "link")]
 impl Event {
     /// Fills unused slots of a buffer.

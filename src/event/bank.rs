@@ -2,10 +2,11 @@
 
 use core::fmt;
 
+use super::address::addressed;
 use super::schemes::{CodeOf, EncoderStateOf, SampleOf, States};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
 use crate::num::Arithmetic;
-use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Output, Sample, Scheme, Start, error};
+use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Output, Sample, Scheme, Start};
 
 /// The encoders of `N` channels, such as the six of an inertial sensor: one scheme for all channels or one for each,
 /// and a state for each.
@@ -86,31 +87,11 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         Self { channels, first_address: 0, slot_ticks: 0 }
     }
 
-    /// Sets the first address, 0 by default, so that several banks can share a queue.
-    ///
-    /// # Panics
-    /// Panics if the last address is above 65 535; at compile time where it initialises a constant.
-    #[must_use]
-    pub const fn with_first_address(mut self, first_address: u16) -> Self {
-        error::unwrap(error::first_address(first_address, Self::ADDRESSES));
-        self.first_address = first_address;
-        self
-    }
-
-    /// Sets the first address, 0 by default.
-    ///
-    /// # Errors
-    /// Returns an error if the last address is above 65 535.
-    pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
-        error::first_address(first_address, Self::ADDRESSES)?;
-        Ok(Self { first_address, ..self })
-    }
-
-    /// Sets the length of a sub-timestep in microseconds. By default it is 0: all events of a sample have its tick.
-    #[must_use]
-    pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
-        self.slot_ticks = slot_ticks;
-        self
+    addressed! {
+        /// Sets the first address, 0 by default, so that several banks can share a queue.
+        first_address;
+        /// Sets the length of a sub-timestep in microseconds. By default it is 0: all events of a sample have its tick.
+        slot_ticks;
     }
 
     /// Encodes one sample of every channel and passes each event to `emit`.
@@ -287,12 +268,12 @@ pub(crate) fn bank_fingerprint<'s, P: Scheme + 's>(
     let (mut count, mut last) = (0_u32, None);
     for scheme in schemes {
         // A scheme that channels share is described once.
-        let own = match last {
-            Some((same, own)) if core::ptr::eq(same, scheme) => own,
+        let described = match last {
+            Some((same, described)) if core::ptr::eq(same, scheme) => described,
             _ => scheme.fingerprint(),
         };
-        last = Some((scheme, own));
-        bank = bank.and(own);
+        last = Some((scheme, described));
+        bank = bank.and(described);
         count = count.wrapping_add(1);
     }
     bank.number(count)

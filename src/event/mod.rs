@@ -17,6 +17,8 @@ mod source;
 mod tick;
 
 pub use address::Event;
+#[cfg(feature = "link")]
+pub(crate) use address::addressed;
 pub use bank::Bank;
 #[cfg(feature = "link")]
 pub(crate) use bank::bank_fingerprint;

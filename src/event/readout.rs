@@ -2,9 +2,10 @@
 
 use core::fmt;
 
+use super::address::addressed;
 use super::schemes::{CodeOf, DecoderStateOf, SampleOf, States};
 use super::{Event, Schemes, Tick};
-use crate::{Code, ConfigError, NeuronSpike, Scheme, error};
+use crate::{Code, ConfigError, NeuronSpike, Scheme};
 
 /// The decoders of `N` channels, which turn the events of a time step into a value for each channel: the inverse of
 /// a [`Bank`](crate::Bank).
@@ -92,31 +93,11 @@ impl<T: Schemes<N>, const N: usize> Readout<T, N> {
         Self { channels, addresses: Addresses { first: 0, slot_ticks: 0 } }
     }
 
-    /// Sets the first address, 0 by default; events of lower addresses are left out.
-    ///
-    /// # Panics
-    /// Panics if the last address is above 65 535.
-    #[must_use]
-    pub const fn with_first_address(mut self, first_address: u16) -> Self {
-        error::unwrap(error::first_address(first_address, Self::ADDRESSES));
-        self.addresses.first = first_address;
-        self
-    }
-
-    /// Sets the first address, 0 by default.
-    ///
-    /// # Errors
-    /// Returns an error if the last address is above 65 535.
-    pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
-        error::first_address(first_address, Self::ADDRESSES)?;
-        Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })
-    }
-
-    /// Sets the length of a sub-timestep in microseconds. By default it is 0: all events of a sample have its tick.
-    #[must_use]
-    pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
-        self.addresses.slot_ticks = slot_ticks;
-        self
+    addressed! {
+        /// Sets the first address, 0 by default; events of lower addresses are left out.
+        addresses.first;
+        /// Sets the length of a sub-timestep in microseconds. By default it is 0: all events of a sample have its tick.
+        addresses.slot_ticks;
     }
 
     /// Decodes the events of one time step, which begins at `tick`, into a value for each channel.

@@ -2,7 +2,7 @@
 
 use super::design::{BUTTERWORTH, Numerator, check, check_q, section};
 use super::{Filter, Filtered};
-use crate::error::unwrap;
+use crate::error::{tri, unwrap};
 use crate::num::{Recursive, Section};
 use crate::{ConfigError, Fingerprint, Sample, Scheme};
 
@@ -129,10 +129,9 @@ impl<S: Sample> Biquad<S> {
         rate: f32,
         q: f32,
     ) -> Result<Self, ConfigError> {
-        match (check(name, corner, rate), check_q(q)) {
-            (Ok(()), Ok(())) => Ok(Self { section: section::<S>(numerator, corner, rate, q) }),
-            (Err(error), _) | (_, Err(error)) => Err(error),
-        }
+        tri!(check(name, corner, rate));
+        tri!(check_q(q));
+        Ok(Self { section: section::<S>(numerator, corner, rate, q) })
     }
 
     /// A scheme that encodes what this filter lets through.

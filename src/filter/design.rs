@@ -1,6 +1,6 @@
 //! Coefficients from corners, by the bilinear transform, whose corner is exactly that of the analogue filter.
 
-use crate::error::{positive, within};
+use crate::error::{positive, tri, within};
 use crate::num::curve::sin_pi_at;
 use crate::num::{DoubleDouble, Section, coefficient};
 use crate::{ConfigError, Sample, SampleKind};
@@ -18,10 +18,9 @@ pub(super) const BUTTERWORTH: f32 = core::f32::consts::FRAC_1_SQRT_2;
 
 /// Checks a corner and the rate of the samples, both in Hz.
 pub(super) const fn check(name: &'static str, corner: f32, rate: f32) -> Result<(), ConfigError> {
-    match (positive("rate", rate as f64), positive(name, corner as f64)) {
-        (Ok(()), Ok(())) => within(name, corner as f64, rate * LOWEST, rate * HIGHEST),
-        (Err(error), _) | (_, Err(error)) => Err(error),
-    }
+    tri!(positive("rate", rate as f64));
+    tri!(positive(name, corner as f64));
+    within(name, corner as f64, rate * LOWEST, rate * HIGHEST)
 }
 
 /// Checks how sharp a section is.

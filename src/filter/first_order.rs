@@ -2,7 +2,7 @@
 
 use super::design::{check, first_order};
 use super::{Filter, Filtered};
-use crate::error::unwrap;
+use crate::error::{tri, unwrap};
 use crate::num::Recursive;
 use crate::{ConfigError, Fingerprint, Sample, Scheme};
 
@@ -47,10 +47,8 @@ impl<S: Sample> FirstOrder<S> {
     /// # Errors
     /// Returns an error if the rate is not above 0, or the corner is not within 0.001 to 0.49 of it.
     pub const fn try_low_pass(corner: f32, rate: f32) -> Result<Self, ConfigError> {
-        match check("corner", corner, rate) {
-            Ok(()) => Ok(Self { gain: first_order::<S>(corner, rate) }),
-            Err(error) => Err(error),
-        }
+        tri!(check("corner", corner, rate));
+        Ok(Self { gain: first_order::<S>(corner, rate) })
     }
 
     /// A scheme that encodes what this filter lets through.

@@ -136,7 +136,8 @@ pub trait Output: Copy {
     fn code(self) -> Option<Self::Code>;
 }
 
-impl Output for Spike {
+/// The code of a scheme that waits for no later sample is its own output.
+impl<C: Code> Output for C {
     type Code = Self;
 
     fn code(self) -> Option<Self> {

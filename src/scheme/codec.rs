@@ -360,11 +360,11 @@ pub(super) fn decode_copied<P: Scheme<DecoderState: Copy>>(
     codes: &[impl Copy + Into<P::Code>],
     values: &mut [P::Sample],
 ) -> usize {
-    let mut own = *state;
+    let mut local = *state;
     for (value, &code) in values.iter_mut().zip(codes) {
-        *value = scheme.decode(&mut own, code.into());
+        *value = scheme.decode(&mut local, code.into());
     }
-    *state = own;
+    *state = local;
     codes.len().min(values.len())
 }
 

@@ -27,15 +27,20 @@ impl<S: Copy> Held<S> {
     }
 }
 
-/// The methods of a [`Scheme`](crate::Scheme) whose decoder's state is [`Held`].
+/// The methods of a [`Scheme`](crate::Scheme) whose decoder's state is [`Held`], and whose encoder's state counts the
+/// samples that it rejects.
 macro_rules! hold_value {
-    () => {
-        fn held(&self, state: &Held<S>) -> Option<S> {
+    ($State:ty) => {
+        fn rejected(state: &$State) -> u32 {
+            state.tally.rejected()
+        }
+
+        fn held(&self, state: &crate::scheme::held::Held<S>) -> Option<S> {
             Some(state.value())
         }
 
-        fn resync(&self, state: &mut Held<S>, value: S) {
-            *state = Held::at(value);
+        fn resync(&self, state: &mut crate::scheme::held::Held<S>, value: S) {
+            *state = crate::scheme::held::Held::at(value);
         }
     };
 }

@@ -2,7 +2,7 @@
 
 use core::ops::RangeInclusive;
 
-use crate::error::{self, not_rising, unwrap, within};
+use crate::error::{self, not_rising, tri, unwrap, within};
 use crate::num::{from_f64, to_f64};
 use crate::{ConfigError, Sample};
 
@@ -70,7 +70,7 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, limit: u16) -> Self {
-        unwrap(Self::of(&range, limit))
+        unwrap(Self::try_new(range, limit))
     }
 
     /// An empty histogram.
@@ -78,18 +78,10 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
     /// # Errors
     /// Returns an error if the ends are not finite, or do not rise; the limit is 0.
     pub const fn try_new(range: RangeInclusive<S>, limit: u16) -> Result<Self, ConfigError> {
-        Self::of(&range, limit)
-    }
-
-    const fn of(range: &RangeInclusive<S>, limit: u16) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         let (min, max) = (*range.start(), *range.end());
-        if let Err(error) = error::range(to_f64(min), to_f64(max)) {
-            return Err(error);
-        }
-        if let Err(error) = within("limit", limit as f64, 1.0, u16::MAX as f32) {
-            return Err(error);
-        }
+        tri!(error::range(to_f64(min), to_f64(max)));
+        tri!(within("limit", limit as f64, 1.0, u16::MAX as f32));
         Ok(Self::over([min, max], limit))
     }
 
@@ -171,8 +163,8 @@ impl<S: Sample, const B: usize> Histogram<S, B> {
             return None;
         }
         let (numerator, denominator) = (u64::from(numerator), u64::from(denominator));
-        let all = u64::from(self.total).saturating_add(B as u64);
-        let wanted = numerator.saturating_mul(all);
+        let total = u64::from(self.total).saturating_add(B as u64);
+        let wanted = numerator.saturating_mul(total);
         let mut below = 0;
         for (cell, &count) in self.counts.iter().enumerate() {
             let weight = u64::from(count).saturating_add(1).saturating_mul(denominator);

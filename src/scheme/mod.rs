@@ -9,6 +9,7 @@ pub mod dynamic;
 mod fingerprint;
 mod held;
 mod histogram;
+mod index;
 mod moments;
 pub mod population;
 pub mod rate;

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::ops::RangeInclusive;
 
-use crate::error::{positive, range, unwrap, within};
+use crate::error::{positive, range, tri, unwrap, within};
 use crate::num::to_f64;
 use crate::temporal::{StepForward, TemporalContrast};
 use crate::{Calibration, ConfigError, Histogram, Moments, Sample};
@@ -33,7 +33,7 @@ impl<S: Sample> Conditions<S> {
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(samples: u32, limits: RangeInclusive<S>, largest_change: S) -> Self {
-        unwrap(Self::of(samples, &limits, largest_change))
+        unwrap(Self::try_new(samples, limits, largest_change))
     }
 
     /// The conditions of a channel.
@@ -51,24 +51,10 @@ impl<S: Sample> Conditions<S> {
         limits: RangeInclusive<S>,
         largest_change: S,
     ) -> Result<Self, ConfigError> {
-        Self::of(samples, &limits, largest_change)
-    }
-
-    const fn of(
-        samples: u32,
-        limits: &RangeInclusive<S>,
-        largest_change: S,
-    ) -> Result<Self, ConfigError> {
         let limits = [*limits.start(), *limits.end()];
-        if let Err(error) = within("samples", samples as f64, 3.0, u32::MAX as f32) {
-            return Err(error);
-        }
-        if let Err(error) = range(to_f64(limits[0]), to_f64(limits[1])) {
-            return Err(error);
-        }
-        if let Err(error) = positive("largest change", to_f64(largest_change)) {
-            return Err(error);
-        }
+        tri!(within("samples", samples as f64, 3.0, u32::MAX as f32));
+        tri!(range(to_f64(limits[0]), to_f64(limits[1])));
+        tri!(positive("largest change", to_f64(largest_change)));
         Ok(Self { samples, limits, largest_change, stillness: None })
     }
 
@@ -88,10 +74,8 @@ impl<S: Sample> Conditions<S> {
     /// # Errors
     /// Returns an error if the distance is not above 0, or not finite.
     pub const fn try_with_stillness(self, distance: S) -> Result<Self, ConfigError> {
-        match positive("stillness", to_f64(distance)) {
-            Ok(()) => Ok(Self { stillness: Some(distance), ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(positive("stillness", to_f64(distance)));
+        Ok(Self { stillness: Some(distance), ..self })
     }
 }
 
@@ -309,8 +293,8 @@ impl<'a, S: Sample, const B: usize> Fit<'a, S, B> {
     pub fn temporal_contrast(&self, spikes: f32) -> Result<TemporalContrast<S>, ConfigError> {
         check_spikes(spikes)?;
         let counts = self.changes().counts();
-        let all: u32 = counts.iter().copied().map(u32::from).sum();
-        let part = |above: u32| above as f32 / all as f32;
+        let total: u32 = counts.iter().copied().map(u32::from).sum();
+        let part = |above: u32| above as f32 / total as f32;
         let last = counts.last().copied().unwrap_or_default();
         within("spikes a sample", spikes.into(), part(last.into()), 1.0)?;
         let (mut above, mut border) = (0_u32, B);

@@ -20,7 +20,7 @@ mod verify;
 mod write;
 
 use anyhow::Result;
-use checks::{firmware, network, simulated_drone};
+use checks::{emulate, firmware, network, simulated_drone};
 use common::{Usage, progress, usage};
 use figures::{bench, demo};
 use products::{c_library, new_firmware, new_scheme, page};
@@ -34,9 +34,14 @@ cargo xtask <command>
   write [PART]...       writes again what is generated: tables and pictures of the pages, declarations, stubs; all, or
                         the named parts; a name that there is not lists them
   c-library [--target]  the library for C: archive, header, CMake package and pkg-config file for each core and the host
+  c-bundle              the same for people without Rust: one archive for make, CMake, Arduino, PlatformIO, Zephyr, ESP-IDF
   guides FIRMWARE DIR   builds the guide of bindings/c/guides for crazyflie, betaflight or px4 with a checkout of that firmware
   new-firmware DIR --board NAME
                         writes a firmware project for a board, which builds as it comes; without arguments, the boards
+  new-firmware DIR --hal NAME --flight FLIGHT.toml
+                        writes one with a HAL of yours, from a flight's file; without arguments, the HALs
+  emulate IMAGE --part PART
+                        runs an image with a sensor on its bus, and writes what its serial port says to standard output
   scheme NAME TYPE --like NAME
                         a scheme to begin from: a copy of one that there is under another name, and the lines that list it
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
@@ -73,8 +78,10 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "bench-target" => bench::bench(args),
         "write" => write::write(args),
         "c-library" => c_library::library(args),
+        "c-bundle" => c_library::bundle().map(drop),
         "guides" => c_library::guides(args),
         "scheme" => new_scheme::new_scheme(args),
+        "emulate" => emulate::emulate(args),
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
         "demo" => demo::demo(args),

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 
 Framework = Literal["snntorch", "norse", "spikingjelly", "rockpool", "sinabs", "nir"]
-Reset = Literal["to-value", "to-value-late", "to-value-held", "subtract", "subtract-late", "subtract-no-delay"]
+Reset = Literal[
+    "to-value", "to-value-late", "to-value-held", "subtract", "subtract-late", "subtract-no-delay", "none"
+]
 
 
 class Ran(NamedTuple):

@@ -18,13 +18,14 @@ const FRAMEWORKS: [(&str, Framework); 6] = [
     ("nir", Framework::Nir),
 ];
 
-const RESETS: [(&str, Reset); 6] = [
+const RESETS: [(&str, Reset); 7] = [
     ("to-value", Reset::ToValue),
     ("to-value-late", Reset::ToValueLate),
     ("to-value-held", Reset::ToValueHeld),
     ("subtract", Reset::Subtract),
     ("subtract-late", Reset::SubtractLate),
     ("subtract-no-delay", Reset::SubtractNoDelay),
+    ("none", Reset::NoReset),
 ];
 
 const FIRES: [(&str, Fires); 2] = [("above", Fires::Above), ("at", Fires::At)];

@@ -76,7 +76,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     }
 }
 
-/// Returns the number of bytes that [`each_byte`] visits.
+/// Returns the number of frames that reading or writing a network takes: one for each byte that [`each_byte`] visits.
 fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     let (neurons, rows) = (u32::from(network.neurons()), u32::from(network.rows()));
     let bytes = u32::from(I::NEURON_BYTES);

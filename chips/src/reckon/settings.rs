@@ -30,9 +30,10 @@ impl ReckOnAnswers {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnTask {
-    /// The number of an output, given in the first step of a sample that learns.
+    /// A target is the number of the output that should be the highest. It is given in the first step of a sample that
+    /// learns.
     Classification,
-    /// A potential for each output, given in every step that learns.
+    /// A target is a potential for each output. It is given in every step that learns.
     Regression,
 }
 
@@ -48,8 +49,7 @@ pub enum ReckOnTask {
 pub struct ReckOnLearning {
     /// Whether the weights from inputs, between neurons and to outputs learn, in this order.
     pub learns: [bool; 3],
-    /// Scales of the traces of inputs, neurons and outputs, in this order: number of binary places by which a trace is
-    /// finer, 0 to 7 each.
+    /// Number of extra binary places of the traces of inputs, neurons and outputs, in this order; 0 to 7 each.
     pub traces: [u8; 3],
     /// Shift of the learning signal, 0 to 15.
     pub signal: u8,

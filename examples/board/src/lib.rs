@@ -1,6 +1,6 @@
 //! What every example needs from its surroundings: a console to print to, and an ending.
 //!
-//! On a Cortex-M both go through semihosting, so a debugger or QEMU must be attached. On the host they are
+//! On a microcontroller both go through semihosting, so a debugger or QEMU must be attached. On the host they are
 //! standard output and the exit status. A program's `main` is the same text for both.
 
 #![cfg_attr(target_os = "none", no_std)]
@@ -15,10 +15,14 @@ pub mod stopwatch;
 #[cfg(all(target_os = "none", feature = "usart"))]
 pub mod usart;
 
-#[cfg(target_os = "none")]
+#[cfg(target_arch = "arm")]
 mod cortex_m;
-#[cfg(target_os = "none")]
+#[cfg(target_arch = "arm")]
 pub use cortex_m::{console, entry, finish};
+#[cfg(target_arch = "riscv32")]
+mod riscv;
+#[cfg(target_arch = "riscv32")]
+pub use riscv::{console, entry, finish};
 
 /// The host counts no instructions.
 #[cfg(all(not(target_os = "none"), feature = "stopwatch"))]

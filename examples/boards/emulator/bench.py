@@ -62,8 +62,11 @@ class Bench:
                 self.slow = True
             case "crystal-dead":
                 self.crystal = False
+            case "another":
+                self.js("sensor.identity = 0x68")
             case "mend":
                 self.mend()
+                self.js("sensor.identity = 0x47")
             case "supply-gone":
                 self.js("sensor.powerOff()")
             case "supply-back":

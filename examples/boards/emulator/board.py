@@ -76,8 +76,9 @@ while core.now < end and not fault:
         core.run(end)
     except Reset as reset:
         start(reset.args[0])
-    except UcError as error:
+    except (LookupError, UcError) as error:
         fault = f"{error} at {core.uc.reg_read(UC_ARM_REG_PC):#x}"  # such as a panic's end
+        fault += "" if core.touched is None else f": nothing is at {core.touched:#x}"
 drain()
 seen = bench.seen | {"instructions": core.instructions, "cycles": 0, "clkSys": core.hz, "fault": fault}
 seen["pausesOnHalt"] = part.pauses_on_halt()

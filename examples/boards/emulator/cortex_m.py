@@ -7,7 +7,7 @@ instruction, without the flash's wait states. What nothing models faults.
 import heapq
 import struct
 
-from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_HOOK_CODE, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
+from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_HOOK_CODE, UC_HOOK_MEM_INVALID, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
 from unicorn import arm_const as arm
 
 LOOP = 0x60000000  # a page of ours, with `b .`
@@ -61,6 +61,8 @@ class Core:
         self.events, self.order = [], 0
         self.blocks, self.fault = {}, None
         self.uc.hook_add(UC_HOOK_BLOCK, self.block)
+        self.touched = None  # what nothing is at
+        self.uc.hook_add(UC_HOOK_MEM_INVALID, self.invalid)
         self.bus(SYSTEM, 0x1000, self)
 
     def load(self, elf, vectors, entry):
@@ -71,6 +73,10 @@ class Core:
                 if one in (WFE, WFI, SEV):
                     self.uc.hook_add(UC_HOOK_CODE, self.hint, one, address + at, address + at)
         self.table, self.entry = vectors, entry
+
+    def invalid(self, _uc, _access, address, _size, _value, _data):
+        self.touched = address
+        return False
 
     def bus(self, base, size, one):
         """Puts a peripheral at its address."""
@@ -98,6 +104,7 @@ class Core:
         stack, self.pc = struct.unpack("<II", self.uc.mem_read(self.entry, 8))
         self.uc.reg_write(arm.UC_ARM_REG_SP, stack)
         self.uc.reg_write(arm.UC_ARM_REG_PRIMASK, 0)
+        self.uc.reg_write(arm.UC_ARM_REG_BASEPRI, 0)
 
     # Time
 
@@ -211,6 +218,8 @@ class Core:
             return False
         best = min(ready, key=lambda one: (self.priorities.get(one, 0), one))
         running = min((self.priorities.get(one, 0) for one, _ in self.active), default=256)
+        # BASEPRI masks what is not more urgent; 0 masks nothing.
+        running = min(running, self.uc.reg_read(arm.UC_ARM_REG_BASEPRI) or 256)
         masked = self.uc.reg_read(arm.UC_ARM_REG_PRIMASK) & 1
         if masked or self.priorities.get(best, 0) >= running:
             self.asleep = False  # WFI ends all the same

@@ -126,20 +126,24 @@ export class Bmi323 extends Sensor {
 export class Icm42688p extends Sensor {
   constructor() {
     super(1e9 / 8000);
+    this.identity = 0x47; // WHO_AM_I
   }
 
   reset() {
     this.bytes = new Uint8Array(128);
     this.bytes.set([0x91], 0x4d);
     this.bytes.set([0x10], 0x64);
-    this.bytes.set([0x47], 0x75);
     this.bytes.set([0x06, 0x06], 0x4f);
     this.bytes.set([0x10], 0x2d); // INT_STATUS: reset done
+    for (let axis = 0; axis < 6; axis++) this.bytes.set([0x80, 0x00], 0x1f + 2 * axis); // no data yet
     this.fifo = [];
   }
 
   get isConfigured() {
-    const expected = { 0x4e: 0x0f, 0x4f: 0x03, 0x50: 0x03, 0x5f: 0x27, 0x60: 0x80, 0x16: 0x40, 0x65: 0x04 };
+    const inFifo = { 0x4f: 0x03, 0x50: 0x03, 0x5f: 0x27, 0x60: 0x80, 0x16: 0x40, 0x65: 0x04 };
+    // Read from its registers: at whatever rate, the same of both.
+    const inRegisters = { 0x16: 0x00, 0x50: this.bytes[0x4f] };
+    const expected = { 0x4e: 0x0f, ...(this.bytes[0x16] === 0 ? inRegisters : inFifo) };
     return Object.entries(expected).every(([register, value]) => this.bytes[register] === value);
   }
 
@@ -149,6 +153,8 @@ export class Icm42688p extends Sensor {
 
   sample(at) {
     const [rx, ry, rz, ax, ay, az] = this.take(at);
+    [ax, ay, az, rx, ry, rz].forEach((count, axis) => this.bytes.set([(count >> 8) & 0xff, count & 0xff], 0x1f + 2 * axis));
+    this.bytes[0x2d] |= 0x08; // DATA_RDY
     if (this.bytes[0x16] >> 6 !== 1) return;
     const packet = new DataView(new ArrayBuffer(16));
     packet.setUint8(0, 0x68);
@@ -186,13 +192,15 @@ export class Icm42688p extends Sensor {
       if (at === 4) this.reads += 1;
       return this.fifo.length > 0 ? this.fifo.shift() : 0xff;
     }
-    return this.bytes[register];
+    return register === 0x75 ? this.identity : this.bytes[register];
   }
 
   write(register, value) {
     if (register === 0x11 && value & 1) this.reset();
     else if (register === 0x4b && value & 2) this.fifo = [];
     else this.bytes[register] = value;
+    // GYRO_CONFIG0: 8 kHz, 4, 2 or 1. The accelerometer's is the same, or nobody has configured it.
+    if (register === 0x4f) this.period = { 3: 125e3, 4: 250e3, 5: 500e3, 6: 1e6 }[value & 15] ?? this.period;
   }
 }
 

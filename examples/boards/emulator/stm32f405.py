@@ -19,6 +19,9 @@ PLAIN, FANCY = 1 << 10, 1 << 8 | 15 << 11 | 1 << 18
 
 # Where each lies, and the bit of RCC that clocks it.
 PLACES = {
+    "TIM2": (0x40000000, 0x40, 0),
+    "TIM3": (0x40000400, 0x40, 1),
+    "TIM4": (0x40000800, 0x40, 2),
     "TIM5": (0x40000C00, 0x40, 3),
     "IWDG": (0x40003000, None, 0),
     "PWR": (0x40007000, 0x40, 28),
@@ -107,9 +110,9 @@ class Rcc(Registers):
 
 
 class Timer(Registers):
-    """TIM5: an update, and four compares."""
+    """TIM5: an update, and four compares. It is the clock of the events' ticks."""
 
-    began, order = None, 0
+    began, LINE, HAS_TICKS = None, 50, True
 
     def hz(self):
         return self.part.rcc.timer_hz() / (self.words[0x28] + 1)
@@ -131,7 +134,8 @@ class Timer(Registers):
             self.began = self.began and self.core.now
         elif offset == 0x00 and value & 1 and self.began is None:
             self.began = self.core.now
-            self.part.bench.ticks_begin()
+            if self.HAS_TICKS:
+                self.part.bench.ticks_begin()
             for channel in range(5):
                 self.compare(channel)
         elif 0x34 <= offset <= 0x40:
@@ -156,7 +160,19 @@ class Timer(Registers):
         self.core.at(self.began + (count + ahead) * 1e9 / self.hz(), reached)
 
     def update(self):
-        self.core.line(50, self.words[0x10] & self.words[0x0C] & 0x1F != 0)
+        self.core.line(self.LINE, self.words[0x10] & self.words[0x0C] & 0x1F != 0)
+
+
+class Tim2(Timer):
+    LINE, HAS_TICKS = 28, False
+
+
+class Tim3(Timer):
+    LINE, HAS_TICKS = 29, False
+
+
+class Tim4(Timer):
+    LINE, HAS_TICKS = 30, False
 
 
 class Watchdog(Registers):
@@ -296,17 +312,56 @@ class Dma(Registers):
 
 
 class Spi(Registers):
-    """With DMA alone: both ways, or sending."""
+    """By DMA, both ways or sending; on an STM32F405 also byte by byte."""
 
     running, DATA = None, 0x0C
+    waiting, moves, received, is_overrun = None, False, None, False
 
     def read(self, offset):
-        return 2 | (self.running is not None) << 7 if offset == 8 else self.words[offset]
+        if offset == 8:
+            is_busy = self.running is not None or self.moves
+            flags = (self.received is not None) | (self.waiting is None) << 1 | self.is_overrun << 6
+            return flags | is_busy << 7
+        if offset == self.DATA:
+            value, self.received, self.is_overrun = self.received or 0, None, False
+            return value
+        return self.words[offset]
 
     def written(self, offset, before, value):
         if offset == self.DATA:
-            self.part.missing("a byte that goes to SPI without DMA")
+            self.byte(value & 0xFF)
         self.part.moved()
+
+    def byte(self, value):
+        if self.DATA != 0x0C or not self.words[0] >> 6 & 1 or self.words[4] & 3:
+            self.part.missing("a byte that goes to SPI while it is off, or has DMA")
+        elif self.waiting is not None:
+            self.part.missing("a byte for SPI that replaces the one before")
+        else:
+            self.waiting = value
+            self.clocks()
+
+    def clocks(self):
+        """Moves the byte that waits."""
+        if self.moves or self.waiting is None:
+            return
+        part, sent = self.part, bytes([self.waiting])
+        part.wired(part.SCK, part.MOSI, part.MISO)
+        self.waiting, self.moves = None, True
+
+        def done(read):
+            self.moves = False
+            if self.received is None:
+                self.received = read[0]
+            else:
+                self.is_overrun = True
+            self.clocks()
+
+        part.bench.transfer(sent, part.rcc.spi_hz() / self.divider(), self.pull(), done)
+
+    def pull(self):
+        port, pin, _ = self.part.MISO
+        return {1: "up", 2: "down"}.get(self.part.named["GPIO" + port].words[0x0C] >> 2 * pin & 3, "none")
 
     def is_on(self):
         return self.words[0] >> 6 & 1 and self.words[4] & 2
@@ -323,8 +378,7 @@ class Spi(Registers):
         receives = self.receives()
         if self.running or not self.is_on() or receives and into is None or out is None:
             return
-        port, pin, _ = part.MISO
-        pull = {1: "up", 2: "down"}.get(part.named["GPIO" + port].words[0x0C] >> 2 * pin & 3, "none")
+        pull = self.pull()
         part.wired(part.SCK, part.MOSI, *([part.MISO] if receives else []))
         sent = dma.bytes(out)
         if receives:
@@ -350,17 +404,43 @@ class Spi(Registers):
 
 
 class Usart(Registers):
-    """Its sending half: a byte in its register while the one before leaves."""
+    """Its sending half: a byte in its register while the one before leaves. On an STM32F405 also without DMA."""
 
     stream, free, DATA = None, 0.0, 0x04
+    waiting, moves = None, False
 
     def read(self, offset):
-        return 0xC0 if offset == 0 else self.words[offset]
+        if offset == 0:
+            return (self.waiting is None) << 7 | (self.waiting is None and not self.moves) << 6
+        return self.words[offset]
 
     def written(self, offset, before, value):
         if offset == self.DATA:
-            self.part.missing("a byte that goes to the serial port without DMA")
+            self.byte(value & 0xFF)
         self.part.moved()
+
+    def byte(self, value):
+        if self.DATA != 0x04 or self.words[0x0C] & 0x2008 != 0x2008 or self.words[0x14] >> 7 & 1:
+            self.part.missing("a byte that goes to the serial port while it is off, or has DMA")
+        elif self.waiting is not None:
+            self.part.missing("a byte for the serial port that replaces the one before")
+        else:
+            self.waiting = value
+            self.leaves()
+
+    def leaves(self):
+        """Sends the byte that waits."""
+        if self.moves or self.waiting is None:
+            return
+        self.part.wired(self.part.TX)
+        took = self.part.bench.send(self.waiting, self.part.rcc.port_hz() / self.divider())
+        self.waiting, self.moves = None, True
+
+        def left():
+            self.moves = False
+            self.leaves()
+
+        self.core.after(took, left)
 
     def is_on(self):
         return self.words[0x0C] & 0x2008 == 0x2008 and self.words[0x14] >> 7 & 1
@@ -397,8 +477,8 @@ class Usart(Registers):
 
 class Part:
     MEMORIES, MODEL, PLACES = MEMORIES, UC_CPU_ARM_CORTEX_M4, PLACES
-    KINDS = {"TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA1": NoDma, "DMA2": Dma, "RNG": Random, "GPIO": Gpio}
-    SPI, PORT, DMA = "SPI1", "USART6", "DMA2"
+    KINDS = {"TIM2": Tim2, "TIM3": Tim3, "TIM4": Tim4, "TIM5": Timer, "IWDG": Watchdog, "USART6": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA1": NoDma, "DMA2": Dma, "RNG": Random, "GPIO": Gpio}
+    SPI, PORT, DMA, HAS_BITS = "SPI1", "USART6", "DMA2", True
     # The wires: port, pin, alternate function.
     SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("A", 7, 5), ("C", 6, 8)
     SELECT, READY = ("A", 4), ("C", 4)
@@ -408,6 +488,8 @@ class Part:
         self.core = Core(self.MEMORIES, self.MODEL)
         for base in sorted({place & ~0xFFF for place, _, _ in self.PLACES.values()}):
             self.core.bus(base, 0x1000, Window(self, base))
+        if self.HAS_BITS:
+            self.core.bus(0x42000000, 0x02000000, Bits(self))
 
     def reset(self, bench, reason):
         self.bench, self.reason, self.named = bench, reason, {}
@@ -469,3 +551,22 @@ class Window:
 
     def write(self, offset, value):
         self.part.find(self.base + offset).write(offset & 0x3FF, value)
+
+
+class Bits:
+    """A Cortex-M4's bit band: a word for each bit of the peripherals, of which a write reads and writes the register."""
+
+    def __init__(self, part):
+        self.part = part
+
+    def place(self, offset):
+        address = 0x40000000 + offset // 32 & ~3
+        return self.part.find(address), address & 0x3FF, offset // 4 & 31
+
+    def read(self, offset):
+        one, register, bit = self.place(offset)
+        return one.read(register) >> bit & 1
+
+    def write(self, offset, value):
+        one, register, bit = self.place(offset)
+        one.write(register, one.read(register) & ~(1 << bit) | (value & 1) << bit)

@@ -141,7 +141,7 @@ class Part(f4.Part):
     )
     MODEL = UC_CPU_ARM_CORTEX_M7
     KINDS = {"TIM5": f4.Timer, "IWDG": f4.Watchdog, "USART1": Usart, "SPI1": Spi, "EXTI": Exti, "RCC": Rcc, "DMA1": Dma, "DMA2": f4.NoDma, "RNG": f4.Random, "PWR": Power, "GPIO": f4.Gpio}
-    SPI, PORT, DMA = "SPI1", "USART1", "DMA1"
+    SPI, PORT, DMA, HAS_BITS = "SPI1", "USART1", "DMA1", False
     SCK, MISO, MOSI, TX = ("A", 5, 5), ("A", 6, 5), ("D", 7, 5), ("A", 9, 7)
     SELECT, READY = ("C", 15), ("B", 2)
     # Not the DTCM.

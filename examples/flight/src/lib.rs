@@ -8,6 +8,8 @@
 //! - [`Watch`] runs for ever: it starts the sensor, reads it at each data-ready edge, turns its axes into the vehicle's
 //!   ([`Alignment`]), codes the samples, and starts the sensor again when it dies;
 //! - [`Sampler`] judges the samples: it notices a sensor that is silent, stuck or failing, and tells the far end by a break;
+//! - [`Station`] does both for a flight's file, one call a period, for a sensor whose newest sample lies in [`Registers`]; a
+//!   blocking bus goes into [`Blocking`], and [`Channels`] turns counts into the file's samples;
 //! - [`Sender`] writes frames to a UART or a USB port, through [`Bounced`] where that port's DMA does not reach every memory;
 //! - [`Rounds`] tells whoever feeds the watchdog that sampling goes on;
 //! - [`clock`] checks a crystal and its dividers while the firmware is compiled.
@@ -19,10 +21,12 @@
 #![cfg_attr(not(test), no_std)]
 
 mod align;
+mod blocking;
 pub mod bmi088;
 #[cfg(feature = "bmi323")]
 pub mod bmi323;
 mod bounced;
+mod channels;
 pub mod clock;
 pub mod code;
 mod counters;
@@ -35,6 +39,7 @@ mod rounds;
 mod sampler;
 mod sender;
 mod spin;
+mod station;
 mod watch;
 
 /// Number of keyframes a second. Two of them may be lost before the far end's silence, which counts on this, is over: see
@@ -42,7 +47,9 @@ mod watch;
 pub const KEYFRAMES: u16 = 20;
 
 pub use align::Alignment;
+pub use blocking::Blocking;
 pub use bounced::Bounced;
+pub use channels::{Channels, Counts, OfCounts};
 pub use counters::Counters;
 pub use device::{Device, Timing};
 pub use fault::Fault;
@@ -53,4 +60,5 @@ pub use rounds::Rounds;
 pub use sampler::{Plan, Sampler, Why};
 pub use sender::Sender;
 pub use spin::Spin;
+pub use station::{News, Registers, Station};
 pub use watch::{Watch, encode};

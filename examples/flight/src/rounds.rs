@@ -17,6 +17,16 @@ impl Rounds {
         self.0.store(self.0.load(Relaxed).wrapping_add(1), Relaxed);
     }
 
+    /// Returns whether there were as many rounds since the last call that returned true, with the same `seen`.
+    pub fn passed(&self, rounds: u32, seen: &mut u32) -> bool {
+        let now = self.0.load(Relaxed);
+        let have = now.wrapping_sub(*seen) >= rounds;
+        if have {
+            *seen = now;
+        }
+        have
+    }
+
     /// Returns whether there was a round since the last call with the same `seen`.
     pub fn went_on(&self, seen: &mut u32) -> bool {
         let now = self.0.load(Relaxed);

@@ -21,7 +21,7 @@ pub struct Plan {
     /// some bit of a living sensor's sample all the time; one of two dies may freeze alone. As many samples in a row may
     /// be missing from what was read, those between two failed reads included.
     pub most_alike: u8,
-    /// The most spikes that the code has for a channel and sample.
+    /// The most spikes that the code has for a channel and sample; 0 counts none as at the limit.
     pub most_spikes: u8,
 }
 
@@ -109,7 +109,31 @@ where
     }
 
     /// Takes what a read brought, with the tick of its data-ready edge.
-    pub fn take<E>(&mut self, edge: Tick, read: Result<[S; N], E>, mut queue: impl Put) {
+    pub fn take<E>(&mut self, edge: Tick, read: Result<[S; N], E>, queue: impl Put) {
+        let is_stuck = read.as_ref().is_ok_and(|sample| self.is_stuck(sample.map(S::to_bits32)));
+        self.take_judged(edge, read, is_stuck, queue);
+    }
+
+    /// Whether one half of the channels has had the same bits for too long.
+    fn is_stuck(&mut self, bits: [u32; N]) -> bool {
+        let halves = [0..N / 2, N / 2..N];
+        for (alike, half) in self.alike.iter_mut().zip(halves) {
+            let is_alike = !half.is_empty() && bits.get(half.clone()) == self.bits.get(half);
+            *alike = if is_alike { alike.saturating_add(1) } else { 0 };
+        }
+        self.bits = bits;
+        self.alike.iter().any(|&alike| alike >= self.plan.most_alike)
+    }
+
+    /// Takes what a read brought, where somebody else has looked at the sensor's bits: `is_stuck` says that they have not
+    /// changed for too long.
+    pub fn take_judged<E>(
+        &mut self,
+        edge: Tick,
+        read: Result<[S; N], E>,
+        is_stuck: bool,
+        mut queue: impl Put,
+    ) {
         if self.dead.is_some() {
             self.counters.discarded = self.counters.discarded.wrapping_add(1);
             return;
@@ -127,14 +151,7 @@ where
             return;
         };
         self.failed = 0;
-        let bits = sample.map(S::to_bits32);
-        let halves = [0..N / 2, N / 2..N];
-        for (alike, half) in self.alike.iter_mut().zip(halves) {
-            let is_alike = !half.is_empty() && bits.get(half.clone()) == self.bits.get(half);
-            *alike = if is_alike { alike.saturating_add(1) } else { 0 };
-        }
-        self.bits = bits;
-        if self.alike.iter().any(|&alike| alike >= self.plan.most_alike) {
+        if is_stuck {
             return self.end(Why::Stuck, edge, queue);
         }
         if self.to_settle > 0 {

@@ -26,7 +26,11 @@ impl Sender {
         // The sensor's clock is not ours: its samples come a few µs early or late.
         let coding = Coding::for_channels(CHANNELS as u16, I::PLAN.period).with_jitter_bits(4);
         let bank = Bank::<_, CHANNELS>::per_channel(I::SCHEMES);
-        let transmitter = Transmitter::new(coding, session).with_fingerprint(bank.fingerprint());
+        Self::of(Transmitter::new(coding, session).with_fingerprint(bank.fingerprint()))
+    }
+
+    /// A sender of these frames, such as those of a flight's module.
+    pub const fn of(transmitter: Transmitter) -> Self {
         Self { transmitter, frame: [0; MAX_FRAME], bytes: 0, failed: 0 }
     }
 

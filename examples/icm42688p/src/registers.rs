@@ -43,3 +43,10 @@ pub(crate) const CONFIGURATION: [(u8, u8); 12] = [
     (ACCEL_CONFIG0, 0x03), // ±16 g at 8 kHz
     (PWR_MGMT0, 0x0F), // both on, low noise; last, as no register may be written for 200 µs after it
 ];
+
+/// What is written where the sensor's newest sample is read from its registers; ranges and rates come in between.
+pub(crate) const POLLED: [(u8, u8); 3] = [
+    (INTF_CONFIG0, 0x33), // big endian; SPI alone
+    (INTF_CONFIG1, 0x51), // AFSR off, which stalls the gyroscope's output at times
+    (PWR_MGMT0, 0x0F),    // both on, low noise
+];

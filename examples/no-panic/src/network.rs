@@ -2,8 +2,8 @@
 
 use core::hint::black_box;
 use spikewire_network::{
-    Cuba, Full, Layer, Li, Lif, Network, Neuron, Number, OneToOne, Reset, Spikes, State, Subtract,
-    SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
+    Cuba, Full, Layer, Li, Lif, Network, Neuron, NoReset, Number, OneToOne, Reset, Spikes, State,
+    Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
 use crate::exercise::{event, hide, tick};
@@ -18,6 +18,7 @@ pub fn link() {
     rule::<Subtract>();
     rule::<SubtractLate>();
     rule::<SubtractNoDelay>();
+    rule::<NoReset>();
     let mut inputs = black_box(Spikes::<4>::new());
     inputs.push_event(event());
     inputs.push_signed(event());

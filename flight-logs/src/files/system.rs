@@ -9,7 +9,7 @@ pub fn is_dir(path: &Path) -> bool {
     path.is_dir()
 }
 
-/// Returns whether a regular file of this name exists. A pipe, which can be read only once, is none.
+/// Returns whether a regular file of this name exists. A pipe does not count, because it can be read only once.
 pub fn is_file(path: &Path) -> bool {
     path.is_file()
 }

@@ -3,8 +3,8 @@
 
 use std::hint::black_box;
 
-use catalogue::{Channel, Flight, State};
-use spikewire::{Calibration, ConfigError, Output, Sample, Scheme};
+use catalogue::{Channel, Flight, Storable};
+use spikewire::{Calibration, ConfigError, Output, Sample};
 
 use crate::timing::{Turns, variants};
 
@@ -80,16 +80,13 @@ impl<S: Sample> Flight for Slices<'_, S> {
     type Sample = S;
     type Error = ConfigError;
 
-    fn visit<P>(
+    fn visit<P: Storable<Sample = S>>(
         &mut self,
         name: &'static str,
         _: &'static str,
         scheme: &P,
         start: P::EncoderState,
-    ) -> Result<(), ConfigError>
-    where
-        P: Scheme<Sample = S, EncoderState: State, DecoderState: State>,
-    {
+    ) -> Result<(), ConfigError> {
         let start = postcard::to_allocvec(&start).unwrap();
         // A state need not be `Clone`. One for each round is read back before the rounds.
         let state = || -> P::EncoderState { postcard::from_bytes(&start).unwrap() };

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cargo_metadata::{CargoOpt, MetadataCommand};
-use host_tests::flight::Sample;
+use host_tests::flight::Record;
 use sha2::{Digest, Sha256};
 use yule_log::builder::ULogParserBuilder;
 use yule_log::model::inst::{FieldValue, Format};
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The first instance of `sensor_combined`, with times from its first sample.
-fn inertial_samples(log: &[u8]) -> Result<Vec<Sample>, Box<dyn Error>> {
+fn inertial_samples(log: &[u8]) -> Result<Vec<Record>, Box<dyn Error>> {
     let parser =
         ULogParserBuilder::new(log).set_subscription_allow_list(["sensor_combined"]).build()?;
     let mut samples = Vec::new();
@@ -85,11 +85,10 @@ fn inertial_samples(log: &[u8]) -> Result<Vec<Sample>, Box<dyn Error>> {
             continue;
         }
         let first = *first.get_or_insert(logged.timestamp);
-        samples.push(Sample {
-            time_us: u32::try_from(logged.timestamp - first)?,
-            gyro: vector(&logged.data, "gyro_rad")?,
-            accel: vector(&logged.data, "accelerometer_m_s2")?,
-        });
+        let micros = u32::try_from(logged.timestamp - first)?;
+        let [rx, ry, rz] = vector(&logged.data, "gyro_rad")?;
+        let [ax, ay, az] = vector(&logged.data, "accelerometer_m_s2")?;
+        samples.push(Record { micros, channels: [rx, ry, rz, ax, ay, az] });
     }
     Ok(samples)
 }
@@ -106,11 +105,11 @@ fn vector(data: &Format, name: &str) -> Result<[f32; 3], String> {
 }
 
 /// The shortest decimals that read back to the same bits.
-fn csv(samples: &[Sample]) -> Result<String, std::fmt::Error> {
+fn csv(samples: &[Record]) -> Result<String, std::fmt::Error> {
     let mut text = String::from("time_us,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z\n");
     for sample in samples {
-        write!(text, "{}", sample.time_us)?;
-        for value in sample.channels() {
+        write!(text, "{}", sample.micros)?;
+        for value in sample.channels {
             write!(text, ",{value}")?;
         }
         text.push('\n');
@@ -119,9 +118,8 @@ fn csv(samples: &[Sample]) -> Result<String, std::fmt::Error> {
 }
 
 /// Prints what `data/README.md` says of a recording.
-fn describe(name: &str, samples: &[Sample]) {
-    let steps: Vec<u32> =
-        samples.windows(2).map(|pair| pair[1].time_us - pair[0].time_us).collect();
+fn describe(name: &str, samples: &[Record]) {
+    let steps: Vec<u32> = samples.windows(2).map(|pair| pair[1].micros - pair[0].micros).collect();
     let mut sorted = steps.clone();
     sorted.sort_unstable();
     let median = sorted[sorted.len() / 2];
@@ -136,10 +134,7 @@ fn describe(name: &str, samples: &[Sample]) {
         }
     }
     for (index, unit) in [(0, "rad/s"), (3, "m/s^2")] {
-        let values = samples.iter().map(|sample| {
-            let channels = sample.channels();
-            channels[index..index + 3].iter().fold(0.0, |most: f32, v| most.max(v.abs()))
-        });
-        println!("  up to {} {unit}", values.fold(0.0, f32::max));
+        let values = samples.iter().flat_map(|sample| &sample.channels[index..index + 3]);
+        println!("  up to {} {unit}", values.fold(0.0, |most: f32, value| most.max(value.abs())));
     }
 }

@@ -7,7 +7,7 @@ use spikewire::{Decoder, Scheme, Spike, Start};
 
 use super::run::{Run, decode, encode};
 use super::wire::{Wire, assert_same_values, finite, reals, saturated, signs_of, spikes_of};
-use crate::reference::{Finite, Real, rate_decode, step_decode_within};
+use crate::reference::{Finite, Real, clamped, rate_decode, step_decode_within};
 
 /// Asserts that spikes came out at `latency` samples after their own, that rejected samples gave
 /// none, and that the tail completes the list: `whole` in flight, `all` with the tail.
@@ -95,14 +95,7 @@ pub fn check_rate<P, S, const F: usize>(
     let mut base = shift.real();
     if let Some(limit) = S::residual_limit(magnitude) {
         for value in &mut recording.accepted {
-            let residual = *value - base;
-            *value = if residual > limit {
-                limit
-            } else if residual < -limit {
-                -limit
-            } else {
-                residual
-            };
+            *value = clamped(*value - base, -limit, limit);
         }
         base = S::Real::ZERO;
     }

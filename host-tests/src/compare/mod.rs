@@ -12,4 +12,4 @@ pub use check::{
     check_step_decoder,
 };
 pub use run::{Repeatable, Run, decode, encode, run};
-pub use wire::{Wire, assert_same_values, finite, reals, saturated, signs_of, spikes_of};
+pub use wire::{Wire, assert_same_values, finite, reals, saturated, signs_of, spikes_of, whole};

@@ -4,7 +4,7 @@ use fixed::types::extra::{LeEqU16, LeEqU32};
 use fixed::{FixedI16, FixedI32};
 use spikewire::{Sample, Spike};
 
-use crate::reference::{Finite, Real, split_finite};
+use crate::reference::{Finite, Real, clamped, split_finite};
 
 /// A sample type of the crate, and the number that the reference reads it as.
 pub trait Wire: Sample {
@@ -32,7 +32,7 @@ pub trait Wire: Sample {
 }
 
 /// The nearest integer, halves upwards.
-fn whole(value: f64) -> f64 {
+fn nearest_integer(value: f64) -> f64 {
     let below = value.floor();
     if value - below >= 0.5 { below + 1.0 } else { below }
 }
@@ -69,43 +69,45 @@ impl Wire for i16 {
     }
 
     fn nearest(value: f64) -> i16 {
-        whole(value) as i16
+        nearest_integer(value) as i16
     }
 }
 
-impl<Frac: LeEqU16 + Send + Sync + 'static> Wire for FixedI16<Frac> {
-    type Real = f64;
+macro_rules! fixed_wire {
+    ($($Fixed:ident<$Limit:ident> $bits:ty { $($method:tt)* })*) => {$(
+        impl<Frac: $Limit + Send + Sync + 'static> Wire for $Fixed<Frac> {
+            type Real = f64;
 
-    fn real(self) -> f64 {
-        self.to_num()
-    }
+            fn real(self) -> f64 {
+                self.to_num()
+            }
 
-    fn ends() -> [f64; 2] {
-        [Self::MIN.to_num(), Self::MAX.to_num()]
-    }
+            fn ends() -> [f64; 2] {
+                [Self::MIN.to_num(), Self::MAX.to_num()]
+            }
 
-    fn nearest(value: f64) -> Self {
-        Self::from_bits(whole(value / Self::DELTA.to_num::<f64>()) as i16)
+            fn nearest(value: f64) -> Self {
+                Self::from_bits(nearest_integer(value / Self::DELTA.to_num::<f64>()) as $bits)
+            }
+
+            $($method)*
+        }
+    )*};
+}
+fixed_wire! {
+    FixedI16<LeEqU16> i16 {}
+    FixedI32<LeEqU32> i32 {
+        fn residual_limit(magnitude: f64) -> Option<f64> {
+            Some(Self::MAX.to_num::<f64>() - magnitude)
+        }
     }
 }
 
-impl<Frac: LeEqU32 + Send + Sync + 'static> Wire for FixedI32<Frac> {
-    type Real = f64;
-
-    fn real(self) -> f64 {
-        self.to_num()
-    }
-
-    fn ends() -> [f64; 2] {
-        [Self::MIN.to_num(), Self::MAX.to_num()]
-    }
-
-    fn nearest(value: f64) -> Self {
-        Self::from_bits(whole(value / Self::DELTA.to_num::<f64>()) as i32)
-    }
-
-    fn residual_limit(magnitude: f64) -> Option<f64> {
-        Some(Self::MAX.to_num::<f64>() - magnitude)
+/// A sample in units of its type's last place; of `f32` the bits.
+pub fn whole<S: Sample>(sample: S) -> i64 {
+    match size_of::<S>() {
+        2 => i64::from((sample.to_bits32() as u16).cast_signed()),
+        _ => i64::from(sample.to_bits32().cast_signed()),
     }
 }
 
@@ -122,12 +124,7 @@ pub fn finite<S: Wire>(samples: &[S]) -> Finite<S::Real> {
 /// Values of the reference, cut to where the sample type saturates.
 pub fn saturated<S: Wire>(values: &[S::Real]) -> Vec<S::Real> {
     let [lowest, highest] = S::ends();
-    let cut = |value| match value {
-        value if value < lowest => lowest,
-        value if value > highest => highest,
-        value => value,
-    };
-    values.iter().map(|&value| cut(value)).collect()
+    values.iter().map(|&value| clamped(value, lowest, highest)).collect()
 }
 
 /// Spikes as the reference writes them.

@@ -12,6 +12,7 @@
 //! `-threshold`.
 
 use super::Real;
+use super::rate::{decided, encode};
 
 /// Encodes a recording by the aligned form, `e1 <= e2 - threshold`. Without `finish` only whole
 /// windows are decided: `L-(F-1)` entries.
@@ -77,13 +78,7 @@ fn aligned<T: Real>(
     finish: bool,
     fits: impl Fn(T, T) -> bool,
 ) -> Vec<i8> {
-    let mut r: Vec<T> = x.iter().map(|&value| value - shift).collect();
-    let whole = (x.len() + 1).saturating_sub(taps.len());
-    let decided = if finish { x.len() } else { whole };
-    let mut spikes = Vec::with_capacity(decided);
-    for i in 0..decided {
-        let end = x.len().min(i + taps.len());
-        let window = &mut r[i..end];
+    encode(x, taps, shift, decided(x.len(), taps.len(), finish), |i, window| {
         let is_whole = window.len() == taps.len();
         let order: Vec<_> =
             if is_whole { by_slot(i, taps.len()).collect() } else { (0..window.len()).collect() };
@@ -92,15 +87,8 @@ fn aligned<T: Real>(
             e1 = e1 + (window[j] - taps[j]).magnitude();
             e2 = e2 + window[j].magnitude();
         }
-        let spike = fits(e1, e2);
-        if spike {
-            for (r, &h) in window.iter_mut().zip(taps) {
-                *r = *r - h;
-            }
-        }
-        spikes.push(i8::from(spike));
-    }
-    spikes
+        fits(e1, e2)
+    })
 }
 
 #[cfg(test)]

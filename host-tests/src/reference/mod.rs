@@ -25,6 +25,7 @@ mod position;
 mod precise;
 mod probabilistic;
 mod rank_order;
+mod rate;
 mod rate_decoder;
 mod real;
 mod recursive;
@@ -50,10 +51,10 @@ pub use nonlinear::{
 };
 pub use position::{nearest, nearest_even};
 pub use precise::Precise;
-pub use probabilistic::{probabilistic, probabilistic_from_levels};
+pub use probabilistic::probabilistic_from_levels;
 pub use rank_order::{nearest_first, rank_order_value};
 pub use rate_decoder::rate_decode;
-pub use real::{Real, rounded};
+pub use real::{Real, clamped, rounded};
 pub use recursive::{
     Kind, coefficients, delay_at_rest, direct_form, filter_floats, filter_integers, textbook,
 };

@@ -4,24 +4,6 @@
 //! index order whose level is at least 1, one `u32` is drawn; the neuron fires iff its top
 //! `log2 n` bits are less than the level. So level `n` always fires, and level 0 draws nothing.
 
-use super::levels_exp;
-
-/// Which neurons fire for one sample, with levels by the exponential.
-///
-/// # Panics
-/// If `n` is not a power of two.
-pub fn probabilistic(
-    x: f64,
-    min: f64,
-    max: f64,
-    m: usize,
-    beta: f64,
-    n: u16,
-    draw: impl FnMut() -> u32,
-) -> Vec<bool> {
-    probabilistic_from_levels(&levels_exp(x, min, max, m, beta, n), n, draw)
-}
-
 /// Which neurons fire, given their levels.
 ///
 /// # Panics
@@ -42,7 +24,7 @@ pub fn probabilistic_from_levels(
 
 #[cfg(test)]
 mod tests {
-    use super::{probabilistic, probabilistic_from_levels};
+    use super::probabilistic_from_levels;
 
     fn from(values: &[u32]) -> impl FnMut() -> u32 {
         let mut values = values.iter().copied();
@@ -67,11 +49,5 @@ mod tests {
                 .count();
             assert_eq!(fired, usize::from(level));
         }
-    }
-
-    #[test]
-    fn the_neuron_at_the_value_always_fires() {
-        let fired = probabilistic(0.25, 0.0, 1.0, 4, 1.5, 256, || u32::MAX);
-        assert_eq!(fired, [false, true, false, false]);
     }
 }

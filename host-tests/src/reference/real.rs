@@ -70,3 +70,14 @@ impl Real for f64 {
 pub fn rounded<T: Real>(values: &[f64]) -> Vec<T> {
     values.iter().map(|&value| T::rounded(value)).collect()
 }
+
+/// The value of a range that is nearest to this one.
+pub fn clamped<T: PartialOrd>(value: T, min: T, max: T) -> T {
+    if value < min {
+        min
+    } else if value > max {
+        max
+    } else {
+        value
+    }
+}

@@ -3,7 +3,7 @@
 //! Of a whole recording the first value is known, `y[0] = x[0]`, and a spike of the first sample changes
 //! nothing. Only a moving window that is primed with the recording's first window can spike there.
 
-use super::Real;
+use super::{Real, clamped};
 
 /// Decodes signed spikes; `start` is the value before the first of them.
 pub fn step_decode<T: Real>(spikes: &[i8], step: T, start: T) -> Vec<T> {
@@ -25,15 +25,7 @@ pub fn step_decode_within<T: Real>(
     lowest: T,
     highest: T,
 ) -> Vec<T> {
-    accumulate(spikes, step, start, |value| {
-        if value < lowest {
-            lowest
-        } else if value > highest {
-            highest
-        } else {
-            value
-        }
-    })
+    accumulate(spikes, step, start, |value| clamped(value, lowest, highest))
 }
 
 fn accumulate<T: Real>(spikes: &[i8], step: T, start: T, keep: impl Fn(T) -> T) -> Vec<T> {

@@ -8,6 +8,7 @@
 //! `threshold + threshold`.
 
 use super::Real;
+use super::rate::{decided, encode};
 
 /// Encodes a recording. Without `finish` only whole windows are decided: `L-(F-1)` entries.
 pub fn threshold_hough<T: Real>(
@@ -17,26 +18,14 @@ pub fn threshold_hough<T: Real>(
     threshold: T,
     finish: bool,
 ) -> Vec<i8> {
-    let mut r: Vec<T> = x.iter().map(|&value| value - shift).collect();
-    let whole = (x.len() + 1).saturating_sub(taps.len());
-    let decided = if finish { x.len() } else { whole };
-    let mut spikes = Vec::with_capacity(decided);
-    for i in 0..decided {
-        let end = x.len().min(i + taps.len());
-        let window = &mut r[i..end];
-        let mut error = T::ZERO;
-        for (&r, &h) in window.iter().zip(taps) {
-            error = error + ((r - h).magnitude() - (r - h));
-        }
-        let spike = error <= threshold + threshold;
-        if spike {
-            for (r, &h) in window.iter_mut().zip(taps) {
-                *r = *r - h;
-            }
-        }
-        spikes.push(i8::from(spike));
-    }
-    spikes
+    let windows = decided(x.len(), taps.len(), finish);
+    encode(x, taps, shift, windows, |_, window| {
+        let error = window
+            .iter()
+            .zip(taps)
+            .fold(T::ZERO, |error, (&r, &h)| error + ((r - h).magnitude() - (r - h)));
+        error <= threshold + threshold
+    })
 }
 
 #[cfg(test)]

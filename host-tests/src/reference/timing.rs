@@ -4,21 +4,11 @@
 
 use core::ops::RangeInclusive;
 
-use super::Precise;
 use super::line::{Exact, Line, edge, even, points};
+use super::{Precise, clamped};
 
 /// The spikes of a sample.
 pub type Spikes = Vec<(u16, u16)>;
-
-fn clamped<T: Line>(x: T, min: T, max: T) -> T {
-    if x < min {
-        min
-    } else if x > max {
-        max
-    } else {
-        x
-    }
-}
 
 /// The cell of a value, the edges around it, and the slot of its spike, if it has one.
 pub struct Cell<T, F> {

@@ -1,11 +1,12 @@
 //! What the tests of receptive fields share: the reference in each sample type.
 
 use fixed::types::{I1F15, I8F8, I16F16, I32F0};
-use host_tests::compare::Wire;
+use host_tests::compare::{Wire, whole};
 use host_tests::reference::{
     distance_radii, even_centres, levels_by_distance, levels_exp, receptive_field_width, rounded,
     slots_decode,
 };
+use spikewire::Sample;
 
 /// A sample type's receptive fields.
 pub(crate) trait Fields: Wire {
@@ -52,22 +53,18 @@ fn exact_mean(levels: &[u16], min: i128, max: i128, n: u16) -> Option<i128> {
 }
 
 macro_rules! fields {
-    ($sample:ty, $bits:ty, $to_bits:expr, $from_bits:expr) => {
+    ($($sample:ty)*) => {$(
         impl Fields for $sample {
             fn levels(self, min: Self, max: Self, m: usize, beta: f32, n: u16) -> Vec<u16> {
                 levels_exp(self.real(), min.real(), max.real(), m, beta.into(), n)
             }
 
             fn weighted_mean(levels: &[u16], min: Self, max: Self, n: u16) -> Option<Self> {
-                let mean = exact_mean(levels, $to_bits(min).into(), $to_bits(max).into(), n)?;
-                let cut = mean.clamp(<$bits>::MIN.into(), <$bits>::MAX.into());
-                Some($from_bits(cut as $bits))
+                let mean = exact_mean(levels, whole(min).into(), whole(max).into(), n)?;
+                let [least, most] = [<$sample>::MIN, <$sample>::MAX].map(|end| whole(end).into());
+                Some(Self::from_bits32(mean.clamp(least, most) as u32))
             }
         }
-    };
+    )*};
 }
-fields!(i16, i16, |value| value, |bits| bits);
-fields!(I8F8, i16, I8F8::to_bits, I8F8::from_bits);
-fields!(I1F15, i16, I1F15::to_bits, I1F15::from_bits);
-fields!(I16F16, i32, I16F16::to_bits, I16F16::from_bits);
-fields!(I32F0, i32, I32F0::to_bits, I32F0::from_bits);
+fields!(i16 I8F8 I1F15 I16F16 I32F0);

@@ -10,11 +10,11 @@ use host_tests::flight;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
+use spikewire::{ConfigError, Sample};
 
-/// Runs a check in every sample type.
-macro_rules! in_every_type {
+/// Runs a check in every integer type.
+macro_rules! in_every_integer {
     ($check:ident) => {
-        $check::<f32>();
         $check::<i16>();
         $check::<fixed::types::I8F8>();
         $check::<fixed::types::I1F15>();
@@ -22,7 +22,61 @@ macro_rules! in_every_type {
         $check::<fixed::types::I32F0>();
     };
 }
+pub(crate) use in_every_integer;
+
+/// Runs a check in every sample type.
+macro_rules! in_every_type {
+    ($check:ident) => {
+        $check::<f32>();
+        crate::common::in_every_integer!($check);
+    };
+}
 pub(crate) use in_every_type;
+
+/// The test of a check with parameters drawn in every sample type, which is `S`.
+macro_rules! drawn_recordings {
+    ($S:ident: $Bound:path, $cases:literal, ($($value:pat in $values:expr),*) => $check:expr) => {
+        #[test]
+        fn drawn_recordings() {
+            fn drawn<$S: $Bound + crate::common::Drawn>() {
+                let cases = &crate::common::cases($cases);
+                proptest!(cases, |($($value in $values),*)| $check);
+            }
+            crate::common::in_every_type!(drawn);
+        }
+    };
+}
+pub(crate) use drawn_recordings;
+
+/// The test of a check with each channel of the flights in four sample types: `S`, of which 1 rad/s or 1 m/s² is `unit`.
+macro_rules! flights {
+    ($S:ident: $Bound:path, |$samples:ident, $unit:ident| $check:expr) => {
+        #[test]
+        fn flights() {
+            fn flown<$S: $Bound>($unit: f64) {
+                for $samples in crate::common::flown_channels::<$S>($unit) {
+                    $check
+                }
+            }
+            flown::<f32>(1.0);
+            flown::<fixed::types::I16F16>(1.0);
+            flown::<fixed::types::I8F8>(1.0);
+            flown::<i16>(100.0);
+        }
+    };
+}
+pub(crate) use flights;
+
+/// The name of the parameter that a constructor refused.
+pub(crate) fn refused<T>(result: Result<T, ConfigError>) -> &'static str {
+    match result.err().expect("it must be refused") {
+        ConfigError::NotPositive { parameter, .. }
+        | ConfigError::NotFinite { parameter, .. }
+        | ConfigError::NotRising { parameter, .. }
+        | ConfigError::OutOfRange { parameter, .. } => parameter,
+        error => panic!("{error}"),
+    }
+}
 
 /// How a property is tried: with this many cases, times `CASES_TIMES`. They are drawn from the seed that
 /// `.cargo/config.toml` fixes, after those that failed before, whose seeds are in `<test>.proptest-regressions`.
@@ -73,21 +127,6 @@ pub(crate) fn float() -> BoxedStrategy<f32> {
     .boxed()
 }
 
-/// Any finite `f32`.
-pub(crate) fn finite_float() -> BoxedStrategy<f32> {
-    float().prop_filter("finite", |value| value.is_finite()).boxed()
-}
-
-/// Any finite `f32` above 0, handy ones often.
-pub(crate) fn positive_float() -> BoxedStrategy<f32> {
-    prop_oneof![
-        (1..32_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
-        between(0.01, 2.0),
-        finite_float().prop_map(f32::abs).prop_filter("above 0", |&value| value > 0.0),
-    ]
-    .boxed()
-}
-
 /// Values that stay for a while.
 fn steps<T: Clone + std::fmt::Debug + 'static>(value: BoxedStrategy<T>) -> BoxedStrategy<Vec<T>> {
     vec((value, 1..9_usize), 0..12)
@@ -108,21 +147,6 @@ fn walk() -> BoxedStrategy<Vec<i64>> {
                 .collect()
         })
         .boxed()
-}
-
-/// Recordings of `f32`, with values that are not finite among them.
-pub(crate) fn floats() -> BoxedStrategy<Vec<f32>> {
-    prop_oneof![
-        walk().prop_map(|walk| walk.into_iter().map(|value| value as f32 / 8.0).collect()),
-        vec(-4.0_f32..4.0, 0..90),
-        vec(float(), 0..60),
-        steps(float()),
-        (walk(), vec(proptest::option::weighted(0.1, float()), 90)).prop_map(|(walk, faults)| {
-            let faulty = |(value, fault): (i64, Option<f32>)| fault.unwrap_or(value as f32 / 8.0);
-            walk.into_iter().zip(faults).map(faulty).collect()
-        }),
-    ]
-    .boxed()
 }
 
 /// Integers of a type with this largest value, its ends often.
@@ -158,26 +182,51 @@ pub(crate) trait Drawn: Sized + Clone + std::fmt::Debug + 'static {
     fn tap() -> BoxedStrategy<Self>;
 }
 
+/// Ranges of drawn ends, those that rise.
+pub(crate) fn ranges<S: Drawn + Copy + PartialOrd>() -> BoxedStrategy<[S; 2]> {
+    let rising = |(a, b)| if a < b { [a, b] } else { [b, a] };
+    let ranges = (S::value(), S::value()).prop_map(rising);
+    ranges.prop_filter("rising", |[min, max]| min < max).boxed()
+}
+
 impl Drawn for f32 {
     fn recordings() -> BoxedStrategy<Vec<f32>> {
-        floats()
+        let others = vec(proptest::option::weighted(0.1, float()), 90);
+        prop_oneof![
+            walk().prop_map(|walk| walk.into_iter().map(|value| value as f32 / 8.0).collect()),
+            vec(-4.0_f32..4.0, 0..90),
+            vec(float(), 0..60),
+            steps(float()),
+            (walk(), others).prop_map(|(walk, others)| {
+                let either =
+                    |(eighths, other): (i64, Option<f32>)| other.unwrap_or(eighths as f32 / 8.0);
+                walk.into_iter().zip(others).map(either).collect()
+            }),
+        ]
+        .boxed()
     }
     fn value() -> BoxedStrategy<f32> {
-        finite_float()
+        float().prop_filter("finite", |value| value.is_finite()).boxed()
     }
+    /// Handy ones often.
     fn positive() -> BoxedStrategy<f32> {
-        positive_float()
+        prop_oneof![
+            (1..32_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
+            between(0.01, 2.0),
+            f32::value().prop_map(f32::abs).prop_filter("above 0", |&value| value > 0.0),
+        ]
+        .boxed()
     }
     fn tap() -> BoxedStrategy<f32> {
         prop_oneof![
             4 => (1..16_u8).prop_map(|eighths| f32::from(eighths) / 8.0),
             4 => between(0.01, 1.0),
-            1 => finite_float().prop_map(|value| value.clamp(-4e29, 4e29)),
+            1 => f32::value().prop_map(|value| value.clamp(-4e29, 4e29)),
         ]
         .boxed()
     }
     fn shift() -> BoxedStrategy<f32> {
-        prop_oneof![Just(0.0), finite_float().prop_map(|value| value.clamp(-1e31, 1e31))].boxed()
+        prop_oneof![Just(0.0), f32::value().prop_map(|value| value.clamp(-1e31, 1e31))].boxed()
     }
 }
 
@@ -217,9 +266,14 @@ drawn!(I32F0, i32, I32F0::from_bits);
 
 /// All twelve channels of both flights.
 pub(crate) fn flight_channels() -> Vec<Vec<f32>> {
-    let flights = [flight::hexarotor(), flight::vtol_at_rest()];
-    let channels = |flight: &Vec<_>| (0..6).map(|i| flight::channel(flight, i)).collect::<Vec<_>>();
-    flights.iter().flat_map(channels).collect()
+    flight::flights().into_iter().flatten().collect()
+}
+
+/// All twelve channels in a sample type, of which 1 rad/s or 1 m/s² is `unit`.
+pub(crate) fn flown_channels<S: Sample>(unit: f64) -> Vec<Vec<S>> {
+    let scaled = |x: f32| S::from_f64(f64::from(x) * unit);
+    let scaled = |channel: Vec<f32>| channel.into_iter().map(scaled).collect();
+    flight_channels().into_iter().map(scaled).collect()
 }
 
 /// Every way of being short or strange: recordings that each scheme is run on.

@@ -1,10 +1,11 @@
 //! What the tests of the rate schemes share: taps, and signals that make them spike.
 
 use super::Drawn;
-use host_tests::compare::Wire;
+use host_tests::compare::{Wire, signs_of};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use spikewire::rate::Taps;
+use spikewire::{Output, Spike, Start};
 
 /// Calls a generic check with several lengths of the filter: the first taps of a longer list. Some
 /// sample types get all, the others few, as every length is compiled for itself.
@@ -65,6 +66,19 @@ pub(crate) fn first_taps<S: Wire, const F: usize>(list: &[S]) -> Taps<S, F> {
 /// 24 taps whose sum fits the type, the first of them not 0.
 pub(crate) fn taps<S: Wire + Drawn>() -> BoxedStrategy<Vec<S>> {
     vec(S::tap(), 24).prop_filter("not 0 first", |taps| taps[0] != S::default()).boxed()
+}
+
+/// The spikes of a recording, those of the tail last.
+pub(crate) fn spikes_of<P: Start<Code = Spike>>(scheme: &P, x: &[P::Sample]) -> Vec<i8> {
+    let mut encoder = scheme.encoder();
+    let mut spikes: Vec<_> = x.iter().filter_map(|&x| encoder.encode(x).code()).collect();
+    spikes.extend(encoder.finish());
+    signs_of(&spikes)
+}
+
+/// The least sample of a recording.
+pub(crate) fn least<S: Wire>(x: &[S]) -> S {
+    x.iter().copied().fold(x[0], |least, x| if x < least { x } else { least })
 }
 
 /// A triangle of 24 taps, ordinary for any signal of the flights.

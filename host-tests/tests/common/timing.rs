@@ -2,11 +2,10 @@
 
 use std::collections::HashMap;
 
-use fixed::types::extra::{LeEqU16, LeEqU32};
-use fixed::{FixedI16, FixedI32};
-use host_tests::compare::{Repeatable, Wire, assert_same_values, decode, encode};
+use fixed::types::{I1F15, I8F8, I16F16, I32F0};
+use host_tests::compare::{Repeatable, Wire, assert_same_values, decode, encode, whole};
 use host_tests::reference::{Exact, Line, Spikes};
-use spikewire::{Code, NeuronSpike, Output, Polarity, Start};
+use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, Start};
 
 /// A sample type, and the line of values that the reference reads it on.
 pub(crate) trait Lined: Wire {
@@ -25,35 +24,20 @@ impl Lined for f32 {
     }
 }
 
-impl Lined for i16 {
-    type Line = i64;
-    fn line(self) -> i64 {
-        self.into()
-    }
-    fn on(line: i64) -> i16 {
-        line.try_into().unwrap()
-    }
+macro_rules! lined {
+    ($($sample:ty)*) => {$(
+        impl Lined for $sample {
+            type Line = i64;
+            fn line(self) -> i64 {
+                whole(self)
+            }
+            fn on(line: i64) -> Self {
+                Self::from_bits32(i32::try_from(line).unwrap().cast_unsigned())
+            }
+        }
+    )*};
 }
-
-impl<F: LeEqU16 + Send + Sync + 'static> Lined for FixedI16<F> {
-    type Line = i64;
-    fn line(self) -> i64 {
-        self.to_bits().into()
-    }
-    fn on(line: i64) -> Self {
-        Self::from_bits(line.try_into().unwrap())
-    }
-}
-
-impl<F: LeEqU32 + Send + Sync + 'static> Lined for FixedI32<F> {
-    type Line = i64;
-    fn line(self) -> i64 {
-        self.to_bits().into()
-    }
-    fn on(line: i64) -> Self {
-        Self::from_bits(line.try_into().unwrap())
-    }
-}
+lined!(i16 I8F8 I1F15 I16F16 I32F0);
 
 /// The spikes of a code.
 pub(crate) fn spikes_of(code: &impl Code) -> Spikes {
@@ -124,11 +108,6 @@ pub(crate) fn assert_law<P>(
         let off = (exact - ours).abs();
         assert!(off <= bound(exact), "{x:?} is decoded as {value:?}, off by {off}");
     }
-}
-
-/// Ranges of drawn ends, those that rise.
-pub(crate) fn rising<S: Lined>(a: S, b: S) -> [S; 2] {
-    if a < b { [a, b] } else { [b, a] }
 }
 
 /// Samples close to each of these lines, in `f32`.

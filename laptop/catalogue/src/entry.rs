@@ -4,7 +4,7 @@ use spikewire::population::Position;
 use spikewire::{ConfigError, Sample, Scheme, Spike, Start};
 
 use crate::plain::{self, Plain};
-use crate::{Channel, InC, Info, Scaled, State};
+use crate::{Channel, InC, Info, Scaled, Storable};
 
 /// A scheme of the catalogue.
 pub trait Entry {
@@ -38,7 +38,7 @@ pub trait Flight {
     ///
     /// # Errors
     /// Returns the visitor's errors.
-    fn visit<P: Scheme<Sample = Self::Sample, EncoderState: State, DecoderState: State>>(
+    fn visit<P: Storable<Sample = Self::Sample>>(
         &mut self,
         name: &'static str,
         words: &'static str,

@@ -26,7 +26,7 @@ pub use entry::{Count, Entry, Flight};
 pub use in_c::{Argument, Flown, InC, Made};
 pub use info::{Found, Info, Kind, Paper, Parameter, Search, StepErrors, Unit};
 pub use signal::Scaled;
-pub use state::State;
+pub use state::{State, Storable};
 
 /// Calls a function without inlining it: a small board's stack has room for only one scheme at a time.
 #[inline(never)]

@@ -1,5 +1,7 @@
 //! The trait of states that visitors can write and read.
 
+use spikewire::Scheme;
+
 /// A state that can be written and read back; with the feature `serde`.
 #[cfg(feature = "serde")]
 pub trait State: serde::Serialize + serde::de::DeserializeOwned {}
@@ -13,3 +15,8 @@ impl<T: serde::Serialize + serde::de::DeserializeOwned> State for T {}
 
 #[cfg(not(feature = "serde"))]
 impl<T> State for T {}
+
+/// A scheme whose states can be written and read back, as those of all schemes can.
+pub trait Storable: Scheme<EncoderState: State, DecoderState: State> {}
+
+impl<P: Scheme<EncoderState: State, DecoderState: State>> Storable for P {}

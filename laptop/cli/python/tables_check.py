@@ -28,7 +28,7 @@ def write(directory, recording):
     """The recording in every format: the path of each, and what reads it."""
     table = pd.read_csv(recording, float_precision="round_trip")
     at = directory.joinpath
-    for packing in ("none", "snappy", "lz4"):
+    for packing in ("none", "snappy", "lz4", "gzip"):
         table.to_parquet(at(f"{packing}.parquet"), compression=packing, index=False)
         yield at(f"{packing}.parquet"), []
     table.to_json(at("lines.jsonl"), orient="records", lines=True, double_precision=15)
@@ -42,9 +42,11 @@ def write(directory, recording):
     np.save(at("swapped.npy"), table.to_records(index=False).astype([(own, ">f8") for own in table.columns]))
     yield at("swapped.npy"), []
     np.save(at("plain.npy"), np.ascontiguousarray(table.to_numpy()))
+    np.save(at("turned.npy"), np.asfortranarray(table.to_numpy()))
     places = [str(1 + table.columns.get_loc(f"gyro_{own}")) for own in "xyz"]
     time = ["--time", str(1 + table.columns.get_loc("time_us")), "--time-unit", "us"]
-    yield at("plain.npy"), ["--columns", ",".join(places), *time]
+    for name in ("plain.npy", "turned.npy"):
+        yield at(name), ["--columns", ",".join(places), *time]
     np.savez(at("arrays.npz"), **{own: table[own].to_numpy() for own in table.columns})
     yield at("arrays.npz"), []
     np.savez_compressed(at("packed.npz"), time_us=table.time_us.to_numpy(), gyro=table[["gyro_x", "gyro_y", "gyro_z"]].to_numpy())

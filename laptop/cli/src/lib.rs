@@ -5,6 +5,7 @@ mod commands;
 mod inputs;
 mod live;
 mod options;
+mod panel;
 mod stop;
 mod words;
 

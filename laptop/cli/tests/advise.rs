@@ -201,3 +201,12 @@ fn a_log_on_the_ground_or_too_short_has_a_verdict() {
         assert!(ran.output.contains(words) && !ran.output.contains("take "), "{}", ran.output);
     }
 }
+
+#[test]
+fn the_example_s_flight_is_what_the_readme_s_command_writes() {
+    let directory = tempfile::tempdir().unwrap();
+    let (path, log) = (directory.path().join("flight.toml"), flight("hexarotor.csv"));
+    ran!("advise {log} --loop-bandwidth 4 -o {}", path.display());
+    let written = std::fs::read_to_string(path).unwrap();
+    assert_eq!(written, include_str!("../../../examples/one-file/flight.toml"));
+}

@@ -101,24 +101,39 @@ fn one_neuron_has_the_potentials_that_were_published() {
 /// are within 2e-5.
 #[test]
 fn networks_fire_as_their_frameworks_do() {
-    use Reset::{SubtractLate, SubtractNoDelay, ToValue, ToValueLate};
+    use Reset::{NoReset, Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueLate};
     let torch = |reset| Asked { resets: vec![reset], ..by(Framework::SnnTorch) };
     // In snnTorch 1.0.0, RSynaptic resets late whatever its argument `reset_delay`.
     let mixed = |first, last| Asked { resets: vec![first, last], ..by(Framework::SnnTorch) };
     let norse = Asked { dt: Some(1e-3), current: Some(Current::Whole), ..by(Framework::Norse) };
+    let subtracting = |asked: &Asked| Asked { resets: vec![Subtract], ..asked.clone() };
+    let jelly = by(Framework::SpikingJelly);
     for (name, reset, asked) in [
         ("snntorch", "subtract-late", torch(SubtractLate)),
         ("snntorch", "to-value-late", torch(ToValueLate)),
         ("snntorch", "subtract-no-delay", torch(SubtractNoDelay)),
         ("snntorch", "to-value", torch(ToValue)),
+        ("snntorch", "none", torch(NoReset)),
         ("snntorch_recurrent", "subtract-late", torch(SubtractLate)),
         ("snntorch_recurrent", "to-value-late", torch(ToValueLate)),
         ("snntorch_recurrent", "subtract-no-delay", mixed(SubtractLate, SubtractNoDelay)),
         ("snntorch_recurrent", "to-value", mixed(ToValueLate, ToValue)),
-        ("spikingjelly", "to-value", by(Framework::SpikingJelly)),
-        ("spikingjelly_cuba", "to-value", by(Framework::SpikingJelly)),
+        ("snntorch_recurrent", "none", torch(NoReset)),
+        ("snntorch_one_to_one", "subtract-late", torch(SubtractLate)),
+        ("snntorch_one_to_one", "to-value-late", torch(ToValueLate)),
+        ("snntorch_one_to_one", "subtract-no-delay", torch(SubtractNoDelay)),
+        ("snntorch_one_to_one", "to-value", torch(ToValue)),
+        ("snntorch_one_to_one", "none", torch(NoReset)),
+        ("spikingjelly", "to-value", jelly.clone()),
+        ("spikingjelly", "subtract", subtracting(&jelly)),
+        ("spikingjelly_cuba", "to-value", jelly.clone()),
+        ("spikingjelly_recurrent", "to-value", jelly.clone()),
+        ("spikingjelly_recurrent", "subtract", subtracting(&jelly)),
         ("norse", "to-value", norse.clone()),
-        ("norse_cell", "to-value", norse),
+        ("norse", "subtract", subtracting(&norse)),
+        ("norse_cell", "to-value", norse.clone()),
+        ("norse_if", "to-value", norse.clone()),
+        ("norse_recurrent", "to-value", norse.clone()),
     ] {
         let steps = text(&format!("{name}.{reset}.txt"));
         let steps: Vec<Vec<&str>> = steps.lines().map(|line| line.split(';').collect()).collect();

@@ -604,3 +604,38 @@ fn a_terminal_shows_counts_while_they_grow() {
     assert!(shown.contains("/s 0:") && shown.contains(" 0 lost in 0 gaps"), "{shown}");
     assert!(shown.contains("60 frames: 0 lost in 0 gaps"), "{shown}");
 }
+
+#[test]
+fn values_are_drawn_in_a_terminal_alone() {
+    let board = board(&[50.0, 60.0, 70.0].map(StepForward::<f32>::new));
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("bytes");
+    fs::write(&path, board.frames.concat()).unwrap();
+    let listen = format!("listen {} --live", path.display());
+    let sf = format!("{listen} --scheme sf --thresholds 50,60,70");
+    refused(&listen, "", &["--live draws values: it needs --flight or --scheme"]);
+    refused(&sf, "", &["--live draws in a terminal, and standard output is none"]);
+
+    let (terminal, _, open) = serial_line();
+    let size = rustix::termios::Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
+    rustix::termios::tcsetwinsize(&open, size).unwrap();
+    let end = || Stdio::from(open.try_clone().unwrap());
+    let mut program = Command::new(env!("CARGO_BIN_EXE_spikewire"));
+    program.args(sf.split_whitespace()).stdin(end()).stdout(end()).stderr(Stdio::piped());
+    let child = program.spawn().unwrap();
+    drop((program, open));
+    let (mut terminal, mut drawn) = (terminal, Vec::new());
+    let mut bytes = [0; 4096];
+    // A terminal that nobody has open any more is an error.
+    while let Ok(count @ 1..) = terminal.read(&mut bytes) {
+        drawn.extend_from_slice(&bytes[..count]);
+        if bytes[..count].ends_with(b"\x1b[6n") {
+            terminal.write_all(b"\x1b[1;1R").unwrap(); // where the cursor is
+        }
+    }
+    finish(child);
+    let drawn = String::from_utf8_lossy(&drawn);
+    for words in ["channel", "exact", "▀", "▄", "frames"] {
+        assert!(drawn.contains(words), "{words}: {drawn}");
+    }
+}

@@ -6,100 +6,11 @@ use lab::flight::Flight;
 use spikewire::link::{MAX_FRAME, Session, Transmitter};
 use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
+
+#[path = "../../flight/examples/mistaken/list.rs"]
+mod list;
 
 const SAMPLES: usize = 60;
-const NAMES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
-
-/// The fields of a flight file, to be varied one at a time.
-struct File<'a> {
-    scheme: &'a str,
-    parameters: String,
-    sample: &'a str,
-    period: usize,
-    names: [String; 4],
-    unit: &'a str,
-    counts: f64,
-    filter: String,
-}
-
-impl Default for File<'_> {
-    fn default() -> Self {
-        Self {
-            scheme: "sf",
-            parameters: "threshold = 0.1".into(),
-            sample: "f32",
-            period: 2000,
-            names: NAMES.map(str::to_owned),
-            unit: "rad/s",
-            counts: 1.0,
-            filter: String::new(),
-        }
-    }
-}
-
-impl File<'_> {
-    fn text(&self) -> String {
-        let Self { scheme, parameters, sample, period, names, unit, counts, filter } = self;
-        let mut text = format!(
-            "version = 1\nscheme = \"{scheme}\"\nsample = \"{sample}\"\nperiod = {period}\nkeyframe_every = 5\n{filter}\n\
-             parameters = {{ {parameters} }}\n"
-        );
-        for name in names {
-            let channel = format!("name = \"{name}\"\nunit = \"{unit}\"\ncounts = {counts:?}");
-            writeln!(text, "[[channel]]\n{channel}").unwrap();
-        }
-        text
-    }
-}
-
-/// Returns a flight file for each scheme in the catalogue.
-fn codes() -> Vec<String> {
-    let codes = catalogue::INFO.iter().map(|info| File {
-        scheme: info.name,
-        parameters: catalogue::run::example(info),
-        ..File::default()
-    });
-    codes.map(|file| file.text()).collect()
-}
-
-/// Returns, for each field of a flight file, files that differ in this field only.
-fn kinds() -> BTreeMap<&'static str, Vec<String>> {
-    let seven =
-        |file: &dyn Fn(usize) -> File<'static>| (0..7).map(|step| file(step).text()).collect();
-    let file = File::default;
-    let swapped = |one: usize, other: usize| {
-        let mut names = NAMES.map(str::to_owned);
-        names.swap(one, other);
-        File { names, ..file() }.text()
-    };
-    let swaps = (0..4).flat_map(|one| (0..=one).map(move |other| (one, other)));
-    let samples = ["f32", "q16.16", "q4.28", "q6.26", "q8.8", "q5.11", "q6.10"];
-    let units = ["", "rad/s", "deg/s", "m/s", "m/s²", "g", "V"];
-    BTreeMap::from([
-        ("code", codes()),
-        ("sample type", seven(&|step| File { sample: samples[step], ..file() })),
-        (
-            "threshold",
-            seven(&|step| File { parameters: format!("threshold = 0.1{step}"), ..file() }),
-        ),
-        ("order of equal channels", swaps.map(|(one, other)| swapped(one, other)).collect()),
-        (
-            "names",
-            seven(&|step| File { names: NAMES.map(|name| format!("{name}{step}")), ..file() }),
-        ),
-        ("period", seven(&|step| File { period: 2000 + step, ..file() })),
-        ("unit", seven(&|step| File { unit: units[step], ..file() })),
-        ("counts", seven(&|step| File { counts: 1.0 + step as f64 / 8.0, ..file() })),
-        (
-            "filter",
-            seven(&|step| File {
-                filter: format!("filter = {{ kind = \"low-pass\", corner = {} }}", 40 + step),
-                ..file()
-            }),
-        ),
-    ])
-}
 
 /// Simulates the sender of a flight; returns its frames, which carry the flight's fingerprint.
 fn sent(flight: &Flight) -> Vec<u8> {
@@ -196,48 +107,50 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
+/// A sender: its flight file, the kinds that this file belongs to, and the sender's frames.
+struct Sender {
+    text: String,
+    kinds: BTreeSet<&'static str>,
+    flight: Flight,
+    frames: Vec<u8>,
+}
+
+fn senders() -> Vec<Sender> {
+    let flights = list::flights().into_iter();
+    let senders = flights.map(|(text, kinds)| {
+        let flight = Flight::parse(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        let frames = sent(&flight);
+        Sender { text, kinds, flight, frames }
+    });
+    senders.collect()
+}
+
 #[test]
 fn no_mistaken_pair_has_an_exact_value() {
-    let mut found: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
-    let kinds = kinds();
-    for (kind, texts) in &kinds {
-        for text in texts {
-            found.entry(text.clone()).or_default().insert(kind);
-        }
-    }
-    let flights: Vec<_> = found
-        .iter()
-        .map(|(text, kinds)| {
-            let flight = Flight::parse(text).unwrap_or_else(|error| panic!("{error}: {text}"));
-            let frames = sent(&flight);
-            (text, kinds, flight, frames)
-        })
-        .collect();
+    let senders = senders();
     let (mut heard_own, mut same) = (0, 0);
     let mut pairs: BTreeMap<&str, usize> = BTreeMap::new();
-    for (near, near_kinds, sender, frames) in &flights {
-        for (far, far_kinds, flight, _) in &flights {
-            if near_kinds.is_disjoint(far_kinds) {
-                continue;
-            }
-            let exact = exact(flight, frames);
-            if near == far {
-                heard_own += usize::from(exact > 20);
+    for near in &senders {
+        heard_own += usize::from(exact(&near.flight, &near.frames) > 20);
+        for far in senders.iter().filter(|far| far.text != near.text) {
+            let mut common = near.kinds.intersection(&far.kinds).peekable();
+            if common.peek().is_none() {
                 continue;
             }
             // Receptive fields of one width are the same code as the cells between their centres.
-            if sender.fingerprint() == flight.fingerprint() {
+            if near.flight.fingerprint() == far.flight.fingerprint() {
                 same += 1;
                 continue;
             }
-            assert_eq!(exact, 0, "{near}\nheard by\n{far}");
-            let common = near_kinds.intersection(far_kinds);
+            let exact = exact(&far.flight, &near.frames);
+            assert_eq!(exact, 0, "{}\nheard by\n{}", near.text, far.text);
             common.for_each(|kind| *pairs.entry(kind).or_default() += 1);
         }
     }
-    println!("{pairs:?}; {heard_own} of {} hear their own", flights.len());
-    assert!(kinds.keys().all(|kind| pairs[kind] >= 30), "{pairs:?}");
+    println!("{pairs:?}; {heard_own} of {} hear their own", senders.len());
+    let kinds: BTreeSet<_> = senders.iter().flat_map(|own| &own.kinds).collect();
+    assert!(kinds.into_iter().all(|kind| pairs[kind] >= 30), "{pairs:?}");
     assert_eq!(same, 2, "grf and position");
     // Codes that decode to means are never exact, and some rate codes need more samples.
-    assert!(heard_own + 8 > flights.len(), "{heard_own} of {}", flights.len());
+    assert!(heard_own + 8 > senders.len(), "{heard_own} of {}", senders.len());
 }

@@ -19,7 +19,8 @@ use std::path::Path;
 /// Pairs of a name and the text that `{name}` stands for; a later definition may use the names before it.
 type Names = Vec<(String, String)>;
 
-/// Returns the names that all files of cases may use, after writing the files that some of them stand for.
+/// Returns the names that every file of cases may use. Writes the sample logs that some of the names stand for into
+/// `directory`.
 fn names(directory: &Path) -> Names {
     let wave = |size: f64| -> Vec<f64> {
         (0..500).map(|sample| (f64::from(sample) * 0.05).sin() * size).collect()

@@ -9,7 +9,7 @@ use std::fmt::{Debug, Write};
 ///
 /// | item | |
 /// |---|---|
-/// | `CHANNELS`, `NAMES`, `COUNTS` | number of channels; their names; the number of counts in one unit of each |
+/// | `CHANNELS`, `NAMES`, `UNITS`, `COUNTS` | number of channels; their names; their units; the number of counts in one unit of each |
 /// | `Code`, `SCHEMES` | type of the channels' schemes; the schemes, in flash |
 /// | `Bank`, `BANK` | type of the bank of encoders; the bank before the first sample |
 /// | `LABEL` | period, names, units and counts as text, a part of the fingerprint |
@@ -20,24 +20,13 @@ use std::fmt::{Debug, Write};
 /// # Errors
 /// Returns an error if the scheme cannot be written as a constant: random codes need a generator of the user's.
 pub fn rust(flight: &Flight) -> Result<String, FlightError> {
-    // Channels with the same parameters share a constant.
-    let mut statics: Vec<(Constant, Vec<&str>)> = Vec::new();
-    let mut schemes = Vec::new();
-    for (channel, described) in flight.channels.iter().enumerate() {
-        let constant = flight.constant(channel)?;
-        let index = statics.iter().position(|(known, _)| *known == constant);
-        let index = index.unwrap_or_else(|| {
-            statics.push((constant, Vec::new()));
-            statics.len() - 1
-        });
-        statics[index].1.push(&described.name);
-        schemes.push(format!("&SCHEME_{index}"));
-    }
+    let (statics, schemes) = constants(flight)?;
     let Some((Constant { scheme: code, .. }, _)) = statics.first() else {
         return Err(FlightError::new("channel", FlightErrorKind::Missing));
     };
     let (channels, coding) = (flight.channels.len(), flight.coding());
     let names = listed(flight.channels.iter().map(|channel| &channel.name));
+    let units = listed(flight.channels.iter().map(|channel| &channel.unit));
     let counts = listed(flight.channels.iter().map(|channel| channel.counts));
     let slots = match flight.slot_ticks() {
         0 => String::new(),
@@ -56,6 +45,10 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     item(
         "Names of the channels, in the order of a sample.",
         format!("pub const NAMES: [&str; CHANNELS] = [{names}];"),
+    );
+    item(
+        "Units of the channels, empty where unknown.",
+        format!("pub const UNITS: [&str; CHANNELS] = [{units}];"),
     );
     item(
         "Number of counts in one unit of each channel.",
@@ -123,6 +116,26 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         ),
     );
     Ok(module(&items))
+}
+
+/// Constants of a flight's schemes, each with the names of its channels, and for each channel a reference to its constant.
+type Constants<'a> = (Vec<(Constant, Vec<&'a str>)>, Vec<String>);
+
+/// Returns the constants of a flight's schemes. Channels with the same parameters share one.
+fn constants(flight: &Flight) -> Result<Constants<'_>, FlightError> {
+    let mut statics: Vec<(Constant, Vec<&str>)> = Vec::new();
+    let mut schemes = Vec::new();
+    for (channel, described) in flight.channels.iter().enumerate() {
+        let constant = flight.constant(channel)?;
+        let index = statics.iter().position(|(known, _)| *known == constant);
+        let index = index.unwrap_or_else(|| {
+            statics.push((constant, Vec::new()));
+            statics.len() - 1
+        });
+        statics[index].1.push(&described.name);
+        schemes.push(format!("&SCHEME_{index}"));
+    }
+    Ok((statics, schemes))
 }
 
 /// Returns the source code of the module with these items.

@@ -9,9 +9,9 @@ use crate::Result;
 use crate::brief::{brief, short};
 use crate::events::{Format, Item};
 use crate::flight::{Filter, Filtering};
-use crate::look::{Look, Verdict, known_unit};
+use crate::look::{ChannelSummary, Verdict, known_unit};
 use crate::scheme::Scheme;
-use crate::steep::Steep;
+use crate::slope::Slope;
 use crate::trial::{Recording, Trial};
 use crate::tune::RequestKind;
 use crate::tune::problem::Limit;
@@ -30,8 +30,9 @@ use std::time::{Duration, Instant};
 /// 80°.
 const PHASE: f64 = 20.0;
 
-/// Largest share of a log's samples at which step forward may fall behind the signal. In the flights of `docs/loop.md`
-/// a threshold that falls behind at 0.9 % of the samples flies; one that does at 3.9 % loses steps and flips.
+/// Largest share of a log's samples at which the code step-forward may fall behind the signal. In the flights of
+/// `docs/loop.md` a threshold that falls behind at 0.9 % of the samples flies; one that does at 3.9 % loses steps and
+/// flips.
 const STEEP: f64 = 0.02;
 
 /// Smallest sample rate that a control loop can work with, in multiples of the loop's bandwidth. The Nyquist rate, a
@@ -96,7 +97,7 @@ impl AdviseRequest {
 /// The advice on one channel.
 #[derive(Debug, Serialize)]
 pub struct Advice {
-    look: Look,
+    look: ChannelSummary,
     /// The reason that no scheme is advised, if none is.
     objection: Option<String>,
     max_rmse: f64,
@@ -219,7 +220,7 @@ impl Advice {
     fn new(request: &AdviseRequest, recording: &Recording) -> Result<Self> {
         /// Default RMSE as a share of the standard deviation: a signal-to-noise ratio of 14 dB.
         const PART: f64 = 0.2;
-        let look = Look::at(recording);
+        let look = ChannelSummary::of(recording);
         let objection = look.objection().filter(|_| look.verdict != Verdict::Clipped);
         let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };
         let loop_latency = match (request.loop_bandwidth, recording.rate) {
@@ -332,8 +333,8 @@ impl Advice {
                     found.evaluated
                 ),
             };
-            let ends = found.ends.iter().map(|end| format!(" ({})", end.words()));
-            return missed(what + &ends.collect::<String>());
+            let bounds = found.bounds.iter().map(|bound| format!(" ({})", bound.words()));
+            return missed(what + &bounds.collect::<String>());
         }
         let row = Row::new(&problem, &cut, &found, best, None)?;
         if let Some(held_out) = row.held_out.filter(|own| own.rmse > MARGIN * self.max_rmse) {
@@ -342,9 +343,9 @@ impl Advice {
                 short(held_out.rmse)
             ));
         }
-        let steep = Steep::new(scheme, recording, &row.settings).filter(|own| own.part() > STEEP);
-        if let Some(steep) = steep.filter(|_| self.loop_latency.is_some()) {
-            return missed(format!("falls behind in a loop: {}", steep.words()));
+        let slope = Slope::new(scheme, recording, &row.settings).filter(|own| own.part() > STEEP);
+        if let Some(slope) = slope.filter(|_| self.loop_latency.is_some()) {
+            return missed(format!("falls behind in a loop: {}", slope.words()));
         }
         let options = row.settings.to_asked(scheme.info());
         let trial = Trial::new(scheme, &options, problem.sample, recording)?;
@@ -390,7 +391,8 @@ impl Advice {
 
     /// Formats the advice as text for people.
     pub fn page(&self) -> String {
-        let Look { name, samples, seconds, rate, jitter_ms, gaps, rejected, .. } = &self.look;
+        let ChannelSummary { name, samples, seconds, rate, jitter_ms, gaps, rejected, .. } =
+            &self.look;
         let unit = known_unit(name).map_or(String::new(), |unit| format!(" {unit}"));
         let round = |value: f64| short((value * 1000.0).round() / 1000.0);
         let mut lines = vec![name.clone()];
@@ -401,7 +403,9 @@ impl Advice {
             .map_or(String::new(), |jitter| format!(", jitter {} ms, {gaps} gaps", round(jitter)));
         let holes = if *rejected > 0 { format!(", {rejected} missing") } else { String::new() };
         lines.push(format!("  {samples} samples{time}{jitter}{holes}"));
-        let Look { min, max, rest, resting, noise, bandwidth, clipped, deviation, .. } = &self.look;
+        let ChannelSummary {
+            min, max, rest, resting, noise, bandwidth, clipped, deviation, ..
+        } = &self.look;
         let rest = rest.map_or("no stretch at rest".to_owned(), |[low, high]| {
             format!("at rest {} to {} ({resting:.0} % of the time)", short(low), short(high))
         });

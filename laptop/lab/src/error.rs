@@ -6,7 +6,7 @@ use crate::events::EventsKind;
 use crate::frames::FramesKind;
 use crate::input::{LogKind, TableKind};
 #[cfg(feature = "networks")]
-use crate::network::NetworkKind;
+use crate::network::{FitKind, LayerKind, ModelKind, NetworkKind, NirKind};
 use crate::output::OutputKind;
 use crate::spikes::SpikesKind;
 use crate::tune::RequestKind;
@@ -78,9 +78,21 @@ pub enum ErrorKind {
     /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
-    /// A trained network cannot be read, or does not fit.
+    /// A trained network, or what is asked for it, is refused as a whole.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
+    /// A NIR file cannot be read, or its graph is not taken.
+    #[cfg(feature = "networks")]
+    Nir(NirKind),
+    /// The parameters of a layer of a network are invalid.
+    #[cfg(feature = "networks")]
+    Layer(LayerKind),
+    /// A trained network does not fit a chip or the controller.
+    #[cfg(feature = "networks")]
+    Fit(FitKind),
+    /// A chip's model fails under its driver.
+    #[cfg(feature = "networks")]
+    Model(ModelKind),
     /// A serial port cannot be read.
     #[cfg(all(feature = "ports", not(target_family = "wasm")))]
     Port(crate::port::PortKind),
@@ -225,6 +237,14 @@ impl ErrorKind {
             Self::Frames(kind) => kind.name(),
             #[cfg(feature = "networks")]
             Self::Network(kind) => kind.name(),
+            #[cfg(feature = "networks")]
+            Self::Nir(kind) => kind.name(),
+            #[cfg(feature = "networks")]
+            Self::Layer(kind) => kind.name(),
+            #[cfg(feature = "networks")]
+            Self::Fit(kind) => kind.name(),
+            #[cfg(feature = "networks")]
+            Self::Model(kind) => kind.name(),
             #[cfg(all(feature = "ports", not(target_family = "wasm")))]
             Self::Port(kind) => kind.name(),
             #[cfg(any(test, feature = "capture"))]
@@ -320,6 +340,14 @@ impl Worded for Error {
             ErrorKind::Frames(kind) => kind.word_about(f, spell, about),
             #[cfg(feature = "networks")]
             ErrorKind::Network(kind) => kind.word_about(f, spell, about),
+            #[cfg(feature = "networks")]
+            ErrorKind::Nir(kind) => kind.word_about(f, spell, about),
+            #[cfg(feature = "networks")]
+            ErrorKind::Layer(kind) => kind.word_about(f, spell, about),
+            #[cfg(feature = "networks")]
+            ErrorKind::Fit(kind) => kind.word_about(f, spell, about),
+            #[cfg(feature = "networks")]
+            ErrorKind::Model(kind) => kind.word_about(f, spell, about),
             #[cfg(all(feature = "ports", not(target_family = "wasm")))]
             ErrorKind::Port(kind) => kind.word_about(f, spell, about),
             #[cfg(any(test, feature = "capture"))]

@@ -11,7 +11,7 @@ use crate::tune::RequestKind;
 use crate::tune::report::Row;
 use crate::values;
 use catalogue::run::{Asked, Given, SampleType, Words};
-use spikewire::link::Received;
+use spikewire::link::{Received, Withheld};
 use spikewire_flight::FlightError;
 use std::num::NonZeroU16;
 
@@ -192,5 +192,9 @@ impl Values for InUnits<'_, '_> {
 
     fn count(&self, tally: &mut LinkTally) {
         self.values.count(tally);
+    }
+
+    fn withheld(&self, channel: u16) -> Option<Withheld> {
+        self.values.withheld(channel)
     }
 }

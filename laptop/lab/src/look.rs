@@ -1,4 +1,4 @@
-//! Examines a channel before it is encoded: rate, noise, bandwidth, range, and whether it is fit for tuning.
+//! Summarises a channel before it is encoded: rate, noise, bandwidth, range, and whether it is fit for tuning.
 
 use crate::brief::short;
 use crate::trial::Recording;
@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// A summary of a channel's samples.
 #[derive(Clone, Debug, Serialize)]
-pub struct Look {
+pub struct ChannelSummary {
     /// Name of the channel.
     pub name: String,
     /// Number of finite samples.
@@ -35,9 +35,9 @@ pub struct Look {
     pub bandwidth: Option<f64>,
     /// Percentage of samples at the lowest or highest value, in runs of three or more.
     pub clipped: f64,
-    /// Lowest and highest sample while the channel is quiet, if it is quiet at some times only.
+    /// Lowest and highest sample while the channel is quiet; `None` if it is always or never quiet.
     pub rest: Option<[f64; 2]>,
-    /// Lowest and highest sample while the channel is not quiet, if it is quiet at some times only.
+    /// Lowest and highest sample while the channel is not quiet; `None` if it is always or never quiet.
     pub flight: Option<[f64; 2]>,
     /// Percentage of samples during which the channel is quiet.
     pub resting: f64,
@@ -74,9 +74,9 @@ const WHITE: f64 = 0.6;
 /// Number of samples in a window over which noise and movement are measured.
 const WINDOW: usize = 64;
 
-impl Look {
-    /// Examines a recording, which must have at least one sample.
-    pub fn at(recording: &Recording) -> Self {
+impl ChannelSummary {
+    /// Summarises a recording, which must have at least one sample.
+    pub fn of(recording: &Recording) -> Self {
         let values = &recording.values;
         let samples = values.len();
         let (min, max) =
@@ -173,8 +173,8 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Estimates the standard deviation of the noise from second differences, averaged over the quietest tenth of the
-/// windows. The second differences of a slow signal are near 0; those of white noise have √6 times its deviation.
+/// Estimates the standard deviation of the noise from second differences, as the tenth percentile of all windows. The
+/// second differences of a slow signal are near 0; those of white noise have √6 times its deviation.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));
@@ -208,8 +208,8 @@ fn flatness(values: &[f64]) -> f64 {
     if arithmetic > 0.0 { logarithm.exp() / arithmetic } else { 1.0 }
 }
 
-/// Returns for each window whether the channel is quiet there: whether its deviation is at most four times that of the
-/// quietest twentieth of the windows.
+/// Returns for each window whether the channel is quiet there: whether its deviation is at most four times the fifth
+/// percentile of all windows.
 fn quiet(values: &[f64]) -> Vec<bool> {
     const QUIET: f64 = 4.0;
     let deviations: Vec<f64> = values.chunks(WINDOW).map(deviation).collect();

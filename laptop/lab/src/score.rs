@@ -1,7 +1,7 @@
 //! Scores a trial: counts its spikes, and measures the error of the decoded values.
 
 use crate::brief::{brief, json};
-use crate::steep::Steep;
+use crate::slope::Slope;
 use crate::trial::{Recording, Trial};
 use serde::Serialize;
 use serde_json::Value;
@@ -27,7 +27,7 @@ pub struct Figures {
     /// The parameters that were used, by their keys.
     pub parameters: BTreeMap<&'static str, Value>,
     /// The signal's slope compared with the largest that the code can follow; `None` if the code can follow any slope.
-    pub slope: Option<Steep>,
+    pub slope: Option<Slope>,
     /// Notes for the user.
     pub notes: Vec<String>,
     /// The parameters in short form.
@@ -60,7 +60,7 @@ impl Figures {
                 .map(|seconds| trial.events.len() as f64 / seconds),
             brief: brief(parameters),
             parameters: parameters.iter().map(|(key, value)| (*key, json(value))).collect(),
-            slope: Steep::new(trial.scheme, recording, &trial.settings),
+            slope: Slope::new(trial.scheme, recording, &trial.settings),
             notes: trial.notes.clone(),
         }
     }

@@ -6,7 +6,7 @@ use crate::scheme::Scheme as Chosen;
 use crate::tune::RequestKind;
 use catalogue::for_sample_type;
 use catalogue::run::{SampleType, Settings, Visit};
-use spikewire::link::{Received, Receiver};
+use spikewire::link::{Received, Receiver, Withheld};
 use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
@@ -266,7 +266,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
 
     /// Returns whether each channel's value is exact.
     fn exact(&self) -> [bool; N] {
-        std::array::from_fn(|channel| self.receiver.exact(channel as u16).is_some())
+        let is_exact = |channel| self.receiver.exact(channel as u16).is_some();
+        std::array::from_fn(|channel| channel < self.channels && is_exact(channel))
     }
 
     /// Notes which channels fire in a frame, and the tick at which the frame's last sample is over.
@@ -370,5 +371,9 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P,
         let heard = self.has_fired.iter().position(|has_fired| *has_fired).unwrap_or(0);
         let is_heard = tally.frames > 0 && !self.has_exact;
         tally.withheld = self.receiver.withheld(heard as u16).filter(|_| is_heard);
+    }
+
+    fn withheld(&self, channel: u16) -> Option<Withheld> {
+        self.receiver.withheld(channel)
     }
 }

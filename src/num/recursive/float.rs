@@ -120,21 +120,21 @@ impl Recursive for f32 {
         samples: &[f32],
         outputs: &mut [f32],
     ) {
-        let mut own = *state;
-        if own.level.is_nan()
+        let mut local = *state;
+        if local.level.is_nan()
             && let Some(&first) = samples.first()
         {
-            own = FloatSecond::steady(first);
+            local = FloatSecond::steady(first);
         }
         let mut check = 0.0_f32;
         each(samples, outputs, |sample| {
-            let (output, next) = own.step(section, sample);
-            own = next;
+            let (output, next) = local.step(section, sample);
+            local = next;
             check = check.including(output);
             output
         });
-        if check.is_finite() && own.level.is_finite() {
-            *state = own;
+        if check.is_finite() && local.level.is_finite() {
+            *state = local;
         } else {
             for (output, &sample) in outputs.iter_mut().zip(samples) {
                 *output = sample.second(section, state);
@@ -144,18 +144,18 @@ impl Recursive for f32 {
 
     #[inline]
     fn first_slice(gain: f32, state: &mut FloatFirst, samples: &[f32], outputs: &mut [f32]) {
-        let mut own = *state;
-        if own.0.is_nan()
+        let mut local = *state;
+        if local.0.is_nan()
             && let Some(&first) = samples.first()
         {
-            own = FloatFirst(first);
+            local = FloatFirst(first);
         }
         each(samples, outputs, |sample| {
-            own = own.step(gain, sample);
-            own.0
+            local = local.step(gain, sample);
+            local.0
         });
-        if own.0.is_finite() {
-            *state = own;
+        if local.0.is_finite() {
+            *state = local;
         } else {
             for (output, &sample) in outputs.iter_mut().zip(samples) {
                 *output = sample.first(gain, state);

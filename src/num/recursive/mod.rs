@@ -103,30 +103,30 @@ macro_rules! integers {
             samples: &[Self],
             outputs: &mut [Self],
         ) {
-            let mut own = *state;
-            if own.output == $second::NONE
+            let mut local = *state;
+            if local.output == $second::NONE
                 && let Some(&first) = samples.first()
             {
-                own = $second::steady($to_bits(first));
+                local = $second::steady($to_bits(first));
             }
             for (output, &sample) in outputs.iter_mut().zip(samples) {
-                *output = $from_bits(own.step(section, $to_bits(sample)));
+                *output = $from_bits(local.step(section, $to_bits(sample)));
             }
-            *state = own;
+            *state = local;
         }
 
         #[inline]
         fn first_slice(gain: i32, state: &mut $first, samples: &[Self], outputs: &mut [Self]) {
-            let mut own = *state;
-            if own.0 == $first::NONE
+            let mut local = *state;
+            if local.0 == $first::NONE
                 && let Some(&first) = samples.first()
             {
-                own = $first::steady($to_bits(first));
+                local = $first::steady($to_bits(first));
             }
             for (output, &sample) in outputs.iter_mut().zip(samples) {
-                *output = $from_bits(own.step(gain, $to_bits(sample)));
+                *output = $from_bits(local.step(gain, $to_bits(sample)));
             }
-            *state = own;
+            *state = local;
         }
 
         fn value(coefficient: i32) -> f64 {

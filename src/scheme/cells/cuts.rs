@@ -3,7 +3,7 @@
 use core::ops::RangeInclusive;
 
 use super::Partition;
-use crate::error;
+use crate::error::{self, tri};
 use crate::num::{below_from_f64, floor_from_f64, from_f64, one, to_f64};
 use crate::{ConfigError, Sample, SampleKind};
 
@@ -47,9 +47,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         count: usize,
     ) -> Result<Self, ConfigError> {
         let (min, max) = (*range.start(), *range.end());
-        if let Err(error) = error::range(to_f64(min), to_f64(max)) {
-            return Err(error);
-        }
+        tri!(error::range(to_f64(min), to_f64(max)));
         let count = if count < C { count } else { C };
         Ok(Self { min, start: to_f64(min), max, lasts: [max; C], ends: [to_f64(max); C], count })
     }
@@ -73,10 +71,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         range: &RangeInclusive<S>,
         count: usize,
     ) -> Result<Self, ConfigError> {
-        let mut cuts = match Self::new(range, count) {
-            Ok(cuts) => cuts,
-            Err(error) => return Err(error),
-        };
+        let mut cuts = tri!(Self::new(range, count));
         let mut c = 1;
         while c < cuts.count {
             cuts = cuts.set(c - 1, cuts.at(c, cuts.count), Side::Up);
@@ -94,10 +89,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         range: &RangeInclusive<S>,
         count: usize,
     ) -> Result<Self, ConfigError> {
-        let mut cuts = match Self::new(range, count) {
-            Ok(cuts) => cuts,
-            Err(error) => return Err(error),
-        };
+        let mut cuts = tri!(Self::new(range, count));
         let mut c = 1;
         while c < cuts.count {
             let (part, parts) = (c.saturating_mul(2), cuts.count.saturating_mul(2));
@@ -199,9 +191,7 @@ impl<S: Sample, const C: usize> Cuts<S, C> {
         &self,
         values: [S; C],
     ) -> Result<Partition<S, C>, ConfigError> {
-        if let Err(error) = self.check() {
-            return Err(error);
-        }
+        tri!(self.check());
         Ok(Partition::new(values, self.lasts, self.count))
     }
 

@@ -2,7 +2,7 @@
 
 use core::ops::RangeInclusive;
 
-use crate::error::{finite, not_rising, range};
+use crate::error::{finite, not_rising, range, tri};
 use crate::num::curve::normal_quantile;
 use crate::num::{DoubleDouble, floor_from_f64, from_f64, to_f64};
 use crate::scheme::cells::Partition;
@@ -70,9 +70,7 @@ pub(super) const fn halfway_edges<S: Sample>(
     let mut i = 0;
     while i < centres.len() {
         let value = to_f64(centres[i]);
-        if let Err(error) = finite("centre", value) {
-            return Err(error);
-        }
+        tri!(finite("centre", value));
         if let Some(below) = before {
             if value <= below {
                 return Err(not_rising("centres", i, value, below));
@@ -100,18 +98,14 @@ pub(super) const fn even<S: Sample>(
     edges: &mut [S],
 ) -> Result<(), ConfigError> {
     let (min, max) = (to_f64(*over.start()), to_f64(*over.end()));
-    if let Err(error) = range(min, max) {
-        return Err(error);
-    }
+    tri!(range(min, max));
     let count = centres.len();
     let mut i = 0;
     while i < count {
         centres[i] = from_f64(even_centre(min, max, i, count));
         i += 1;
     }
-    if let Err(error) = halfway_edges(centres, edges) {
-        return Err(error);
-    }
+    tri!(halfway_edges(centres, edges));
     i = 0;
     while i < count && i < edges.len() {
         edges[i] = even_edge(min, max, i, count);
@@ -130,9 +124,7 @@ pub(super) const fn gaussian_spaced<S: Sample>(
     centres: &mut [S],
 ) -> Result<(), ConfigError> {
     let (min, max) = (to_f64(*over.start()), to_f64(*over.end()));
-    if let Err(error) = range(min, max) {
-        return Err(error);
-    }
+    tri!(range(min, max));
     let (twice_middle, width) = (DoubleDouble::sum(min, max), DoubleDouble::sum(max, -min));
     // The quantile `(2i + 1) / 2m`, for the upper half.
     let count = centres.len();
@@ -166,9 +158,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     pub(super) const fn try_new(values: [S; M]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         let mut edges = values;
-        if let Err(error) = halfway_edges(&values, &mut edges) {
-            return Err(error);
-        }
+        tri!(halfway_edges(&values, &mut edges));
         Ok(Self::new(values, edges, M))
     }
 
@@ -182,10 +172,8 @@ impl<S: Sample, const M: usize> Centres<S, M> {
     pub(super) const fn try_linear(range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
         let mut values = [S::ZERO; M];
         let mut edges = [S::ZERO; M];
-        match even(range, &mut values, &mut edges) {
-            Ok(()) => Ok(Self::new(values, edges, M)),
-            Err(error) => Err(error),
-        }
+        tri!(even(range, &mut values, &mut edges));
+        Ok(Self::new(values, edges, M))
     }
 
     /// Centres over a range spaced as the quantiles of a normal distribution: dense around the middle.
@@ -196,14 +184,7 @@ impl<S: Sample, const M: usize> Centres<S, M> {
         range: &RangeInclusive<S>,
     ) -> Result<Self, ConfigError> {
         let mut values = [S::ZERO; M];
-        match gaussian_spaced(range, &mut values) {
-            Ok(()) => Self::try_new(values),
-            Err(error) => Err(error),
-        }
-    }
-
-    /// The middle centre.
-    pub(super) fn middle(&self) -> S {
-        self.get(M / 2).unwrap_or(S::ZERO)
+        tri!(gaussian_spaced(range, &mut values));
+        Self::try_new(values)
     }
 }

@@ -7,13 +7,14 @@ use alloc::vec::Vec;
 
 use super::centres::{even, gaussian_spaced, halfway_edges};
 use super::fields::{Fields, tables};
+use super::methods::{begin, centred};
 use super::nonlinear::{companded, crossings, own_widths, spacings};
 use super::{Neuron, PositionState, SlotSpikes, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{DoubleDouble, EvenBins, reach};
 use crate::scheme::cells::number_by_search;
-use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
+use crate::scheme::held::Held;
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme};
 
 /// The most neurons of a population.
 pub const NEURONS: usize = 1024;
@@ -135,15 +136,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
         &self.centres
     }
 
-    /// The state of an encoder before its first sample.
-    pub fn state(&self) -> PositionState {
-        PositionState::START
-    }
-
-    /// An encoder in its initial state.
-    pub fn encoder(&self) -> Encoder<'_, Self> {
-        Encoder::with_state(self, self.state())
-    }
+    begin!(PositionState);
 }
 
 impl<S: Sample, const M: usize> Scheme for Position<S, M> {
@@ -168,30 +161,13 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         Neuron::counted(number_by_search(&self.edges, sample) as u16)
     }
 
-    fn rejected(state: &PositionState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        middle(&self.centres)
-    }
-
     /// The centre of the neuron; if none fired, the previous value.
     fn decode(&self, state: &mut Held<S>, neuron: Option<Neuron<M>>) -> S {
         let centre = neuron.and_then(|neuron| self.centres.get(usize::from(neuron.index())));
         state.or_hold(centre.copied())
     }
 
-    hold_value!();
-
-    fn neurons(&self) -> usize {
-        self.centres.len()
-    }
-}
-
-pub(super) fn middle<S: Sample>(centres: &[S]) -> Held<S> {
-    Held::at(centres.get(centres.len() / 2).copied().unwrap_or(S::ZERO))
+    centred!(PositionState);
 }
 
 /// Receptive fields of any number of neurons and levels.
@@ -263,15 +239,7 @@ impl<S: Sample, const M: usize> Slots<S, M> {
         &self.fields.centres
     }
 
-    /// The state of an encoder before its first sample.
-    pub fn state(&self) -> SlotsState {
-        SlotsState::START
-    }
-
-    /// An encoder in its initial state.
-    pub fn encoder(&self) -> Encoder<'_, Self> {
-        Encoder::with_state(self, self.state())
-    }
+    begin!(SlotsState);
 }
 
 impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
@@ -298,29 +266,16 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
         spikes
     }
 
-    fn rejected(state: &SlotsState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        middle(&self.fields.centres)
-    }
-
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, LEVELS>) -> S {
         let levels = self.fields.reaches.len() as u32;
         let levels = spikes.slots().iter().map(|&slot| levels.saturating_sub(slot.into()));
         state.or_hold(self.fields.fields().weighted_mean(spikes.first(), levels))
     }
 
-    hold_value!();
+    centred!(SlotsState);
 
     fn slots(&self) -> usize {
         self.fields.reaches.len()
-    }
-
-    fn neurons(&self) -> usize {
-        self.fields.centres.len()
     }
 }
 
@@ -334,7 +289,7 @@ mod random {
 
     use rand_core::Rng;
 
-    use super::{LEVELS, NEURONS, Tables, hold_value, middle};
+    use super::{LEVELS, NEURONS, Tables, centred};
     use crate::population::{FiredNeurons, Held, ProbabilisticState};
     use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
 
@@ -402,25 +357,12 @@ mod random {
             neurons
         }
 
-        fn rejected(state: &ProbabilisticState<G>) -> u32 {
-            state.tally.rejected()
-        }
-
-        /// The middle centre.
-        fn decoder_state(&self) -> Held<S> {
-            middle(&self.fields.centres)
-        }
-
         fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<M>) -> S {
             let count = self.fields.centres.len();
             let levels = neurons.fired.iter().take(count).map(|&fired| u32::from(fired));
             state.or_hold(self.fields.fields().weighted_mean(0, levels))
         }
 
-        hold_value!();
-
-        fn neurons(&self) -> usize {
-            self.fields.centres.len()
-        }
+        centred!(ProbabilisticState<G>);
     }
 }

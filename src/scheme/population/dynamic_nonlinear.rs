@@ -5,14 +5,14 @@ use core::ops::RangeInclusive;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::dynamic::{LEVELS, NEURONS, check_neurons, check_widths, middle};
+use super::dynamic::{LEVELS, NEURONS, check_neurons, check_widths};
+use super::methods::{begin, centred};
 use super::nonlinear::{companded, crossings, own_widths};
 use super::nonlinear_slots::{Fields, reach, spaced_widths, tables};
 use super::{Held, NeuronSlots, SlotsState};
 use crate::error::{positive, within};
 use crate::num::{scale, widths};
-use crate::scheme::held::hold_value;
-use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme};
 
 /// [`population::NonLinearSlots`](crate::population::NonLinearSlots) with any number of neurons, up to `M`, and of
 /// slots.
@@ -96,15 +96,7 @@ impl<S: Sample, const M: usize> NonLinearSlots<S, M> {
         &self.centres
     }
 
-    /// The state of an encoder before its first sample.
-    pub fn state(&self) -> SlotsState {
-        SlotsState::START
-    }
-
-    /// An encoder in its initial state.
-    pub fn encoder(&self) -> Encoder<'_, Self> {
-        Encoder::with_state(self, self.state())
-    }
+    begin!(SlotsState);
 
     fn fields(&self) -> Fields<'_, S> {
         let Self { centres, scales, reaches, radii } = self;
@@ -136,24 +128,11 @@ impl<S: Sample, const M: usize> Scheme for NonLinearSlots<S, M> {
         spikes
     }
 
-    fn rejected(state: &SlotsState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        middle(&self.centres)
-    }
-
     fn decode(&self, state: &mut Held<S>, spikes: NeuronSlots<M, LEVELS>) -> S {
         state.or_hold(self.fields().mean(&spikes.slots))
     }
 
-    hold_value!();
-
-    fn neurons(&self) -> usize {
-        self.centres.len()
-    }
+    centred!(SlotsState);
 
     fn slots(&self) -> usize {
         self.radii.len()

@@ -5,13 +5,13 @@ use core::ops::RangeInclusive;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::dynamic::{LEVELS, NEURONS, check_neurons, middle};
+use super::dynamic::{LEVELS, NEURONS, check_neurons};
+use super::methods::{begin, centred};
 use super::rank_order::{Ranks, middles};
 use super::{Held, SlotSpikes, SlotsState};
 use crate::error::within;
 use crate::scheme::cells::number_by_search;
-use crate::scheme::held::hold_value;
-use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme};
 
 use super::centres::even;
 
@@ -69,15 +69,7 @@ impl<S: Sample, const M: usize> RankOrder<S, M> {
         &self.centres
     }
 
-    /// The state of an encoder before its first sample.
-    pub fn state(&self) -> SlotsState {
-        SlotsState::START
-    }
-
-    /// An encoder in its initial state.
-    pub fn encoder(&self) -> Encoder<'_, Self> {
-        Encoder::with_state(self, self.state())
-    }
+    begin!(SlotsState);
 
     fn ranks(&self) -> Ranks<'_, S> {
         Ranks { centres: &self.centres, min: self.min, max: self.max }
@@ -117,24 +109,11 @@ impl<S: Sample, const M: usize> Scheme for RankOrder<S, M> {
         spikes
     }
 
-    fn rejected(state: &SlotsState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        middle(&self.centres)
-    }
-
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, LEVELS>) -> S {
         state.or_hold(self.ranks().value(spikes.first(), spikes.slots()))
     }
 
-    hold_value!();
-
-    fn neurons(&self) -> usize {
-        self.centres.len()
-    }
+    centred!(SlotsState);
 
     fn slots(&self) -> usize {
         self.spikes

@@ -7,7 +7,7 @@ use core::ops::RangeInclusive;
 #[cfg(feature = "rand")]
 use super::FiredNeurons;
 use super::centres::{Centres, even_centre};
-use crate::error::positive;
+use crate::error::{positive, tri};
 use crate::num::curve::ln;
 use crate::num::{Distance, DoubleDouble, EvenBins, bin_of, even_bins, near, reach, top, units};
 use crate::scheme::cells::count_preceding;
@@ -117,13 +117,8 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     /// Returns an error if `beta` is not above 0, or as for [`Centres::try_linear`].
     pub(super) const fn try_new(range: &RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        if let Err(error) = positive("beta", beta as f64) {
-            return Err(error);
-        }
-        let centres = match Centres::<S, M>::try_linear(range) {
-            Ok(centres) => *centres.as_array(),
-            Err(error) => return Err(error),
-        };
+        tri!(positive("beta", beta as f64));
+        let centres = *tri!(Centres::<S, M>::try_linear(range)).as_array();
         let mut reaches = [reach::<S>(DoubleDouble::ZERO, M); N];
         let (bins, near) = tables::<S>(M, range, beta, &mut reaches);
         let (min, max) = (*range.start(), *range.end());
@@ -182,10 +177,6 @@ impl<'f, S: Sample> Fields<'f, S> {
     pub(super) fn named(&self, name: &str, beta: f32) -> Fingerprint {
         let ends = Fingerprint::new(name).samples(self.centres).sample(self.min).sample(self.max);
         ends.sample(beta).number(self.reaches.len() as u32)
-    }
-
-    pub(super) fn middle(&self) -> S {
-        self.centres.get(self.centres.len() / 2).copied().unwrap_or(S::ZERO)
     }
 
     /// Whether the distance of a value from every centre fits `S::Short`, which is quicker.

@@ -1,6 +1,6 @@
 //! The code of a sample as any number of neurons of a population.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// Which neurons fired for one sample.
 ///
@@ -18,14 +18,14 @@ impl<const M: usize> FiredNeurons<M> {
 
     /// The code in which these neurons fire, from a link or a file. `None` if one is not below `M`, or comes twice.
     pub fn new(neurons: impl IntoIterator<Item = u16>) -> Option<Self> {
-        let mut all = Self::EMPTY;
+        let mut code = Self::EMPTY;
         for neuron in neurons {
-            let fired = all.fired.get_mut(usize::from(neuron))?;
+            let fired = code.fired.get_mut(usize::from(neuron))?;
             if core::mem::replace(fired, true) {
                 return None;
             }
         }
-        Some(all)
+        Some(code)
     }
 
     /// The neurons that fired, by rising index.
@@ -69,14 +69,6 @@ impl<const M: usize> Code for FiredNeurons<M> {
             }
         }
         neurons
-    }
-}
-
-impl<const M: usize> Output for FiredNeurons<M> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }
 

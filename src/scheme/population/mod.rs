@@ -16,6 +16,7 @@ mod fields;
 #[cfg(feature = "rand")]
 mod fired_neurons;
 mod gaussian;
+mod methods;
 mod neuron;
 mod neuron_slots;
 mod nonlinear;

@@ -1,6 +1,6 @@
 //! The code of a sample as spikes of any neurons of a population, each in one of several sub-timesteps.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// The spikes of one sample: any of `M` neurons, each in its slot of `N`, which is at most 256.
 ///
@@ -21,12 +21,12 @@ impl<const M: usize, const N: usize> NeuronSlots<M, N> {
     ///
     /// `None` if a neuron is not below `M` or comes twice, or a slot is not below `N`.
     pub fn new(spikes: impl IntoIterator<Item = (u16, u16)>) -> Option<Self> {
-        let mut all = Self::EMPTY;
+        let mut code = Self::EMPTY;
         for (neuron, slot) in spikes {
-            let known = all.slots.get_mut(usize::from(neuron)).filter(|known| **known == 0)?;
+            let known = code.slots.get_mut(usize::from(neuron)).filter(|known| **known == 0)?;
             *known = Self::counted(slot)?;
         }
-        Some(all)
+        Some(code)
     }
 
     /// The neurons that fire, by rising index, each with its slot.
@@ -61,22 +61,14 @@ impl<const M: usize, const N: usize> Code for NeuronSlots<M, N> {
 
     /// Each neuron in the slot of its first spike.
     fn assemble(firings: impl Iterator<Item = NeuronSpike>) -> Self {
-        let mut all = Self::EMPTY;
+        let mut code = Self::EMPTY;
         for NeuronSpike { neuron, slot, .. } in firings {
-            let known = all.slots.get_mut(usize::from(neuron));
+            let known = code.slots.get_mut(usize::from(neuron));
             if let (Some(known), Some(slot)) = (known, Self::counted(slot)) {
                 *known = if *known == 0 { slot } else { slot.min(*known) };
             }
         }
-        all
-    }
-}
-
-impl<const M: usize, const N: usize> Output for NeuronSlots<M, N> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
+        code
     }
 }
 

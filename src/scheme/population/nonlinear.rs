@@ -4,7 +4,7 @@ use core::ops::RangeInclusive;
 
 use super::centres::{Centres, halfway_edges};
 use super::position::Position;
-use crate::error::{positive, range, unwrap};
+use crate::error::{positive, range, tri, unwrap};
 use crate::num::curve::growth;
 use crate::num::{DoubleDouble, floor_from_f64, from_f64, to_f64};
 use crate::{ConfigError, Sample};
@@ -49,10 +49,8 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// finite; a field wins where two others meet, or wins nowhere.
     pub const fn try_with_widths(centres: [S; M], widths: [f32; M]) -> Result<Self, ConfigError> {
         let mut sigmas = [0.0; M];
-        match own_widths(&widths, &mut sigmas) {
-            Ok(()) => Self::of_fields(centres, &sigmas),
-            Err(error) => Err(error),
-        }
+        tri!(own_widths(&widths, &mut sigmas));
+        Self::of_fields(centres, &sigmas)
     }
 
     /// Fields with these centres, each as wide as the distance between its neighbours. For constants, where bad
@@ -83,7 +81,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     /// # Panics
     /// Panics if [`try_companded`](Self::try_companded) returns an error.
     pub const fn companded(range: RangeInclusive<S>, companding: f32) -> Self {
-        unwrap(Self::companded_over(&range, companding))
+        unwrap(Self::try_companded(range, companding))
     }
 
     /// Companded centres, dense in the middle of the range, with fields [as wide as their spacing](Self::try_spaced):
@@ -99,27 +97,16 @@ impl<S: Sample, const M: usize> Position<S, M> {
         range: RangeInclusive<S>,
         companding: f32,
     ) -> Result<Self, ConfigError> {
-        Self::companded_over(&range, companding)
-    }
-
-    const fn companded_over(
-        range: &RangeInclusive<S>,
-        companding: f32,
-    ) -> Result<Self, ConfigError> {
         let mut centres = [S::ZERO; M];
-        match companded(range, companding, &mut centres) {
-            Ok(()) => Self::try_spaced(centres),
-            Err(error) => Err(error),
-        }
+        tri!(companded(&range, companding, &mut centres));
+        Self::try_spaced(centres)
     }
 
     const fn of_fields(centres: [S; M], widths: &[f64]) -> Result<Self, ConfigError> {
         const { Centres::<S, M>::SHAPE };
         let mut edges = centres;
-        match crossings(&centres, widths, &mut edges) {
-            Ok(()) => Ok(Self::of_edges(centres, edges)),
-            Err(error) => Err(error),
-        }
+        tri!(crossings(&centres, widths, &mut edges));
+        Ok(Self::of_edges(centres, edges))
     }
 }
 
@@ -132,9 +119,7 @@ pub(super) const fn own_widths(widths: &[f32], sigmas: &mut [f64]) -> Result<(),
     let mut i = 0;
     while i < widths.len() && i < sigmas.len() {
         sigmas[i] = widths[i] as f64;
-        if let Err(error) = positive("width", sigmas[i]) {
-            return Err(error);
-        }
+        tri!(positive("width", sigmas[i]));
         i += 1;
     }
     Ok(())
@@ -177,9 +162,7 @@ pub(super) const fn crossings<S: Sample>(
     widths: &[f64],
     edges: &mut [S],
 ) -> Result<(), ConfigError> {
-    if let Err(error) = halfway_edges(centres, edges) {
-        return Err(error);
-    }
+    tri!(halfway_edges(centres, edges));
     let mut i = 0;
     while i + 1 < centres.len() && i < edges.len() {
         let (low, high) = (real(centres, i), real(centres, i + 1));
@@ -218,12 +201,8 @@ pub(super) const fn companded<S: Sample>(
     centres: &mut [S],
 ) -> Result<(), ConfigError> {
     let (min, max) = (to_f64(*over.start()), to_f64(*over.end()));
-    if let Err(error) = range(min, max) {
-        return Err(error);
-    }
-    if let Err(error) = positive("companding", companding as f64) {
-        return Err(error);
-    }
+    tri!(range(min, max));
+    tri!(positive("companding", companding as f64));
     let (twice_middle, width) = (DoubleDouble::sum(min, max), DoubleDouble::sum(max, -min));
     let companding = companding as f64;
     let last = centres.len().saturating_sub(1);

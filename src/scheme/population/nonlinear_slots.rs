@@ -3,13 +3,13 @@
 use core::ops::RangeInclusive;
 
 use super::fields::level_radius;
+use super::methods::{centred, encode_in_place};
 use super::nonlinear::{companded, crossings, own_widths, spacings};
 use super::{Held, NeuronSlots, SlotsState};
-use crate::error::{offset, positive, unwrap, within};
+use crate::error::{offset, positive, tri, unwrap, within};
 use crate::num::{scale, to_f64, widths, within_widths};
 use crate::scheme::cells::count_preceding;
-use crate::scheme::held::hold_value;
-use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Non-linear Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
@@ -95,10 +95,8 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// width too small.
     pub const fn try_new(centres: [S; M], widths: [f32; M]) -> Result<Self, ConfigError> {
         let mut sigmas = [0.0; M];
-        match own_widths(&widths, &mut sigmas) {
-            Ok(()) => Self::of(centres, sigmas),
-            Err(error) => Err(error),
-        }
+        tri!(own_widths(&widths, &mut sigmas));
+        Self::of(centres, sigmas)
     }
 
     /// Fields with these centres, each as wide as the distance between its neighbours. For constants, where bad
@@ -117,9 +115,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// Returns an error if a centre is not finite, or does not exceed the one before; `beta` is not above 0 and
     /// finite; a field wins where two others meet.
     pub const fn try_spaced(centres: [S; M], beta: f32) -> Result<Self, ConfigError> {
-        if let Err(error) = positive("beta", beta as f64) {
-            return Err(error);
-        }
+        tri!(positive("beta", beta as f64));
         let mut sigmas = [0.0; M];
         spaced_widths(&centres, beta, &mut sigmas);
         Self::of(centres, sigmas)
@@ -131,7 +127,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// # Panics
     /// Panics if [`try_companded`](Self::try_companded) returns an error.
     pub const fn companded(range: RangeInclusive<S>, companding: f32, beta: f32) -> Self {
-        unwrap(Self::companded_over(&range, companding, beta))
+        unwrap(Self::try_companded(range, companding, beta))
     }
 
     /// [Companded](super::Gaussian::try_companded) centres, dense in the middle of the range, with fields
@@ -145,19 +141,9 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
         companding: f32,
         beta: f32,
     ) -> Result<Self, ConfigError> {
-        Self::companded_over(&range, companding, beta)
-    }
-
-    const fn companded_over(
-        range: &RangeInclusive<S>,
-        companding: f32,
-        beta: f32,
-    ) -> Result<Self, ConfigError> {
         let mut centres = [S::ZERO; M];
-        match companded(range, companding, &mut centres) {
-            Ok(()) => Self::try_spaced(centres, beta),
-            Err(error) => Err(error),
-        }
+        tri!(companded(&range, companding, &mut centres));
+        Self::try_spaced(centres, beta)
     }
 
     const fn of(centres: [S; M], sigmas: [f64; M]) -> Result<Self, ConfigError> {
@@ -165,12 +151,8 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
         let mut scales = [scale::<S>(1.0); M];
         let mut radii = [widths::<S>(0.0); N];
         let mut edges = centres;
-        if let Err(error) = crossings(&centres, &sigmas, &mut edges) {
-            return Err(error);
-        }
-        if let Err(error) = tables::<S>(&centres, &sigmas, &mut scales, &mut radii) {
-            return Err(error);
-        }
+        tri!(crossings(&centres, &sigmas, &mut edges));
+        tri!(tables::<S>(&centres, &sigmas, &mut scales, &mut radii));
         let mut reaches = [0; M];
         reach::<S>(&scales, &radii, 1, &mut reaches);
         Ok(Self { centres, floor: 1, scales, reaches, radii })
@@ -190,9 +172,7 @@ impl<S: Sample, const M: usize, const N: usize> NonLinearSlots<S, M, N> {
     /// # Errors
     /// Returns an error if the floor is not within 1 to `N`.
     pub const fn try_with_floor(self, floor: u16) -> Result<Self, ConfigError> {
-        if let Err(error) = within("floor", floor as f64, 1.0, N as f32) {
-            return Err(error);
-        }
+        tri!(within("floor", floor as f64, 1.0, N as f32));
         let mut reaches = self.reaches;
         reach::<S>(&self.scales, &self.radii, floor as usize, &mut reaches);
         Ok(Self { floor, reaches, ..self })
@@ -243,12 +223,8 @@ pub(super) const fn tables<S: Sample>(
     let mut i = 0;
     while i < scales.len() {
         if matches!(S::KIND, SampleKind::F32) {
-            if let Err(error) = offset("centre", to_f64(centres[i])) {
-                return Err(error);
-            }
-            if let Err(error) = within("width", sigmas[i], f32::MIN_POSITIVE, f32::MAX) {
-                return Err(error);
-            }
+            tri!(offset("centre", to_f64(centres[i])));
+            tri!(within("width", sigmas[i], f32::MIN_POSITIVE, f32::MAX));
         }
         scales[i] = scale::<S>(sigmas[i]);
         i += 1;
@@ -361,37 +337,11 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for NonLinearSlots<S, M, 
         self.fields().fingerprint()
     }
 
-    #[inline]
-    fn encode(&self, state: &mut SlotsState, sample: S) -> NeuronSlots<M, N> {
-        let mut spikes = NeuronSlots::EMPTY;
-        self.encode_into(state, sample, &mut spikes);
-        spikes
-    }
-
-    fn encode_slice(
-        &self,
-        state: &mut SlotsState,
-        samples: &[S],
-        outputs: &mut [impl Destination<NeuronSlots<M, N>>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            output.write_with(NeuronSlots::EMPTY, |spikes| self.encode_into(state, sample, spikes));
-        }
-        samples.len().min(outputs.len())
-    }
-
-    fn rejected(state: &SlotsState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        Held::at(self.centres.get(M / 2).copied().unwrap_or(S::ZERO))
-    }
+    encode_in_place!(SlotsState, NeuronSlots<M, N>);
 
     fn decode(&self, state: &mut Held<S>, spikes: NeuronSlots<M, N>) -> S {
         state.or_hold(self.fields().mean(&spikes.slots))
     }
 
-    hold_value!();
+    centred!(SlotsState);
 }

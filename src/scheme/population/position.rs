@@ -2,12 +2,13 @@
 
 use core::ops::RangeInclusive;
 
+use super::Held;
 use super::Neuron;
 use super::centres::Centres;
-use crate::error::unwrap;
+use super::methods::centred;
+use crate::error::{tri, unwrap};
 use crate::num::Tally;
 use crate::scheme::codec::decode_copied;
-use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Position coding: every sample fires the one neuron whose centre is nearest.
@@ -108,10 +109,7 @@ impl<S: Sample, const M: usize> Position<S, M> {
     }
 
     const fn of(centres: Result<Centres<S, M>, ConfigError>) -> Result<Self, ConfigError> {
-        match centres {
-            Ok(centres) => Ok(Self { centres }),
-            Err(error) => Err(error),
-        }
+        Ok(Self { centres: tri!(centres) })
     }
 
     pub(super) const fn of_edges(centres: [S; M], edges: [S; M]) -> Self {
@@ -207,15 +205,6 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         samples.len().min(outputs.len())
     }
 
-    fn rejected(state: &PositionState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        Held::at(self.centres.middle())
-    }
-
     /// The centre of the neuron; if none fired, the previous value.
     #[inline]
     fn decode(&self, state: &mut Held<S>, neuron: Option<Neuron<M>>) -> S {
@@ -231,5 +220,5 @@ impl<S: Sample, const M: usize> Scheme for Position<S, M> {
         decode_copied(self, state, neurons, values)
     }
 
-    hold_value!();
+    centred!(PositionState);
 }

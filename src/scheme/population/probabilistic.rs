@@ -7,11 +7,12 @@ use core::ops::RangeInclusive;
 use rand_core::Rng;
 
 use super::FiredNeurons;
+use super::Held;
 use super::fields::{Fields, ReceptiveFields};
-use crate::error::unwrap;
+use super::methods::{centred, encode_in_place};
+use crate::error::{tri, unwrap};
 use crate::num::{Distance, Tally};
-use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Destination, Encoder, Fingerprint, Recovery, Sample, Scheme};
+use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme};
 
 /// Gaussian receptive fields in which a neuron fires with a probability equal to its response, drawn from the
 /// caller's random number generator.
@@ -88,7 +89,7 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
-        unwrap(Self::try_of(&range, beta))
+        unwrap(Self::try_new(range, beta))
     }
 
     /// Fields over a range. The smaller `beta`, the wider the fields.
@@ -97,15 +98,8 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Probabilistic<S, G, M, N
     /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
     /// centres apart; `beta` is not above 0.
     pub const fn try_new(range: RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
-        Self::try_of(&range, beta)
-    }
-
-    const fn try_of(range: &RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        match ReceptiveFields::try_new(range, beta) {
-            Ok(fields) => Ok(Self { fields, generator: PhantomData }),
-            Err(error) => Err(error),
-        }
+        Ok(Self { fields: tri!(ReceptiveFields::try_new(&range, beta)), generator: PhantomData })
     }
 
     /// The centres, lowest first, rounded to the sample type.
@@ -219,39 +213,11 @@ impl<S: Sample, G: Rng, const M: usize, const N: usize> Scheme for Probabilistic
         self.fields.fields().named("Probabilistic", self.fields.beta())
     }
 
-    #[inline]
-    fn encode(&self, state: &mut ProbabilisticState<G>, sample: S) -> FiredNeurons<M> {
-        let mut neurons = FiredNeurons::EMPTY;
-        self.encode_into(state, sample, &mut neurons);
-        neurons
-    }
-
-    fn encode_slice(
-        &self,
-        state: &mut ProbabilisticState<G>,
-        samples: &[S],
-        outputs: &mut [impl Destination<FiredNeurons<M>>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            output.write_with(FiredNeurons::EMPTY, |neurons| {
-                self.encode_into(state, sample, neurons);
-            });
-        }
-        samples.len().min(outputs.len())
-    }
-
-    fn rejected(state: &ProbabilisticState<G>) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        Held::at(self.fields.fields().middle())
-    }
+    encode_in_place!(ProbabilisticState<G>, FiredNeurons<M>);
 
     fn decode(&self, state: &mut Held<S>, neurons: FiredNeurons<M>) -> S {
         state.or_hold(self.fields.mean_of(&neurons))
     }
 
-    hold_value!();
+    centred!(ProbabilisticState<G>);
 }

@@ -3,11 +3,11 @@
 use core::ops::RangeInclusive;
 
 use super::centres::{Centres, even, halfway_edges};
+use super::methods::{centred, encode_in_place};
 use super::{Held, SlotSpikes, SlotsState};
-use crate::error::{offset, unwrap};
+use crate::error::{offset, tri, unwrap};
 use crate::num::{from_f64, to_f64};
-use crate::scheme::held::hold_value;
-use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
 
 /// Rank order coding: the `K` neurons of `M` whose centres are nearest fire one after the other, the nearest first.
 ///
@@ -91,7 +91,7 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     /// # Panics
     /// Panics if [`try_linear`](Self::try_linear) returns an error.
     pub const fn linear(range: RangeInclusive<S>) -> Self {
-        unwrap(Self::linear_over(&range))
+        unwrap(Self::try_linear(range))
     }
 
     /// Even centres over a range, half a spacing beyond it at either end:
@@ -101,25 +101,17 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
     /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
     /// centres apart; in `f32` an outermost centre is more than 10³¹ from 0.
     pub const fn try_linear(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
-        Self::linear_over(&range)
-    }
-
-    const fn linear_over(range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
         let mut centres = [S::ZERO; M];
         let mut edges = [S::ZERO; M];
-        match even(range, &mut centres, &mut edges) {
-            Ok(()) => Self::over(centres, *range.start(), *range.end()),
-            Err(error) => Err(error),
-        }
+        tri!(even(&range, &mut centres, &mut edges));
+        Self::over(centres, *range.start(), *range.end())
     }
 
     const fn over(centres: [S; M], min: S, max: S) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         let mut edges = centres;
-        match middles(&centres, &mut edges) {
-            Ok(()) => Ok(Self { centres: Centres::new(centres, edges, M), min, max }),
-            Err(error) => Err(error),
-        }
+        tri!(middles(&centres, &mut edges));
+        Ok(Self { centres: Centres::new(centres, edges, M), min, max })
     }
 
     /// The centres, lowest first, rounded to the sample type.
@@ -172,15 +164,11 @@ impl<S: Sample, const M: usize, const K: usize> RankOrder<S, M, K> {
 /// middles are alike; in `f32` it is more than 10³¹ from 0.
 #[allow(clippy::indexing_slicing)] // constants have no iterators
 pub(super) const fn middles<S: Sample>(centres: &[S], edges: &mut [S]) -> Result<(), ConfigError> {
-    if let Err(error) = halfway_edges(centres, edges) {
-        return Err(error);
-    }
+    tri!(halfway_edges(centres, edges));
     let mut i = 0;
     while i < centres.len() {
         if matches!(S::KIND, SampleKind::F32) {
-            if let Err(error) = offset("centre", to_f64(centres[i])) {
-                return Err(error);
-            }
+            tri!(offset("centre", to_f64(centres[i])));
             if i + 1 < centres.len() {
                 let sum = to_f64(centres[i]) as f32 + to_f64(centres[i + 1]) as f32;
                 edges[i] = from_f64((sum * 0.5) as f64);
@@ -257,9 +245,9 @@ impl<S: Sample> Ranks<'_, S> {
         let mut lowest = first.wrapping_add(nearest);
         let mut above = lowest.wrapping_add(1);
 
-        let all = Interval { above: None, last: self.max };
+        let whole = Interval { above: None, last: self.max };
         let centre = *self.centres.get(lowest)?;
-        let cut = self.below(lowest).map_or(all, |low| all.above(low.midway(centre), self.min));
+        let cut = self.below(lowest).map_or(whole, |low| whole.above(low.midway(centre), self.min));
         let cut = self.centres.get(above).map_or(cut, |&high| cut.up_to(centre.midway(high)));
         let mut known = cut.if_any(self.min)?;
 
@@ -345,37 +333,11 @@ impl<S: Sample, const M: usize, const K: usize> Scheme for RankOrder<S, M, K> {
         self.ranks().fingerprint(K)
     }
 
-    #[inline]
-    fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, K> {
-        let mut spikes = SlotSpikes::EMPTY;
-        self.encode_into(state, sample, &mut spikes);
-        spikes
-    }
-
-    fn encode_slice(
-        &self,
-        state: &mut SlotsState,
-        samples: &[S],
-        outputs: &mut [impl Destination<SlotSpikes<M, K>>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            output.write_with(SlotSpikes::EMPTY, |spikes| self.encode_into(state, sample, spikes));
-        }
-        samples.len().min(outputs.len())
-    }
-
-    fn rejected(state: &SlotsState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        Held::at(self.centres.middle())
-    }
+    encode_in_place!(SlotsState, SlotSpikes<M, K>);
 
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, K>) -> S {
         state.or_hold(self.ranks().value(spikes.first(), spikes.slots()))
     }
 
-    hold_value!();
+    centred!(SlotsState);
 }

@@ -1,6 +1,6 @@
 //! The code of a sample as spikes of neighbouring neurons, each in one of several sub-timesteps.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// The spikes of one sample: neighbouring neurons of `M`, each in one of `N` slots.
 ///
@@ -91,14 +91,6 @@ impl<const M: usize, const N: usize> Code for SlotSpikes<M, N> {
             *slot = *fired;
         }
         spikes
-    }
-}
-
-impl<const M: usize, const N: usize> Output for SlotSpikes<M, N> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }
 

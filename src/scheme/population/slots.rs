@@ -2,12 +2,13 @@
 
 use core::ops::RangeInclusive;
 
+use super::Held;
 use super::SlotSpikes;
 use super::fields::{Fields, ReceptiveFields};
-use crate::error::{unwrap, within};
+use super::methods::{centred, encode_in_place};
+use crate::error::{tri, unwrap, within};
 use crate::num::{Distance, Tally};
-use crate::scheme::held::{Held, hold_value};
-use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
+use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Start};
 
 /// Gaussian receptive fields whose neurons fire in one of `N` sub-timesteps of a sample, its slots.
 ///
@@ -57,7 +58,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, beta: f32) -> Self {
-        unwrap(Self::try_of(&range, beta))
+        unwrap(Self::try_new(range, beta))
     }
 
     /// Fields over a range, with every level from 1 firing. The smaller `beta`, the wider the fields.
@@ -66,14 +67,7 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// Returns an error if the ends are not finite, or do not rise, or the sample type is too coarse to tell the
     /// centres apart; `beta` is not above 0.
     pub const fn try_new(range: RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
-        Self::try_of(&range, beta)
-    }
-
-    const fn try_of(range: &RangeInclusive<S>, beta: f32) -> Result<Self, ConfigError> {
-        match ReceptiveFields::try_new(range, beta) {
-            Ok(fields) => Ok(Self { fields, floor: 1 }),
-            Err(error) => Err(error),
-        }
+        Ok(Self { fields: tri!(ReceptiveFields::try_new(&range, beta)), floor: 1 })
     }
 
     /// Sets the lowest level that fires; 1 by default. For constants, where a bad floor fails the build.
@@ -90,10 +84,8 @@ impl<S: Sample, const M: usize, const N: usize> Slots<S, M, N> {
     /// # Errors
     /// Returns an error if the floor is not within 1 to `N`.
     pub const fn try_with_floor(self, floor: u16) -> Result<Self, ConfigError> {
-        match within("floor", floor as f64, 1.0, N as f32) {
-            Ok(()) => Ok(Self { floor, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(within("floor", floor as f64, 1.0, N as f32));
+        Ok(Self { floor, ..self })
     }
 
     /// The centres, lowest first, rounded to the sample type.
@@ -214,38 +206,12 @@ impl<S: Sample, const M: usize, const N: usize> Scheme for Slots<S, M, N> {
         self.fields.fields().named("Slots", self.fields.beta()).number(self.floor.into())
     }
 
-    #[inline]
-    fn encode(&self, state: &mut SlotsState, sample: S) -> SlotSpikes<M, N> {
-        let mut spikes = SlotSpikes::EMPTY;
-        self.encode_into(state, sample, &mut spikes);
-        spikes
-    }
-
-    fn encode_slice(
-        &self,
-        state: &mut SlotsState,
-        samples: &[S],
-        outputs: &mut [impl Destination<SlotSpikes<M, N>>],
-    ) -> usize {
-        for (output, &sample) in outputs.iter_mut().zip(samples) {
-            output.write_with(SlotSpikes::EMPTY, |spikes| self.encode_into(state, sample, spikes));
-        }
-        samples.len().min(outputs.len())
-    }
-
-    fn rejected(state: &SlotsState) -> u32 {
-        state.tally.rejected()
-    }
-
-    /// The middle centre.
-    fn decoder_state(&self) -> Held<S> {
-        Held::at(self.fields.fields().middle())
-    }
+    encode_in_place!(SlotsState, SlotSpikes<M, N>);
 
     fn decode(&self, state: &mut Held<S>, spikes: SlotSpikes<M, N>) -> S {
         let levels = spikes.slots().iter().map(|&slot| (N as u32).wrapping_sub(slot.into()));
         state.or_hold(self.fields.fields().weighted_mean(spikes.first(), levels))
     }
 
-    hold_value!();
+    centred!(SlotsState);
 }

@@ -4,7 +4,7 @@ use super::Taps;
 use super::decoder::{RateDecoderState, decode_rate};
 use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
-use crate::error::{not_negative, ratio, unwrap};
+use crate::error::{not_negative, ratio, tri, unwrap};
 use crate::num::{Bound, Nearer, Ratio, to_f64};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
@@ -84,10 +84,8 @@ impl<S: Sample, const F: usize> Bsa<S, F> {
                 (ratio("threshold", threshold), Limit::Multiplicative(Ratio::new(threshold)))
             }
         };
-        match checked {
-            Ok(()) => Ok(Self { filtered: Filtered::new(taps), limit }),
-            Err(error) => Err(error),
-        }
+        tri!(checked);
+        Ok(Self { filtered: Filtered::new(taps), limit })
     }
 
     /// A scheme that spikes if `e1 <= e2 - threshold`. For constants, where a bad threshold fails the build.
@@ -168,12 +166,5 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
 
 rate_scheme!(Bsa);
 
-/// A struct of `taps`, `criterion` and `shift`.
 #[cfg(feature = "serde")]
-impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for Bsa<S, F> {
-    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let Filtered { taps, shift } = &self.filtered;
-        let limit = ("criterion", &self.limit);
-        crate::serial::fields("Bsa", ("taps", taps), limit, ("shift", shift), serializer)
-    }
-}
+super::filtered::serialize_filtered!(Bsa, "criterion", limit);

@@ -5,7 +5,7 @@ use super::cursor::Cursor;
 use super::decoder::{RateDecoderState, decode_rate};
 use super::encoder::{cells, subtract};
 use super::filtered::{Filtered, with_shift};
-use crate::error::{ratio, unwrap};
+use crate::error::{ratio, tri, unwrap};
 use crate::num::{Nearer, Ratio, Residual, Tally};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
@@ -51,10 +51,8 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
     /// # Errors
     /// Returns an error if the threshold is not within 2⁻¹⁴ to 4 - 2⁻¹⁴.
     pub const fn try_new(taps: Taps<S, F>, threshold: f32) -> Result<Self, ConfigError> {
-        match ratio("threshold", threshold) {
-            Ok(()) => Ok(Self { filtered: Filtered::new(taps), ratio: Ratio::new(threshold) }),
-            Err(error) => Err(error),
-        }
+        tri!(ratio("threshold", threshold));
+        Ok(Self { filtered: Filtered::new(taps), ratio: Ratio::new(threshold) })
     }
 
     with_shift!();
@@ -202,12 +200,5 @@ impl<S: Sample, const F: usize> Scheme for BsaToolbox<S, F> {
     decode_rate!();
 }
 
-/// A struct of `taps`, `threshold` and `shift`.
 #[cfg(feature = "serde")]
-impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for BsaToolbox<S, F> {
-    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let Filtered { taps, shift } = &self.filtered;
-        let limit = ("threshold", &self.ratio);
-        crate::serial::fields("BsaToolbox", ("taps", taps), limit, ("shift", shift), serializer)
-    }
-}
+super::filtered::serialize_filtered!(BsaToolbox, "threshold", ratio);

@@ -159,13 +159,13 @@ fn sums<S: Sample>(taps: &[S], mut spikes: &[impl Copy + Into<Spike>]) -> [S::Re
 /// Adds a group of taps to the sums of a block, out of line so that the sums have all registers.
 #[inline(never)]
 fn add_block<S: Sample>(sums: &mut [S::Residual; BLOCK], group: &[S], fired: &[u32]) {
-    let mut own = *sums;
+    let mut local = *sums;
     for (tap, fired) in group.iter().rev().zip(fired.windows(BLOCK)) {
-        for (sum, &fired) in own.iter_mut().zip(fired) {
+        for (sum, &fired) in local.iter_mut().zip(fired) {
             *sum = sum.plus(tap.widen().masked(fired));
         }
     }
-    *sums = own;
+    *sums = local;
 }
 
 /// Takes the sum of the next value out of the slot `next` of a ring, which is in an array or on the heap. `taps`

@@ -154,9 +154,22 @@ macro_rules! filtered {
     };
 }
 
-/// The decoding half of the [`Scheme`] of [`Rate`] and [`BsaToolbox`].
-macro_rules! decode {
-    () => {
+/// The methods of [`Scheme`] that [`Rate`] and [`BsaToolbox`] share; with the state of the encoder.
+macro_rules! filtering {
+    ($State:ty) => {
+        fn fits(&self, state: &$State) -> bool {
+            let length = self.taps.length();
+            state.residuals.len() == length && state.cursor.fits(length)
+        }
+
+        fn rejected(state: &$State) -> u32 {
+            state.tally.rejected()
+        }
+
+        fn recovery(&self) -> Recovery {
+            Recovery::Samples(self.taps.length())
+        }
+
         fn decoder_state(&self) -> RateDecoderState<S> {
             RateDecoderState { pending: vec![S::Residual::ZERO; self.taps.length()], next: 0 }
         }
@@ -246,24 +259,11 @@ impl<S: Sample, R: Rule<S, 1>> Scheme for Rate<S, R> {
         is_left.then(|| self.decide_in_order(state)).flatten()
     }
 
-    fn fits(&self, state: &RateState<S>) -> bool {
-        let length = self.taps.length();
-        state.residuals.len() == length && state.cursor.fits(length)
-    }
-
-    fn rejected(state: &RateState<S>) -> u32 {
-        state.tally.rejected()
-    }
-
     fn latency(&self) -> usize {
         self.taps.length() - 1
     }
 
-    fn recovery(&self) -> Recovery {
-        Recovery::Samples(self.taps.length())
-    }
-
-    decode!();
+    filtering!(RateState<S>);
 }
 
 /// [`rate::BsaToolbox`](crate::rate::BsaToolbox) with a filter of any length.
@@ -356,22 +356,9 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
         state.cursor.pop(self.taps.length()).then_some(Spike::None)
     }
 
-    fn fits(&self, state: &BsaToolboxState<S>) -> bool {
-        let length = self.taps.length();
-        state.residuals.len() == length && state.cursor.fits(length)
-    }
-
-    fn rejected(state: &BsaToolboxState<S>) -> u32 {
-        state.tally.rejected()
-    }
-
     fn latency(&self) -> usize {
         self.taps.length()
     }
 
-    fn recovery(&self) -> Recovery {
-        Recovery::Samples(self.taps.length())
-    }
-
-    decode!();
+    filtering!(BsaToolboxState<S>);
 }

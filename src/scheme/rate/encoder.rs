@@ -178,8 +178,8 @@ impl<S: Sample, const F: usize> RateState<S, F> {
                 black_box(()); // keeps the compiler from unrolling the loop
             }
         }
-        let all = spikes.iter_mut().zip(samples).zip(windows);
-        for (at, ((spike, &sample), window)) in all.enumerate() {
+        let windowed = spikes.iter_mut().zip(samples).zip(windows);
+        for (at, ((spike, &sample), window)) in windowed.enumerate() {
             if !sample.is_finite() {
                 length = at;
                 break;

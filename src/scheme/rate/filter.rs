@@ -1,6 +1,6 @@
 //! Filter taps of the rate codes: the user's own, or a triangular, Hann or Gaussian shape.
 
-use crate::error::{LARGEST_STEP, finite, positive, unwrap};
+use crate::error::{LARGEST_STEP, finite, positive, tri, unwrap};
 use crate::num::curve::{exp, sin_pi};
 use crate::num::{DoubleDouble, from_f64, to_f64, word};
 use crate::{ConfigError, Sample, SampleKind};
@@ -147,16 +147,12 @@ pub(super) const fn magnitude<S: Sample>(taps: &[S]) -> Result<S::Residual, Conf
     let mut k = 0;
     while k < taps.len() {
         let tap = to_f64(taps[k]);
-        if let Err(error) = finite("filter tap", tap) {
-            return Err(error);
-        }
+        tri!(finite("filter tap", tap));
         magnitude += tap.abs();
         k += 1;
     }
-    match check_magnitude::<S>(magnitude) {
-        Ok(()) => Ok(sum::<S>(magnitude)),
-        Err(error) => Err(error),
-    }
+    tri!(check_magnitude::<S>(magnitude));
+    Ok(sum::<S>(magnitude))
 }
 
 /// Checks the sum of the taps' magnitudes. Sums of 16-bit taps have 32 bits, so they always fit; those of wider
@@ -197,10 +193,7 @@ impl<S: Sample, const F: usize> Taps<S, F> {
     /// (10³¹ in `f32`).
     pub const fn try_new(taps: [S; F]) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        match magnitude(&taps) {
-            Ok(magnitude) => Ok(Self { twice: [taps; 2], magnitude }),
-            Err(error) => Err(error),
-        }
+        Ok(Self { twice: [taps; 2], magnitude: tri!(magnitude(&taps)) })
     }
 
     /// A shape, scaled and rounded to the sample type. For constants, where a bad scale fails the build.
@@ -221,21 +214,18 @@ impl<S: Sample, const F: usize> Taps<S, F> {
             Scale::Peak(peak) => (false, to_f64(peak)),
             Scale::Sum(sum) => (true, to_f64(sum)),
         };
-        match (shape.check(), positive("filter scale", target)) {
-            (Err(error), _) | (_, Err(error)) => Err(error),
-            _ => {
-                let target = DoubleDouble::new(target);
-                let factor = if is_sum { target.over(shape.total(F)) } else { target };
-                let mut taps = [S::ZERO; F];
-                let mut k = 0;
-                while k < F {
-                    let tap = shape.height(k, F).times(factor);
-                    taps[k] = from_f64(tap.settled().rounded());
-                    k += 1;
-                }
-                Self::try_new(taps)
-            }
+        tri!(shape.check());
+        tri!(positive("filter scale", target));
+        let target = DoubleDouble::new(target);
+        let factor = if is_sum { target.over(shape.total(F)) } else { target };
+        let mut taps = [S::ZERO; F];
+        let mut k = 0;
+        while k < F {
+            let tap = shape.height(k, F).times(factor);
+            taps[k] = from_f64(tap.settled().rounded());
+            k += 1;
         }
+        Self::try_new(taps)
     }
 
     /// [`Shape::Triangular`] with this value where the shape is 1. For constants, where a bad peak fails the

@@ -1,7 +1,7 @@
 //! The parameters of every rate code with a filter: the taps, and the shift.
 
 use super::Taps;
-use crate::error::offset;
+use crate::error::{offset, tri};
 use crate::num::to_f64;
 use crate::{ConfigError, Sample};
 
@@ -21,10 +21,8 @@ impl<S: Sample, const F: usize> Filtered<S, F> {
 
     /// Sets the shift, which must be finite, and within ±10³¹ in `f32`.
     pub(super) const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
-        match offset("shift", to_f64(shift)) {
-            Ok(()) => Ok(Self { shift, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(offset("shift", to_f64(shift)));
+        Ok(Self { shift, ..self })
     }
 
     /// `sample - shift`.
@@ -52,10 +50,8 @@ macro_rules! with_shift {
         /// Returns an error if the shift is not finite, or beyond ±10³¹ in `f32`.
         #[allow(clippy::needless_update)] // HSA has no other field
         pub const fn try_with_shift(self, shift: S) -> Result<Self, ConfigError> {
-            match self.filtered.try_with_shift(shift) {
-                Ok(filtered) => Ok(Self { filtered, ..self }),
-                Err(error) => Err(error),
-            }
+            let filtered = $crate::error::tri!(self.filtered.try_with_shift(shift));
+            Ok(Self { filtered, ..self })
         }
 
         /// The taps of its filter.
@@ -70,3 +66,19 @@ macro_rules! with_shift {
     };
 }
 pub(super) use with_shift;
+
+/// Serializes a scheme as a struct of `taps`, what it has of its own by this name, and `shift`.
+#[cfg(feature = "serde")]
+macro_rules! serialize_filtered {
+    ($Scheme:ident, $name:literal, $field:ident) => {
+        impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for $Scheme<S, F> {
+            fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+                let Filtered { taps, shift } = &self.filtered;
+                let (name, own) = (stringify!($Scheme), ($name, &self.$field));
+                crate::serial::fields(name, ("taps", taps), own, ("shift", shift), serializer)
+            }
+        }
+    };
+}
+#[cfg(feature = "serde")]
+pub(super) use serialize_filtered;

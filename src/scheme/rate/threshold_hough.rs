@@ -4,7 +4,7 @@ use super::Taps;
 use super::decoder::{RateDecoderState, decode_rate};
 use super::encoder::{RateState, Rule, rate_scheme};
 use super::filtered::{Filtered, with_shift};
-use crate::error::{not_negative, unwrap};
+use crate::error::{not_negative, tri, unwrap};
 use crate::num::{Shortfall, to_f64};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
@@ -54,10 +54,8 @@ impl<S: Sample, const F: usize> ThresholdHough<S, F> {
     /// # Errors
     /// Returns an error if the threshold is negative or not finite.
     pub const fn try_new(taps: Taps<S, F>, threshold: S) -> Result<Self, ConfigError> {
-        match not_negative("threshold", to_f64(threshold)) {
-            Ok(()) => Ok(Self { filtered: Filtered::new(taps), threshold }),
-            Err(error) => Err(error),
-        }
+        tri!(not_negative("threshold", to_f64(threshold)));
+        Ok(Self { filtered: Filtered::new(taps), threshold })
     }
 
     with_shift!();
@@ -104,12 +102,5 @@ impl<S: Sample, const F: usize> Rule<S, F> for ThresholdHough<S, F> {
 
 rate_scheme!(ThresholdHough);
 
-/// A struct of `taps`, `threshold` and `shift`.
 #[cfg(feature = "serde")]
-impl<S: Sample + serde::Serialize, const F: usize> serde::Serialize for ThresholdHough<S, F> {
-    fn serialize<Z: serde::Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let Filtered { taps, shift } = &self.filtered;
-        let limit = ("threshold", &self.threshold);
-        crate::serial::fields("ThresholdHough", ("taps", taps), limit, ("shift", shift), serializer)
-    }
-}
+super::filtered::serialize_filtered!(ThresholdHough, "threshold", threshold);

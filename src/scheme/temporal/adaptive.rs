@@ -1,10 +1,10 @@
 //! Adaptive step forward: step forward whose step doubles while its spikes go on in one direction.
 
 use super::band::Band;
-use super::doublings;
-use crate::error::{unwrap, within};
+use super::doublings::{self, hold_with_history};
+use crate::error::{tri, unwrap, within};
 use crate::num::{HAS_VECTORS, Tally};
-use crate::scheme::codec::{Until, decode_copied, encode_each};
+use crate::scheme::codec::{Until, encode_each};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
@@ -74,10 +74,8 @@ impl<S: Sample> AdaptiveStepForward<S> {
     /// Returns an error if the threshold is not above 0, or not finite; there are more than 30 doublings; the largest
     /// step is more than the sample type holds, or above 10³¹ in `f32`.
     pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
-        match doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest step") {
-            Ok(()) => Ok(Self { threshold, doublings, run: 2 }),
-            Err(error) => Err(error),
-        }
+        tri!(doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest step"));
+        Ok(Self { threshold, doublings, run: 2 })
     }
 
     /// Sets after how many spikes in one direction, one a sample, the step grows; 2 by default. For constants, where a
@@ -95,10 +93,8 @@ impl<S: Sample> AdaptiveStepForward<S> {
     /// # Errors
     /// Returns an error if the number is not within 1 to 8.
     pub const fn try_with_run(self, run: u8) -> Result<Self, ConfigError> {
-        match within("run", run as f64, 1.0, LONGEST_RUN as f32) {
-            Ok(()) => Ok(Self { run, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(within("run", run as f64, 1.0, LONGEST_RUN as f32));
+        Ok(Self { run, ..self })
     }
 
     /// The threshold, which is the smallest step, in the samples' unit.
@@ -269,10 +265,6 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         state.tally.rejected()
     }
 
-    fn decoder_state(&self) -> AdaptiveStepState<S> {
-        AdaptiveStepState { value: S::ZERO, pace: Pace::REST }
-    }
-
     /// Adds the step, and adapts it as the encoder did.
     #[inline]
     fn decode(&self, state: &mut AdaptiveStepState<S>, spike: Spike) -> S {
@@ -286,21 +278,5 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         state.value
     }
 
-    #[inline]
-    fn decode_slice(
-        &self,
-        state: &mut AdaptiveStepState<S>,
-        spikes: &[impl Copy + Into<Spike>],
-        values: &mut [S],
-    ) -> usize {
-        decode_copied(self, state, spikes, values)
-    }
-
-    fn held(&self, state: &AdaptiveStepState<S>) -> Option<S> {
-        Some(state.value)
-    }
-
-    fn resync(&self, state: &mut AdaptiveStepState<S>, value: S) {
-        *state = AdaptiveStepState { value, pace: Pace::REST };
-    }
+    hold_with_history!(AdaptiveStepState, pace: Pace::REST);
 }

@@ -1,9 +1,9 @@
 //! Adaptive temporal contrast: temporal contrast whose threshold grows with the number of recent spikes.
 
-use super::doublings;
-use crate::error::unwrap;
+use super::doublings::{self, hold_with_history};
+use crate::error::{tri, unwrap};
 use crate::num::Tally;
-use crate::scheme::codec::{Until, decode_copied, encode_each};
+use crate::scheme::codec::{Until, encode_each};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
@@ -71,10 +71,8 @@ impl<S: Sample> AdaptiveContrast<S> {
     /// Returns an error if the threshold is not above 0, or not finite; there are more than 15 doublings; the largest
     /// threshold is more than the sample type holds, or above 10³¹ in `f32`.
     pub const fn try_new(threshold: S, doublings: u8) -> Result<Self, ConfigError> {
-        match doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest threshold") {
-            Ok(()) => Ok(Self { threshold, doublings }),
-            Err(error) => Err(error),
-        }
+        tri!(doublings::check(threshold, doublings, MOST_DOUBLINGS, "largest threshold"));
+        Ok(Self { threshold, doublings })
     }
 
     /// The smallest threshold, in the samples' unit.
@@ -219,10 +217,6 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         state.tally.rejected()
     }
 
-    fn decoder_state(&self) -> AdaptiveContrastStep<S> {
-        AdaptiveContrastStep { value: S::ZERO, recent: Recent::NONE }
-    }
-
     /// Adds the threshold, and adapts it as the encoder did.
     #[inline]
     fn decode(&self, state: &mut AdaptiveContrastStep<S>, spike: Spike) -> S {
@@ -238,21 +232,5 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         state.value
     }
 
-    #[inline]
-    fn decode_slice(
-        &self,
-        state: &mut AdaptiveContrastStep<S>,
-        spikes: &[impl Copy + Into<Spike>],
-        values: &mut [S],
-    ) -> usize {
-        decode_copied(self, state, spikes, values)
-    }
-
-    fn held(&self, state: &AdaptiveContrastStep<S>) -> Option<S> {
-        Some(state.value)
-    }
-
-    fn resync(&self, state: &mut AdaptiveContrastStep<S>, value: S) {
-        *state = AdaptiveContrastStep { value, recent: Recent::NONE };
-    }
+    hold_with_history!(AdaptiveContrastStep, recent: Recent::NONE);
 }

@@ -2,7 +2,7 @@
 
 use super::StepState;
 use super::steps::decode_steps;
-use crate::error::{positive, unwrap};
+use crate::error::{positive, tri, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{
@@ -55,10 +55,8 @@ impl<S: Sample> TemporalContrast<S> {
     /// # Errors
     /// Returns an error if the threshold is not above 0, or not finite.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
-        match positive("threshold", to_f64(threshold)) {
-            Ok(()) => Ok(Self { threshold, step: threshold }),
-            Err(error) => Err(error),
-        }
+        tri!(positive("threshold", to_f64(threshold)));
+        Ok(Self { threshold, step: threshold })
     }
 
     /// Sets the decoder's step, in the samples' unit; the paper's figures take twice the threshold. For constants,
@@ -76,10 +74,8 @@ impl<S: Sample> TemporalContrast<S> {
     /// # Errors
     /// Returns an error if the step is not above 0, or not finite.
     pub const fn try_with_step(self, step: S) -> Result<Self, ConfigError> {
-        match positive("step", to_f64(step)) {
-            Ok(()) => Ok(Self { step, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(positive("step", to_f64(step)));
+        Ok(Self { step, ..self })
     }
 
     /// The paper's threshold, `mean(d) + factor * std(d)`, over the differences of a calibration.

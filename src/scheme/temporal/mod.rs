@@ -41,6 +41,7 @@ pub use adaptive::{AdaptiveState, AdaptiveStepForward, AdaptiveStepState};
 pub use adaptive_contrast::{AdaptiveContrast, AdaptiveContrastState, AdaptiveContrastStep};
 pub use contrast::{ContrastState, TemporalContrast};
 pub use moving_window::{MovingWindow, MovingWindowState};
+pub(super) use send_on_delta::with_most;
 pub use send_on_delta::{SendOnDelta, SendOnDeltaState, Steps};
 pub use step_forward::{StepForward, StepForwardState};
 pub use steps::StepState;

@@ -5,7 +5,7 @@ use core::slice::{from_mut, from_ref};
 
 use super::StepState;
 use super::steps::decode_steps;
-use crate::error::{positive, unwrap};
+use crate::error::{positive, tri, unwrap};
 use crate::num::{Difference, HAS_VECTORS, Tally, Windowed, fast_margin, margin, to_f64};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
@@ -84,14 +84,9 @@ impl<S: Sample, const N: usize> MovingWindow<S, N> {
     /// Returns an error if the threshold is not above 0, or not finite.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        match positive("threshold", to_f64(threshold)) {
-            Ok(()) => Ok(Self {
-                threshold,
-                margin: margin(threshold, N),
-                fast_margin: fast_margin(threshold, N),
-            }),
-            Err(error) => Err(error),
-        }
+        tri!(positive("threshold", to_f64(threshold)));
+        let (margin, fast_margin) = (margin(threshold, N), fast_margin(threshold, N));
+        Ok(Self { threshold, margin, fast_margin })
     }
 
     /// The threshold, in the samples' unit.
@@ -187,17 +182,17 @@ impl<S: Sample, const N: usize> MovingWindowState<S, N> {
         blocks: &[[S; N]],
         spikes: &mut [[impl Destination<Spike>; N]],
     ) -> usize {
-        let mut own = *self;
+        let mut local = *self;
         let mut taken = 0;
         for (block, spikes) in blocks.iter().zip(spikes) {
-            if own.next != 0
-                || own.encode_groups::<N>(margin, from_ref(block), from_mut(spikes)) == 0
+            if local.next != 0
+                || local.encode_groups::<N>(margin, from_ref(block), from_mut(spikes)) == 0
             {
                 break;
             }
             taken += N;
         }
-        *self = own;
+        *self = local;
         taken
     }
 

@@ -4,13 +4,42 @@ use core::hint::black_box;
 
 use super::StepState;
 use super::band::Band;
-use crate::error::{step, unwrap, within};
+use crate::error::{step, tri, unwrap};
 use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{
-    Code, ConfigError, Destination, Fingerprint, NeuronSpike, Output, Polarity, Recovery, Sample,
-    Scheme, Spike, Start,
+    Code, ConfigError, Destination, Fingerprint, NeuronSpike, Polarity, Recovery, Sample, Scheme,
+    Spike, Start,
 };
+
+/// The methods that limit the spikes of a sample, in the field `most`, for a code of [`Steps`].
+macro_rules! with_most {
+    () => {
+        /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
+        ///
+        /// # Panics
+        /// Panics if the number is not within 1 to `K`.
+        #[must_use]
+        pub const fn with_most(self, most: u8) -> Self {
+            $crate::error::unwrap(self.try_with_most(most))
+        }
+
+        /// Allows at most this many spikes a sample; `K` by default.
+        ///
+        /// # Errors
+        /// Returns an error if the number is not within 1 to `K`.
+        pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
+            $crate::error::tri!($crate::error::within(
+                "most spikes a sample",
+                most as f64,
+                1.0,
+                K as f32
+            ));
+            Ok(Self { most: most as i8, ..self })
+        }
+    };
+}
+pub(in crate::scheme) use with_most;
 
 /// Send-on-delta: the baseline follows the signal by up to `K` thresholds a sample, with one spike for each.
 ///
@@ -71,31 +100,11 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
     /// Returns an error if the threshold is not above 0, not finite, or above 10³¹.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        match step("threshold", to_f64(threshold)) {
-            Ok(()) => Ok(Self { threshold, most: K as i8 }),
-            Err(error) => Err(error),
-        }
+        tri!(step("threshold", to_f64(threshold)));
+        Ok(Self { threshold, most: K as i8 })
     }
 
-    /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
-    ///
-    /// # Panics
-    /// Panics if the number is not within 1 to `K`.
-    #[must_use]
-    pub const fn with_most(self, most: u8) -> Self {
-        unwrap(self.try_with_most(most))
-    }
-
-    /// Allows at most this many spikes a sample; `K` by default.
-    ///
-    /// # Errors
-    /// Returns an error if the number is not within 1 to `K`.
-    pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
-        match within("most spikes a sample", most as f64, 1.0, K as f32) {
-            Ok(()) => Ok(Self { most: most as i8, ..self }),
-            Err(error) => Err(error),
-        }
-    }
+    with_most!();
 
     /// The threshold, in the samples' unit.
     pub const fn threshold(&self) -> S {
@@ -180,14 +189,6 @@ impl<const K: usize> Code for Steps<K> {
             }
         });
         Self::new(steps)
-    }
-}
-
-impl<const K: usize> Output for Steps<K> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }
 

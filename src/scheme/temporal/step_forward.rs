@@ -3,7 +3,7 @@
 use super::StepState;
 use super::band::Band;
 use super::steps::decode_steps;
-use crate::error::{step, unwrap};
+use crate::error::{step, tri, unwrap};
 use crate::num::{HAS_VECTORS, Tally, groups, groups_mut, to_f64};
 use crate::scheme::codec::{Until, encode_each};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
@@ -64,10 +64,8 @@ impl<S: Sample> StepForward<S> {
     /// # Errors
     /// Returns an error if the threshold is not above 0, not finite, or above 10³¹.
     pub const fn try_new(threshold: S) -> Result<Self, ConfigError> {
-        match step("threshold", to_f64(threshold)) {
-            Ok(()) => Ok(Self { threshold }),
-            Err(error) => Err(error),
-        }
+        tri!(step("threshold", to_f64(threshold)));
+        Ok(Self { threshold })
     }
 
     /// The threshold, in the samples' unit.

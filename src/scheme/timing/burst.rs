@@ -3,7 +3,7 @@
 use core::ops::RangeInclusive;
 
 use super::{BurstSpikes, TimingState};
-use crate::error::{unwrap, within};
+use crate::error::{tri, unwrap, within};
 use crate::num::to_f64;
 use crate::scheme::cells::{Cuts, Partition, Side, count_preceding};
 use crate::scheme::held::{Held, hold_value};
@@ -99,17 +99,10 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         slots: usize,
     ) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        if let Err(error) = within("spikes", spikes as f64, 1.0, 255.0) {
-            return Err(error);
-        }
-        if let Err(error) = within("shortest interval", shortest as f64, 1.0, longest as f32) {
-            return Err(error);
-        }
+        tri!(within("spikes", spikes as f64, 1.0, 255.0));
+        tri!(within("shortest interval", shortest as f64, 1.0, longest as f32));
         let min = *range.start();
-        let whole = match Cuts::<S, N>::new(range, N) {
-            Ok(cuts) => cuts,
-            Err(error) => return Err(error),
-        };
+        let whole = tri!(Cuts::<S, N>::new(range, N));
         let (counts, steps) = (spikes as usize, longest.saturating_sub(shortest) as usize);
         let mut cuts = whole.starting_above(to_f64(min));
         let (mut bursts, mut firsts) = ([[1, 0]; N], [0; N]);
@@ -154,18 +147,10 @@ impl<S: Sample, const N: usize> Burst<S, N> {
         }
         // Bursts that fit have no more cells than slots.
         let most = if cell < N { most } else { max(most, N + 1) };
-        if let Err(error) = within("slots of the longest burst", most as f64, 1.0, 256.0) {
-            return Err(error);
-        }
-        if let Err(error) = within("slots", slots as f64, most as f32, 256.0) {
-            return Err(error);
-        }
-        match cuts.counted(cell.saturating_add(1)).partition() {
-            Ok(cells) => {
-                Ok(Self { cells, bursts, firsts, count: (cell as u16).saturating_add(1), min })
-            }
-            Err(error) => Err(error),
-        }
+        tri!(within("slots of the longest burst", most as f64, 1.0, 256.0));
+        tri!(within("slots", slots as f64, most as f32, 256.0));
+        let cells = tri!(cuts.counted(cell.saturating_add(1)).partition());
+        Ok(Self { cells, bursts, firsts, count: (cell as u16).saturating_add(1), min })
     }
 
     /// The bursts that values have, the lowest first, and what each decodes to.
@@ -244,10 +229,6 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
         state.accept(sample).map_or(BurstSpikes::SILENT, |sample| self.burst(sample))
     }
 
-    fn rejected(state: &TimingState) -> u32 {
-        state.rejected()
-    }
-
     /// The minimum.
     fn decoder_state(&self) -> Held<S> {
         Held::at(self.min)
@@ -258,7 +239,7 @@ impl<S: Sample, const N: usize> Scheme for Burst<S, N> {
         state.or_hold(self.value(burst))
     }
 
-    hold_value!();
+    hold_value!(TimingState);
 
     /// The slots of the longest burst.
     fn slots(&self) -> usize {

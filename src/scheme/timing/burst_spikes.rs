@@ -1,6 +1,6 @@
 //! The code of a sample as a burst of spikes at one interval.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// The spikes of one sample: a number of them, from slot 0 on, at one interval, in slots below `N`.
 ///
@@ -79,13 +79,5 @@ impl<const N: usize> Code for BurstSpikes<N> {
             slot = slot.wrapping_add(interval);
         }
         Self { count, interval: interval as u8 }
-    }
-}
-
-impl<const N: usize> Output for BurstSpikes<N> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }

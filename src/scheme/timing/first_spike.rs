@@ -3,7 +3,7 @@
 use core::ops::RangeInclusive;
 
 use super::{Slot, TimingState};
-use crate::error::{not_rising, range as check_range, unwrap, within};
+use crate::error::{not_rising, range as check_range, tri, unwrap, within};
 use crate::num::curve::power;
 use crate::num::{DoubleDouble, to_f64};
 use crate::scheme::cells::{Cuts, Partition, Side};
@@ -143,14 +143,8 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         slots: usize,
     ) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        let cells = match Cuts::points(range, slots) {
-            Ok(cuts) => cuts.partition(),
-            Err(error) => return Err(error),
-        };
-        match cells {
-            Ok(cells) => Ok(Self { cells, silence: None, slots: slots as u16 }),
-            Err(error) => Err(error),
-        }
+        let cells = tri!(tri!(Cuts::points(range, slots)).partition());
+        Ok(Self { cells, silence: None, slots: slots as u16 })
     }
 
     pub(super) const fn of_logarithms(
@@ -160,13 +154,8 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
     ) -> Result<Self, ConfigError> {
         let least = 1.0_f32.next_up();
         let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
-        match (
-            check_range(min, max),
-            within("dynamic range", dynamic_range as f64, least, f32::MAX),
-        ) {
-            (Err(error), _) | (_, Err(error)) => return Err(error),
-            _ => {}
-        }
+        tri!(check_range(min, max));
+        tri!(within("dynamic range", dynamic_range as f64, least, f32::MAX));
         let mut edges = [0.0; N];
         let mut c = 0;
         while c < slots && c < N {
@@ -184,9 +173,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         let mut i = 0;
         while i < own.len() && i < N {
             edges[i] = to_f64(own[i]);
-            if let Err(error) = crate::error::finite("edge", edges[i]) {
-                return Err(error);
-            }
+            tri!(crate::error::finite("edge", edges[i]));
             if i > 0 && edges[i] <= edges[i - 1] {
                 return Err(not_rising("edges", i, edges[i], edges[i - 1]));
             }
@@ -202,10 +189,7 @@ impl<S: Sample, const N: usize> FirstSpike<S, N> {
         slots: usize,
     ) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        let mut cuts = match Cuts::<S, N>::new(range, slots) {
-            Ok(cuts) => cuts,
-            Err(error) => return Err(error),
-        };
+        let mut cuts = tri!(Cuts::<S, N>::new(range, slots));
         let below = cuts.set(0, edges[0], Side::Low);
         let silence = Silence { last: below.last(0), value: below.middle(0) };
         if to_f64(silence.last) < to_f64(*range.start()) {
@@ -312,10 +296,6 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
         count
     }
 
-    fn rejected(state: &TimingState) -> u32 {
-        state.rejected()
-    }
-
     /// The value of a sample without a spike; if there is none, the middle of the middle cell.
     fn decoder_state(&self) -> Held<S> {
         let middle = || self.cells.get(usize::from(self.slots / 2));
@@ -327,7 +307,7 @@ impl<S: Sample, const N: usize> Scheme for FirstSpike<S, N> {
         state.or_hold(self.value(slot))
     }
 
-    hold_value!();
+    hold_value!(TimingState);
 
     fn recovery(&self) -> Recovery {
         if self.silence.is_some() { Recovery::Samples(1) } else { Recovery::Spike }

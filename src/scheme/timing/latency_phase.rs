@@ -3,7 +3,7 @@
 use core::ops::RangeInclusive;
 
 use super::{PhaseSpikes, TimingState};
-use crate::error::{unwrap, within};
+use crate::error::{tri, unwrap, within};
 use crate::scheme::cells::{Cuts, Partition};
 use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Start};
@@ -75,7 +75,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, spacing: u16) -> Self {
-        unwrap(Self::of_shape(&range, spacing))
+        unwrap(Self::try_new(range, spacing))
     }
 
     /// Neurons whose peaks are `spacing` slots apart.
@@ -84,12 +84,8 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// Returns an error if the ends are not finite or do not rise; the sample type is too coarse for so many cells;
     /// or the spacing is 0, or `M` times the spacing exceeds the period.
     pub const fn try_new(range: RangeInclusive<S>, spacing: u16) -> Result<Self, ConfigError> {
-        Self::of_shape(&range, spacing)
-    }
-
-    const fn of_shape(range: &RangeInclusive<S>, spacing: u16) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        Self::of(range, M, W, P, spacing)
+        Self::of(&range, M, W, P, spacing)
     }
 
     /// A scheme of this many neurons, latencies and slots a period, at most `M`, `W` and `P`.
@@ -101,17 +97,9 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
         spacing: u16,
     ) -> Result<Self, ConfigError> {
         let most = (period / if neurons > 0 { neurons } else { 1 }) as f32;
-        if let Err(error) = within("spacing", spacing as f64, 1.0, most) {
-            return Err(error);
-        }
-        let cuts = match Cuts::<S, W>::even(range, width) {
-            Ok(cuts) => cuts,
-            Err(error) => return Err(error),
-        };
-        let cells = match cuts.partition_of(cuts.firsts()) {
-            Ok(cells) => cells,
-            Err(error) => return Err(error),
-        };
+        tri!(within("spacing", spacing as f64, 1.0, most));
+        let cuts = tri!(Cuts::<S, W>::even(range, width));
+        let cells = tri!(cuts.partition_of(cuts.firsts()));
         let (width, period, neurons) = (width as u16, period as u16, neurons as u16);
         Ok(Self { cells, max: *range.end(), width, period, neurons, spacing, phase: 0 })
     }
@@ -131,10 +119,8 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> LatencyPhase<S, 
     /// # Errors
     /// Returns an error if the phase is not below the period.
     pub const fn try_with_phase(self, phase: u16) -> Result<Self, ConfigError> {
-        match within("phase", phase as f64, 0.0, self.period.saturating_sub(1) as f32) {
-            Ok(()) => Ok(Self { phase, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(within("phase", phase as f64, 0.0, self.period.saturating_sub(1) as f32));
+        Ok(Self { phase, ..self })
     }
 
     /// The neuron that peaks in a slot, if there is one: whose spike it is, where all share one line.
@@ -209,10 +195,6 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> Scheme
         }
     }
 
-    fn rejected(state: &TimingState) -> u32 {
-        state.rejected()
-    }
-
     /// The lower end of the middle cell.
     fn decoder_state(&self) -> Held<S> {
         Held::at(self.cells.get(usize::from(self.width / 2)).unwrap_or(S::ZERO))
@@ -223,7 +205,7 @@ impl<S: Sample, const M: usize, const W: usize, const P: usize> Scheme
         state.or_hold(self.value(&spikes))
     }
 
-    hold_value!();
+    hold_value!(TimingState);
 
     fn neurons(&self) -> usize {
         self.neurons.into()

@@ -1,6 +1,6 @@
 //! The code of a sample as the digits of its value.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// The spikes of one sample in up to `K` slots: one for each binary digit that is 1, the highest first.
 ///
@@ -40,13 +40,5 @@ impl<const K: usize> Code for PhaseBits<K> {
         let slots = firings.filter(|firing| firing.neuron == 0).map(|firing| firing.slot.into());
         let digits = slots.filter_map(|slot: usize| (K - 1).checked_sub(slot));
         Self::new(digits.fold(0, |digits, digit| digits | 1 << (digit & 15)))
-    }
-}
-
-impl<const K: usize> Output for PhaseBits<K> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }

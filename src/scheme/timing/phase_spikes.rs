@@ -1,6 +1,6 @@
 //! The code of a sample as the spikes of neurons that share an oscillation.
 
-use crate::{Code, NeuronSpike, Output, Polarity};
+use crate::{Code, NeuronSpike, Polarity};
 
 /// The spikes of one sample: one of each of `M` neurons, in slots below `W + P - 1`.
 ///
@@ -75,14 +75,6 @@ impl<const M: usize, const W: usize, const P: usize> Code for PhaseSpikes<M, W, 
             }
         }
         spikes
-    }
-}
-
-impl<const M: usize, const W: usize, const P: usize> Output for PhaseSpikes<M, W, P> {
-    type Code = Self;
-
-    fn code(self) -> Option<Self> {
-        Some(self)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::num::Tally;
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TimingState {
-    tally: Tally,
+    pub(super) tally: Tally,
 }
 
 impl TimingState {
@@ -22,9 +22,5 @@ impl TimingState {
             self.tally.reject();
             None
         }
-    }
-
-    pub(super) const fn rejected(self) -> u32 {
-        self.tally.rejected()
     }
 }

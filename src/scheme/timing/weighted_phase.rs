@@ -3,7 +3,7 @@
 use core::ops::RangeInclusive;
 
 use super::{PhaseBits, TimingState};
-use crate::error::{range as check_range, unwrap, within};
+use crate::error::{range as check_range, tri, unwrap, within};
 use crate::num::to_f64;
 use crate::scheme::held::{Held, hold_value};
 use crate::{ConfigError, Fingerprint, Recovery, Sample, SampleKind, Scheme, Start};
@@ -62,7 +62,7 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>) -> Self {
-        unwrap(Self::of(&range))
+        unwrap(Self::try_new(range))
     }
 
     /// A scheme for a range, with `K` slots.
@@ -70,19 +70,11 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     /// # Errors
     /// Returns an error if the ends are not finite or do not rise; in `f32` `max - min` is more than `f32::MAX / 2`.
     pub const fn try_new(range: RangeInclusive<S>) -> Result<Self, ConfigError> {
-        Self::of(&range)
-    }
-
-    const fn of(range: &RangeInclusive<S>) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
         let (min, max) = (to_f64(*range.start()), to_f64(*range.end()));
-        if let Err(error) = check_range(min, max) {
-            return Err(error);
-        }
-        if matches!(S::KIND, SampleKind::F32)
-            && let Err(error) = within("max - min", max - min, 0.0, f32::MAX / 2.0)
-        {
-            return Err(error);
+        tri!(check_range(min, max));
+        if matches!(S::KIND, SampleKind::F32) {
+            tri!(within("max - min", max - min, 0.0, f32::MAX / 2.0));
         }
         Ok(Self { min: *range.start(), max: *range.end(), slots: K as u8 })
     }
@@ -101,10 +93,8 @@ impl<S: Sample, const K: usize> WeightedPhase<S, K> {
     /// # Errors
     /// Returns an error if the number is not within 2 to `K`.
     pub const fn try_with_slots(self, slots: u8) -> Result<Self, ConfigError> {
-        match within("slots", slots as f64, 2.0, K as f32) {
-            Ok(()) => Ok(Self { slots, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(within("slots", slots as f64, 2.0, K as f32));
+        Ok(Self { slots, ..self })
     }
 
     /// How many of the lowest digits of a code are unused.
@@ -142,10 +132,6 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
         PhaseBits::new((digits >> self.unused() << self.unused()) as u16)
     }
 
-    fn rejected(state: &TimingState) -> u32 {
-        state.rejected()
-    }
-
     /// The value of a sample without a spike.
     fn decoder_state(&self) -> Held<S> {
         Held::at(S::of_digits(0, self.slots.into(), self.min, self.max))
@@ -157,7 +143,7 @@ impl<S: Sample, const K: usize> Scheme for WeightedPhase<S, K> {
         state.or_hold(Some(S::of_digits(digits, self.slots.into(), self.min, self.max)))
     }
 
-    hold_value!();
+    hold_value!(TimingState);
 
     fn slots(&self) -> usize {
         self.slots.into()

@@ -194,7 +194,7 @@ impl<'a> FrameView<'a> {
     /// This frame with its keyframes read as another sample type of the same width; `None` if the width differs. For
     /// programs that handle all fixed point of one width as one type.
     pub fn with_kind(self, kind: SampleKind) -> Option<Self> {
-        let is_as_wide = self.kind.is_some_and(|own| own.size() == kind.size());
+        let is_as_wide = self.kind.is_some_and(|sent| sent.size() == kind.size());
         is_as_wide.then_some(Self { kind: Some(kind), ..self })
     }
 

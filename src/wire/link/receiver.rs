@@ -7,10 +7,10 @@ use super::time::Time;
 use super::trust::Trust;
 use super::{Received, Withheld};
 use crate::event::{
-    Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick,
+    Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick, addressed,
     bank_fingerprint,
 };
-use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Recovery, Sample, Scheme, error};
+use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Recovery, Sample, Scheme};
 
 /// The decoders of `N` channels at the end of a link, for any code.
 ///
@@ -163,33 +163,13 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
-    /// Sets the first address, 0 by default; events of addresses without a channel are counted as
-    /// [outside](Self::outside).
-    ///
-    /// # Panics
-    /// Panics if the last address is above 65 535.
-    #[must_use]
-    pub const fn with_first_address(mut self, first_address: u16) -> Self {
-        error::unwrap(error::first_address(first_address, Self::ADDRESSES));
-        self.addresses.first = first_address;
-        self
-    }
-
-    /// Sets the first address, 0 by default.
-    ///
-    /// # Errors
-    /// Returns an error if the last address is above 65 535.
-    pub fn try_with_first_address(self, first_address: u16) -> Result<Self, ConfigError> {
-        error::first_address(first_address, Self::ADDRESSES)?;
-        Ok(Self { addresses: Addresses { first: first_address, ..self.addresses }, ..self })
-    }
-
-    /// Sets the length of a sub-timestep in microseconds, that of the sender's
-    /// [bank](crate::Bank::with_slot_ticks). By default it is 0: a code with sub-timesteps is then not decoded.
-    #[must_use]
-    pub const fn with_slot_ticks(mut self, slot_ticks: u32) -> Self {
-        self.addresses.slot_ticks = slot_ticks;
-        self
+    addressed! {
+        /// Sets the first address, 0 by default; events of addresses without a channel are counted as
+        /// [outside](Self::outside).
+        addresses.first;
+        /// Sets the length of a sub-timestep in microseconds, that of the sender's
+        /// [bank](crate::Bank::with_slot_ticks). By default it is 0: a code with sub-timesteps is then not decoded.
+        addresses.slot_ticks;
     }
 
     /// Sets by how many millionths the time from sample to sample may differ from the link's period, in ticks of the

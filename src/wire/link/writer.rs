@@ -274,8 +274,8 @@ impl<'a> FrameWriter<'_, 'a> {
         kind: Option<SampleKind>,
         bits: u32,
     ) -> Result<(), LinkError> {
-        let own = Run(kind);
-        if self.events > 0 || tick != self.tick || self.run.is_some_and(|first| first != own) {
+        let entry = Run(kind);
+        if self.events > 0 || tick != self.tick || self.run.is_some_and(|first| first != entry) {
             return Err(LinkError::KeyframeOrder);
         }
         let run = if self.run.is_none() { RUN_HEADER } else { 0 };
@@ -288,7 +288,7 @@ impl<'a> FrameWriter<'_, 'a> {
             if is_due && run + keyframe_size(kind) + FINGERPRINT <= self.bits.room() {
                 self.tell();
             }
-            self.run = Some(own);
+            self.run = Some(entry);
             self.flags |= flag::KEYFRAMES;
             self.bits.put_bytes(&[0, kind.map_or(HEARTBEATS, SampleKind::to_byte)]);
         }

@@ -2,6 +2,7 @@
 
 use crate::common::{cargo, output, paths, run};
 use crate::figures::{jumps, schemes};
+use crate::products::templates::{TEMPLATES, Template};
 use crate::programs::host::{spikewire, tests};
 use crate::programs::{boards::Board, image, published::CRATES};
 use crate::setup::toolchain::{TARGETS, cargo_for_each};
@@ -18,6 +19,11 @@ pub fn fmt() -> Result<()> {
     schemes.args(["--edition", "2024", "--check"]);
     for scheme in paths::root().join("laptop/catalogue/src/schemes").read_dir()? {
         schemes.arg(scheme?.path());
+    }
+    // Each becomes a project of its own, where its manifest finds the crates.
+    schemes.arg(paths::examples().join("templates/build.rs"));
+    for Template { hal, .. } in &TEMPLATES {
+        schemes.arg(paths::examples().join(format!("templates/{hal}/src/main.rs")));
     }
     run(&mut schemes)
 }

@@ -2,7 +2,7 @@
 
 use crate::common::paths;
 use crate::figures::bits;
-use crate::programs::boards::{BOARDS, Board};
+use crate::programs::boards::{BOARDS, Board, RISC_V};
 use crate::programs::host::{self, FLIGHT_LOG};
 use crate::programs::{image, qemu, size};
 use crate::setup::needs;
@@ -86,17 +86,19 @@ impl Outcome {
 fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
     let host = host::on_host(program)?;
     ensure!(!host.is_empty(), "{program} prints nothing on the host");
+    let risc_v = FLIGHT_LOG.contains(&program).then_some(&RISC_V);
+    let boards: Vec<&'static Board> = BOARDS.iter().chain(risc_v).collect();
     let images =
-        BOARDS.iter().map(|board| image::build(program, board)).collect::<Result<Vec<_>>>()?;
+        boards.iter().map(|board| image::build(program, board)).collect::<Result<Vec<_>>>()?;
 
     let outcomes = thread::scope(|scope| {
-        let runs: Vec<_> = BOARDS
+        let runs: Vec<_> = boards
             .iter()
             .zip(&images)
             .map(|(board, image)| scope.spawn(|| qemu::run(board, image)))
             .collect();
-        BOARDS
-            .iter()
+        boards
+            .into_iter()
             .zip(images.iter().zip(runs))
             .map(|(board, (image, run))| Outcome {
                 board,

@@ -1,5 +1,6 @@
 //! The steps of `cargo verify`, except those that belong to a figure or a product; `verify` lists all steps.
 
+pub mod emulate;
 mod emulator;
 pub mod everyday;
 pub mod fifo;
@@ -21,5 +22,6 @@ pub mod ros;
 pub mod simulated_drone;
 pub mod soak;
 pub mod storm;
+pub mod templates;
 pub mod tuned;
 pub mod video;

@@ -138,6 +138,7 @@ mod tests {
     #[test]
     fn the_page_has_each_boards_port_and_code() {
         let page = fs::read_to_string(paths::root().join("docs/firmware.md")).unwrap();
+        let (page, _) = page.split_once("\n## ").unwrap(); // the table of HALs comes later
         let rows = page.lines().filter(|line| line.starts_with("| `"));
         let rows: Vec<_> = rows.skip(1).collect();
         assert_eq!(rows.len(), BOARDS.len());

@@ -6,3 +6,4 @@ pub mod new_scheme;
 pub mod page;
 pub mod parts;
 pub mod python_package;
+pub mod templates;

@@ -1,10 +1,11 @@
-//! `cargo xtask new-firmware DIR --board NAME`: writes a project for a board, outside this workspace, that builds at
-//! once.
+//! `cargo xtask new-firmware DIR --board NAME` and `… --hal NAME --flight flight.toml`: writes a project, outside this
+//! workspace, that builds at once.
 //!
-//! Its files are those of `examples/boards`, without the other boards.
+//! A board's files are those of `examples/boards`, without the other boards; a HAL's are those of `examples/templates`.
 
 use crate::common::{paths, usage};
 use crate::products::parts::{BOARDS, Part};
+use crate::products::templates::{TEMPLATES, Template};
 use anyhow::{Context, Result, ensure};
 use std::{
     fs,
@@ -12,7 +13,8 @@ use std::{
 };
 use toml::{Table, Value};
 
-pub const USAGE: &str = "cargo xtask new-firmware DIR --board NAME [--git URL]";
+pub const USAGE: &str = "cargo xtask new-firmware DIR --board NAME [--git URL]
+cargo xtask new-firmware DIR --hal NAME --flight FLIGHT.toml [--git URL]";
 
 /// Where a project finds the crate and its companions.
 pub enum Origin {
@@ -23,24 +25,46 @@ pub enum Origin {
 }
 
 /// Packages that a project takes from there, with their directories.
-const PACKAGES: [(&str, &str); 3] =
-    [("spikewire", ""), ("flight", "examples/flight"), ("icm42688p", "examples/icm42688p")];
+const PACKAGES: [(&str, &str); 5] = [
+    ("spikewire", ""),
+    ("flight", "examples/flight"),
+    ("imu", "examples/flight"), // the same under another name, as a flight's module is `flight`
+    ("icm42688p", "examples/icm42688p"),
+    ("spikewire-flight", "laptop/flight"),
+];
 
 /// Error text for a feature that is not a list.
 const ARRAYS: &str = "a feature is a list of texts";
 
 pub fn new_firmware(args: &[String]) -> Result<()> {
-    let args: Vec<&str> = args.iter().map(String::as_str).collect();
-    let (directory, board, origin) = match args[..] {
-        [directory, "--board", board] => (directory, board, Origin::Path(paths::root())),
-        [directory, "--board", board, "--git", url] => (directory, board, Origin::Git(url.into())),
-        _ => return Err(usage(format!("{USAGE}\nboards: {}", names()))),
+    let mut args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let origin = match args[..] {
+        [.., "--git", url] => {
+            args.truncate(args.len() - 2);
+            Origin::Git(url.into())
+        }
+        _ => Origin::Path(paths::root()),
     };
+    match args[..] {
+        [directory, "--board", board] => for_board(&free(directory)?, board, &origin),
+        [directory, "--hal", hal, "--flight", flight] => {
+            for_hal(&free(directory)?, hal, Path::new(flight), &origin)
+        }
+        _ => Err(usage(format!("{USAGE}\nboards: {}\nHALs: {}", boards(), hals()))),
+    }
+}
+
+/// Returns a directory's path, unless it is there.
+fn free(directory: &str) -> Result<PathBuf> {
     let directory = std::env::current_dir()?.join(directory);
-    let part = BOARDS.iter().find(|part| part.name == board);
-    let part = part.ok_or_else(|| usage(format!("no board `{board}`; there are {}", names())))?;
     ensure!(!directory.exists(), "{} is there already", directory.display());
-    write(&directory, part, &origin)?;
+    Ok(directory)
+}
+
+fn for_board(directory: &Path, board: &str, origin: &Origin) -> Result<()> {
+    let part = BOARDS.iter().find(|part| part.name == board);
+    let part = part.ok_or_else(|| usage(format!("no board `{board}`; there are {}", boards())))?;
+    write(directory, part, origin)?;
     println!("{}: firmware for {}. In it:", directory.display(), part.name);
     println!("  cargo build --release    # with this compiler's target {}", part.target);
     println!("  {}", part.flash);
@@ -48,8 +72,90 @@ pub fn new_firmware(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-fn names() -> String {
+fn for_hal(directory: &Path, hal: &str, flight: &Path, origin: &Origin) -> Result<()> {
+    let template = TEMPLATES.iter().find(|template| template.hal == hal);
+    let template =
+        template.ok_or_else(|| usage(format!("no HAL `{hal}`; there are {}", hals())))?;
+    write_template(directory, template, flight, origin)?;
+    let Template { target, baud, .. } = template;
+    let name = directory.file_name().context("a directory has a name")?.to_string_lossy();
+    println!("{}: firmware with {hal}. In it:", directory.display());
+    println!("  cargo build --release    # with this compiler's target {target}");
+    println!("  cargo run --release      # with a debug probe: cargo install probe-rs-tools");
+    println!("  spikewire listen --baud {baud} PORT --flight flight.toml");
+    if let Some(part) = template.emulated {
+        let image = directory.join("target").join(target).join("release").join(&*name);
+        println!("Without a board, in {}:", paths::root().display());
+        println!("  cargo xtask emulate {} --part {part}", image.display());
+    }
+    Ok(())
+}
+
+fn boards() -> String {
     BOARDS.map(|part| part.name).join(", ")
+}
+
+fn hals() -> String {
+    TEMPLATES.map(|template| template.hal).join(", ")
+}
+
+/// Writes a template's files, and the flight's.
+pub fn write_template(
+    directory: &Path,
+    template: &Template,
+    flight: &Path,
+    origin: &Origin,
+) -> Result<()> {
+    let Template { hal, target, chip, memory, sections, .. } = template;
+    let read = |path: String| {
+        fs::read_to_string(paths::examples().join(&path)).with_context(|| path.clone())
+    };
+    let flight = fs::read_to_string(flight).with_context(|| flight.display().to_string())?;
+    let mut manifest: Table = read(format!("templates/{hal}/Cargo.toml"))?.parse()?;
+    from_origin(&mut manifest, directory, origin)?;
+    let files = [
+        ("Cargo.toml", toml::to_string(&manifest)?),
+        (".cargo/config.toml", config(target, chip)),
+        (
+            "rust-toolchain.toml",
+            format!("[toolchain]\nchannel = \"stable\"\ntargets = [\"{target}\"]\n"),
+        ),
+        ("memory.x", read(format!("boards/memory/{memory}.x"))? + sections),
+        ("build.rs", read("templates/build.rs".into())?),
+        ("src/main.rs", read(format!("templates/{hal}/src/main.rs"))?),
+        ("flight.toml", flight),
+    ];
+    write_files(directory, files)
+}
+
+/// Names the project, and finds this repository's packages elsewhere.
+fn from_origin(manifest: &mut Table, directory: &Path, origin: &Origin) -> Result<()> {
+    let name = directory.file_name().context("a directory has a name")?.to_string_lossy();
+    let package = manifest.get_mut("package").and_then(Value::as_table_mut).context("package")?;
+    package.insert("name".into(), Value::from(&*name));
+    let patch = manifest.get_mut("patch").and_then(Value::as_table_mut).context("patch")?;
+    let patch = patch.get_mut("crates-io").and_then(Value::as_table_mut).context("crates-io")?;
+    place_packages(patch, origin);
+    for kind in ["dependencies", "build-dependencies"] {
+        let own = manifest.get_mut(kind).and_then(Value::as_table_mut).context(kind)?;
+        place_packages(own, origin);
+    }
+    Ok(())
+}
+
+/// Replaces the paths of this repository's packages.
+fn place_packages(dependencies: &mut Table, origin: &Origin) {
+    for (package, place) in PACKAGES {
+        let (key, source) = match origin {
+            Origin::Path(root) => ("path", root.join(place).display().to_string()),
+            Origin::Git(url) => ("git", url.clone()),
+        };
+        if let Some(Value::Table(dependency)) = dependencies.get_mut(package)
+            && dependency.remove("path").is_some()
+        {
+            dependency.insert(key.into(), Value::String(source));
+        }
+    }
 }
 
 /// Writes the project's files.
@@ -59,13 +165,17 @@ pub fn write(directory: &Path, part: &Part, origin: &Origin) -> Result<()> {
     let manifest: Table = read("Cargo.toml".into())?.parse()?;
     let files = [
         ("Cargo.toml", self::manifest(manifest, directory, part, origin)?),
-        (".cargo/config.toml", config(part)),
+        (".cargo/config.toml", config(part.target, part.chip)),
         ("memory.x", read(format!("memory/{}.x", part.memory))?),
         ("build.rs", build_script(part)),
         ("src/main.rs", alone(&read("src/main.rs".into())?, part.name)),
         ("src/board.rs", alone(&read(format!("src/board/{}.rs", part.board))?, part.name)),
         ("src/part.rs", alone(&read(format!("src/part/{}.rs", part.part))?, part.name)),
     ];
+    write_files(directory, files)
+}
+
+fn write_files<const N: usize>(directory: &Path, files: [(&str, String); N]) -> Result<()> {
     for (name, text) in files {
         let path = directory.join(name);
         fs::create_dir_all(path.parent().context("a file lies in a directory")?)?;
@@ -93,30 +203,19 @@ fn manifest(mut all: Table, directory: &Path, part: &Part, origin: &Origin) -> R
         }
     }
     dependencies.retain(|_, value| value.get("optional").is_none());
-    let mut patched = Table::new();
-    for (package, place) in PACKAGES {
-        let source = match origin {
-            Origin::Path(root) => ("path", root.join(place).display().to_string()),
-            Origin::Git(url) => ("git", url.clone()),
-        };
-        let source = Table::from_iter([(source.0.to_owned(), Value::String(source.1))]);
-        if package == "spikewire" {
-            patched.insert(package.into(), source.into());
-        } else if let Some(Value::Table(dependency)) = dependencies.get_mut(package) {
-            dependency.remove("path");
-            dependency.extend(source);
-        }
-    }
+    place_packages(&mut dependencies, origin);
+    let mut patched = table(&mut all, "patch")?;
+    let crates_io = patched.get_mut("crates-io").and_then(Value::as_table_mut);
+    place_packages(crates_io.context("a patch")?, origin);
     let package = Table::from_iter([
         ("name".to_owned(), Value::from(&*name)),
         ("version".to_owned(), Value::from("0.1.0")),
         ("edition".to_owned(), Value::from("2024")),
     ]);
-    let patch = Table::from_iter([("crates-io".to_owned(), patched.into())]);
     let project = Table::from_iter([
         ("package".to_owned(), package.into()),
         ("dependencies".to_owned(), dependencies.into()),
-        ("patch".to_owned(), patch.into()),
+        ("patch".to_owned(), patched.into()),
         ("profile".to_owned(), table(&mut all, "profile")?.into()),
         ("workspace".to_owned(), Table::new().into()),
     ]);
@@ -168,8 +267,7 @@ fn alone(text: &str, board: &str) -> String {
     kept
 }
 
-fn config(part: &Part) -> String {
-    let Part { target, chip, .. } = part;
+fn config(target: &str, chip: &str) -> String {
     format!(
         "[build]\ntarget = \"{target}\"\n\n[target.{target}]\nrunner = \"probe-rs run --chip {chip}\"\n\n[env]\n\
          DEFMT_LOG = \"info\"\n"
@@ -200,6 +298,22 @@ mod tests {
         let text = "a\n#[cfg_attr(feature = \"x\", path = \"x.rs\")]\nmod b;\n#[cfg(not(feature = \"x\"))]\nc\n#[cfg(feature = \"x\")]\nd\n";
         assert_eq!(alone(text, "x"), "a\nmod b;\nd\n");
         assert_eq!(alone(text, "y"), "a\nmod b;\nc\n");
+    }
+
+    #[test]
+    fn a_hals_project_finds_this_repositorys_packages() {
+        let directory = tempfile::tempdir().unwrap();
+        let flight = paths::examples().join("one-file/flight.toml");
+        for template in &TEMPLATES {
+            let project = directory.path().join(template.hal);
+            let url = "https://example.org/spikewire";
+            write_template(&project, template, &flight, &Origin::Git(url.into())).unwrap();
+            let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
+            assert!(!manifest.contains("path = "), "{manifest}");
+            assert_eq!(manifest.matches(url).count(), 4, "{manifest}");
+            let name = format!("name = \"{}\"", template.hal);
+            assert!(manifest.contains(&name), "{manifest}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The Python package, installed as a user installs it.
 
 use crate::common::{command, output, paths, run};
+use crate::products::c_library;
 use crate::programs::host;
 use crate::programs::python::{environment, install, package, pip};
 use anyhow::{Result, ensure};
@@ -23,7 +24,9 @@ pub fn python() -> Result<()> {
     let flight = paths::target().join("flight-log.txt");
     fs::write(&flight, host::flight_log()?)?;
     let pytest = "-m pytest --quiet -rP --no-header --doctest-modules bindings/python/tests --pyargs spikewire";
-    run(command(&python).args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight))?;
+    let mut tests = command(&python);
+    tests.args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight);
+    run(tests.env("FLIGHTS", c_library::write_flights()?))?;
     run(command(&python).arg("bindings/python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
     source_package(&python).map(drop)
 }

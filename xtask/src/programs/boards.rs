@@ -1,4 +1,4 @@
-//! The emulated boards, one for each Cortex-M core that the crate supports.
+//! The emulated boards: one for each Cortex-M core that the crate supports, and a RISC-V machine.
 
 use crate::common::paths;
 use anyhow::{Context, Result};
@@ -63,7 +63,31 @@ pub const BOARDS: [Board; 5] = [
     },
 ];
 
+/// QEMU's RISC-V machine with the core of an ESP32-C3: no floating point, no atomic instructions. It runs the recorded
+/// flight only, as the other programs use a Cortex-M's peripherals.
+pub const RISC_V: Board = Board {
+    core: "RV32",
+    machine: "virt",
+    target: "riscv32imc-unknown-none-elf",
+    cpu: "generic-rv32",
+    clock: 10_000_000,
+    icount: 8,
+};
+
 impl Board {
+    /// Returns QEMU's program and the options that choose the board.
+    pub fn emulator(&self) -> (&'static str, &'static [&'static str]) {
+        match self.machine {
+            "virt" => ("qemu-system-riscv32", &["-cpu", "rv32,a=off,f=off,d=off", "-bios", "none"]),
+            _ => ("qemu-system-arm", &[]),
+        }
+    }
+
+    /// Returns the start of the names of the GNU tools for the core.
+    pub fn tools(&self) -> &'static str {
+        if self.target.starts_with("riscv") { "riscv64-unknown-elf-" } else { "arm-none-eabi-" }
+    }
+
     /// Returns the board with this core.
     pub fn with(core: &str) -> Result<&'static Self> {
         let board = BOARDS.iter().find(|board| board.core.eq_ignore_ascii_case(core));
@@ -109,7 +133,7 @@ mod tests {
 
     #[test]
     fn every_board_has_a_map_and_a_known_target() {
-        for board in &BOARDS {
+        for board in BOARDS.iter().chain([&RISC_V]) {
             let (flash, ram) = board.memory().unwrap();
             assert!(flash >= 128 * 1024 && ram >= 16 * 1024, "{}", board.machine);
             assert!(crate::setup::toolchain::TARGETS.contains(&board.target));

@@ -8,11 +8,22 @@ use std::{path::PathBuf, process::Command};
 /// Prepares `cargo test` for the whole workspace, with every feature except the debug probe's driver; lints while
 /// compiling.
 pub fn tests(args: &str) -> Result<Command> {
+    workspace("test", args)
+}
+
+/// Builds an example of a crate of the workspace, as for the tests; returns its path.
+pub fn example_of_tests(name: &str) -> Result<PathBuf> {
+    run(workspace("build", "--quiet --example")?.arg(name))?;
+    Ok(paths::target().join("debug/examples").join(name))
+}
+
+fn workspace(verb: &str, args: &str) -> Result<Command> {
     let mut features = vec!["host-tests/extract".to_owned()];
     for own in CRATES {
         features.extend(own.features()?.into_iter().map(|name| format!("{}/{name}", own.name)));
     }
-    let mut cargo = cargo("test --workspace --features");
+    let mut cargo = cargo(verb);
+    cargo.args(["--workspace", "--features"]);
     cargo.arg(features.join(",")).args(args.split_whitespace());
     lint(&mut cargo);
     Ok(cargo)

@@ -75,8 +75,9 @@ pub fn run_hearing(board: &Board, image: &Path, heard: &Path, said: &Path) -> Re
 }
 
 fn emulator(board: &Board) -> Command {
-    let mut emulator = shell::command("qemu-system-arm");
-    emulator.args(["-M", board.machine, "-nographic"]).stdin(Stdio::null());
+    let (program, options) = board.emulator();
+    let mut emulator = shell::command(program);
+    emulator.args(["-M", board.machine, "-nographic"]).args(options).stdin(Stdio::null());
     emulator
 }
 
@@ -104,9 +105,8 @@ fn run_to_end(
         .stderr(Stdio::piped());
     let program = image.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let _running = progress::running(format!("{program} on {}", board.core));
-    let mut child = emulator
-        .spawn()
-        .context("qemu-system-arm does not start; `cargo xtask setup` installs it")?;
+    let mut child =
+        emulator.spawn().context("the emulator does not start; `cargo xtask setup` installs it")?;
 
     // Read both streams while it runs, or a full pipe stops it.
     let printed = read_all(child.stdout.take());

@@ -1,4 +1,4 @@
-//! Builds the core library for a Cortex-M, and installs it where the distribution's compiler looks for it.
+//! Builds the core library for a microcontroller, and installs it where the distribution's compiler looks for it.
 
 use crate::common::{paths, shell};
 use crate::setup::distribution::{CARGO, RUSTC, STAMP, libraries, version};

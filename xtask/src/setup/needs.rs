@@ -11,7 +11,7 @@ pub struct Tool {
     pub why: &'static str,
 }
 
-pub const TOOLS: [Tool; 4] = [
+pub const TOOLS: [Tool; 5] = [
     Tool { package: "qemu-system-arm", program: "qemu-system-arm", why: "emulates the boards" },
     Tool {
         package: "binutils-arm-none-eabi",
@@ -22,6 +22,11 @@ pub const TOOLS: [Tool; 4] = [
         package: "gcc-arm-none-eabi",
         program: "arm-none-eabi-gcc",
         why: "compiles the tests of the library for C",
+    },
+    Tool {
+        package: "qemu-system-misc",
+        program: "qemu-system-riscv32",
+        why: "emulates a RISC-V machine",
     },
     Tool { package: "g++", program: "g++", why: "compiles its header as C++" },
 ];
@@ -36,7 +41,7 @@ impl Needs {
     /// Lists the programs in words.
     pub fn words(&self) -> String {
         let tools = self.tools.iter().map(|tool| tool.program);
-        ["Cortex-M compiler"].into_iter().chain(tools).collect::<Vec<_>>().join(", ")
+        ["compiler for microcontrollers"].into_iter().chain(tools).collect::<Vec<_>>().join(", ")
     }
 }
 

@@ -1,19 +1,20 @@
-//! Chooses the cargo that builds for a Cortex-M.
+//! Chooses the cargo that builds for a microcontroller.
 
 use crate::common::{paths, shell};
 use crate::setup::distribution;
 use anyhow::{Result, ensure};
 use std::{fs, path::PathBuf, process::Command};
 
-/// The Cortex-M targets for which the crate is built.
-pub const TARGETS: [&str; 4] = [
+/// The microcontrollers' targets for which the crate is built.
+pub const TARGETS: [&str; 5] = [
     "thumbv6m-none-eabi",
     "thumbv7m-none-eabi",
     "thumbv7em-none-eabihf",
     "thumbv8m.main-none-eabihf",
+    "riscv32imc-unknown-none-elf",
 ];
 
-/// Prepares cargo for a Cortex-M target: `cargo …` if the current toolchain has its core library, or else `cargo +thumb
+/// Prepares cargo for a microcontroller's target: `cargo …` if the current toolchain has its core library, or else `cargo +thumb
 /// …`, the distribution's compiler as `cargo xtask setup` prepares it. It builds into a separate directory, since the
 /// compiler may differ.
 pub fn cargo_for(target: &str, args: &str) -> Result<Command> {

@@ -5,8 +5,8 @@ mod passed;
 
 use crate::checks::{
     everyday, fifo, firmware, fuzz, interface, link, logging, long, network, network_flies, nucleo,
-    package, peers, rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, tuned,
-    video,
+    package, peers, rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, templates,
+    tuned, video,
 };
 use crate::common::{cpu, usage};
 use crate::figures::{bench, demo, faults, flash};
@@ -191,6 +191,11 @@ const LONG: &[Step] = &[
     .apart(BOARDS),
     step("flash", "the flash of one codec as linked, with two bounds", flash::verify),
     step(
+        "templates",
+        "firmware from flight.toml with each HAL: built, and flown in its part's emulator",
+        templates::templates,
+    ),
+    step(
         "nucleo",
         "the whole program on the page of boards, compiled and linked with its HAL",
         nucleo::nucleo,
@@ -222,6 +227,11 @@ const LONG: &[Step] = &[
         "c-asan",
         "the library for C on the host, under the address sanitizer as the programs in C are",
         c_library::watched,
+    ),
+    step(
+        "c-bundle",
+        "the C library's archive for people without Rust: unpacked, compiled and run on six cores",
+        c_library::verify_bundle,
     ),
     step("c-cost", "what the calls of C take beside the crate's", c_library::cost),
     step("page", "the page in a browser, against the laptop program", page::verify).apart(&[

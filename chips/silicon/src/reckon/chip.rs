@@ -59,8 +59,8 @@ pub enum EventState {
     Trace,
 }
 
-/// The state of two neurons, as one word of memory stores it. It reads as 0 if the neurons were not updated since the
-/// sample began.
+/// The state of two neurons, as one word of memory stores it. A neuron that was not updated since the sample began
+/// counts as 0, whatever the memory holds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
@@ -352,7 +352,7 @@ impl ReckOn {
         self.inputs
     }
 
-    /// Drives the pins of the host, except for those of SPI.
+    /// Sets the levels of the pins that a host drives, except for those of SPI.
     pub fn set_inputs(&mut self, inputs: Inputs) {
         self.is_still &= self.inputs == inputs;
         if inputs.reset && !self.inputs.reset {

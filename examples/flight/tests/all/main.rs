@@ -10,6 +10,7 @@ mod device;
 mod i2c;
 mod sampler;
 mod simulated;
+mod station;
 
 /// The result of a future that never waits, as a bus on the host does not.
 fn finish<F: Future>(future: F) -> F::Output {

@@ -3,6 +3,7 @@
 use crate::inputs::StreamOptions;
 use crate::live::Live;
 use crate::options::{agreed, augment, given, option_group, schemes};
+use crate::panel::{Panel, Screen};
 use crate::stop::Stop;
 use crate::words::{of_lab, option};
 use anyhow::{Result, bail};
@@ -17,8 +18,10 @@ use lab::output::Output;
 use lab::port::{Bytes, Port};
 use lab::scheme::Scheme;
 use lab::values::with_receiver;
-use std::io::Write;
+use std::cell::RefCell;
+use std::io::{self, Write};
 use std::path::PathBuf;
+use std::rc::Rc;
 
 /// Listen to a board: write the events that it sends, or with `--scheme` the values that they encode.
 ///
@@ -34,6 +37,7 @@ Examples:
   spikewire listen --baud 921600 /dev/ttyUSB0 --scheme sf --thresholds 0.1,0.1,0.1,0.5,0.5,0.5
   spikewire listen captured.bytes --scheme grf --neurons 20 --min=-9 --max=9
   spikewire listen captured.bytes --flight flight.toml
+  spikewire listen --baud 921600 /dev/ttyUSB0 --flight flight.toml --live
   spikewire listen captured.bytes --to es -o flight.es")]
 pub(crate) struct Listen {
     /// Serial port, or a file of captured bytes; `-` reads standard input
@@ -72,6 +76,10 @@ pub(crate) struct Listen {
     /// Length in µs of the sender's sub-timesteps; only for schemes that have them
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
+    /// Draw values, spikes and losses in the terminal while they arrive, a recording at the pace of its clock; values are
+    /// written only to a file
+    #[arg(long)]
+    live: bool,
     #[command(flatten)]
     parameters: DecoderOptions,
 }
@@ -104,7 +112,7 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
         let flight = Flight::read(path)?;
         let mut listened = Ok(());
         flight::with_receiver(&flight, |values| {
-            listened = listen(options, Some((values, flight.sample)));
+            listened = listen_to(options, values, flight.sample, || Panel::of_flight(&flight));
             Ok(())
         })?;
         return listened;
@@ -115,22 +123,50 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
         if !options.parameters.0.is_empty() || options.slot_ticks.is_some() {
             bail!("a scheme's parameters need --scheme");
         }
-        return listen(options, None);
+        if options.live {
+            bail!("--live draws values: it needs --flight or --scheme");
+        }
+        return listen(options, None, None);
     };
     let settings = options.settings(scheme, sample)?;
     let slot_ticks = options.slot_ticks(scheme, &settings)?;
+    let neurons = settings.first().map(|first| scheme.shape(first)).transpose()?;
+    let neurons = neurons.map_or(1, |shape| shape.neurons);
     let mut listened = Ok(());
     with_receiver(scheme, sample, &settings, slot_ticks, |values| {
-        listened = listen(options, Some((values, sample)));
+        listened = listen_to(options, values, sample, || Panel::new(neurons));
         Ok(())
     })?;
     listened
 }
 
-fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) -> Result<()> {
+/// Decodes values, and draws them if `--live` is given.
+fn listen_to(
+    options: &Listen,
+    values: Box<dyn Values + '_>,
+    sample: SampleType,
+    panel: impl FnOnce() -> Panel,
+) -> Result<()> {
+    if !options.live {
+        return listen(options, Some((values, sample)), None);
+    }
+    let panel = Rc::new(RefCell::new(panel()));
+    let screen = Screen::new(&panel)?;
+    listen(options, Some((Panel::noting(&panel, values), sample)), Some(screen))
+}
+
+fn listen(
+    options: &Listen,
+    values: Option<(Box<dyn Values + '_>, SampleType)>,
+    mut screen: Option<Screen>,
+) -> Result<()> {
+    /// Maximum number of bytes of a recording between two pictures.
+    const PART: usize = 64;
     let mut port = Port::open(&options.input, options.baud)?;
     let stop = Stop::new(options.seconds)?;
-    let mut output = Output::open(options.output.as_deref(), &options.input)?;
+    let is_written = screen.is_none() || options.output.is_some();
+    let open = || Output::open(options.output.as_deref(), &options.input);
+    let mut file = is_written.then(open).transpose()?;
     let (reader, writer): (Box<dyn EventReader + '_>, _) = match values {
         Some((values, sample)) => (Box::new(LinkReader::new(Some(values))), values_writer(sample)),
         None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)),
@@ -138,12 +174,16 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
     let mut stream = Stream::new(reader, writer, options.stream.from_zero);
     let mut live = Live::new(options.output.is_none());
 
-    let mut buffer = vec![0; 1 << 16];
+    let mut nothing = io::sink();
+    let output: &mut dyn Write = file.as_mut().map_or(&mut nothing, |file| file);
+
+    let is_played = screen.is_some() && options.baud.is_none();
+    let mut buffer = vec![0; if is_played { PART } else { 1 << 16 }];
     let listened = loop {
         match port.read(&mut buffer) {
             Ok(Bytes::Some(count)) => {
                 let arrival = options.baud.map(|_| stop.tick());
-                stream.push(&buffer[..count], arrival, &mut output)?;
+                stream.push(&buffer[..count], arrival, output)?;
                 if !port.is_file() {
                     output.flush()?;
                 }
@@ -152,21 +192,29 @@ fn listen(options: &Listen, values: Option<(Box<dyn Values + '_>, SampleType)>) 
             Ok(Bytes::End) => break Ok(()),
             Err(error) => break Err(error),
         }
-        live.update(&stream);
+        match &mut screen {
+            Some(screen) => screen.update(&stream, port.is_file(), &stop)?,
+            None => live.update(&stream),
+        }
         if stop.is_due() {
             break Ok(());
         }
     };
     // Bytes received before the port failed are kept.
-    stream.finish(&mut output)?;
+    stream.finish(output)?;
     live.clear();
+    if let Some(screen) = &mut screen {
+        screen.finish(&stream)?;
+    }
     eprint!("{}", stream.spelled(option));
     match stream.check_format(options.from, port.name()) {
         // A board on a serial port may still be silent, or the baud rate may be wrong: a warning.
         Err(error) if options.baud.is_some() => eprintln!("{}", of_lab(&error)),
         checked => checked?,
     }
-    output.finish()?;
+    if let Some(file) = file {
+        file.finish()?;
+    }
     Ok(listened?)
 }
 

@@ -67,13 +67,14 @@ const FRAMEWORKS: [(&str, Framework, &str); 6] = [
     (Framework::Nir.name(), Framework::Nir, "NIR's own reference program; needs --dt and --reset"),
 ];
 
-const RESETS: [(&str, Reset, &str); 6] = [
+const RESETS: [(&str, Reset, &str); 7] = [
     (ZERO, Reset::ToValue, "sets the potential to v_reset, or 0, at once"),
     ("to-value-late", Reset::ToValueLate, "sets it a step late"),
     ("to-value-held", Reset::ToValueHeld, "holds it there through the next step"),
     ("subtract", Reset::Subtract, "subtracts the threshold at once"),
     ("subtract-late", Reset::SubtractLate, "subtracts it a step late"),
     ("subtract-no-delay", Reset::SubtractNoDelay, "as snnTorch with reset_delay=False"),
+    ("none", Reset::NoReset, "leaves the potential as it is"),
 ];
 
 const FIRES: [(&str, Fires, &str); 2] =

@@ -5,7 +5,11 @@
 NAME.nir is the network, NAME.RESET.txt a step a line: the inputs that fire, the hidden neurons, the outputs; and the
 outputs' potentials behind the step.
 
+Norse and SpikingJelly cannot export recurrent layers: their exporters write the neurons, and `joined` adds the weights.
+SpikingJelly refuses to export a reset by subtraction: the file has that of the same neurons with a value.
+
 Needs snntorch 1.0.0, norse 1.1.0 and spikingjelly 2.0.0; the files of tests/peers/nir were written with torch 2.15.
+Spikes are the same on every machine; the last digits of potentials are not, as torch adds in another order.
 """
 
 import sys
@@ -16,9 +20,11 @@ import norse.torch as norse
 import numpy as np
 import snntorch as snn
 import torch
+from norse.torch.functional.lif import LIFState
+from norse.torch.functional.reset import reset_subtract, reset_value
 from norse.torch.utils.export_nir import to_nir
 from snntorch.export_nir import export_to_nir
-from spikingjelly.activation_based import neuron, nir_exchange
+from spikingjelly.activation_based import layer, neuron, nir_exchange
 from torch import nn
 
 INPUTS, HIDDEN, OUTPUTS, STEPS = 6, 10, 2, 200
@@ -55,115 +61,134 @@ RESETS = {
     "to-value-late": dict(reset_mechanism="zero", reset_delay=True),
     "subtract-no-delay": dict(reset_mechanism="subtract", reset_delay=False),
     "to-value": dict(reset_mechanism="zero", reset_delay=False),
+    "none": dict(reset_mechanism="none"),
 }
 
 
-def snntorch(place, recurrent):
-    name = "snntorch_recurrent" if recurrent else "snntorch"
-    for reset, options in RESETS.items():
-        beta, beta_out = some(1, HIDDEN, 0.6, 0.95), some(2, OUTPUTS, 0.6, 0.95)
-        ones, ones_out = torch.ones(HIDDEN), torch.ones(OUTPUTS)
-        if recurrent:
-            alpha, alpha_out = some(3, HIDDEN, 0.3, 0.8), some(4, OUTPUTS, 0.3, 0.8)
+def snntorch(place, name):
+    """Leaky; RSynaptic with a weight from each neuron to each; RLeaky with a weight from each neuron to itself."""
+    beta, beta_out = some(1, HIDDEN, 0.6, 0.95), some(2, OUTPUTS, 0.6, 0.95)
+    alpha, alpha_out = some(3, HIDDEN, 0.3, 0.8), some(4, OUTPUTS, 0.3, 0.8)
+    ones, ones_out = torch.ones(HIDDEN), torch.ones(OUTPUTS)
+    first, second = linear(11, INPUTS, HIDDEN), linear(12, HIDDEN, OUTPUTS)
+    is_synaptic, is_recurrent = name == "snntorch_recurrent", name != "snntorch"
+
+    def neurons(**options):
+        if is_synaptic:
             one = snn.RSynaptic(alpha, beta, all_to_all=True, linear_features=HIDDEN, threshold=ones, **options)
             one.recurrent = linear(9, HIDDEN, HIDDEN)
             one.recurrent.weight.data *= 0.4
-            two = snn.Synaptic(alpha_out, beta_out, threshold=ones_out, **options)
-        else:
-            one = snn.Leaky(beta, threshold=ones, **options)
-            two = snn.Leaky(beta_out, threshold=ones_out, **options)
-        first, second = linear(11, INPUTS, HIDDEN), linear(12, HIDDEN, OUTPUTS)
-        if reset == "to-value":
-            # The exporter takes neurons that hold their state; the file is the same for every reset.
-            if recurrent:
-                held = snn.RSynaptic(
-                    alpha, beta, all_to_all=True, linear_features=HIDDEN, threshold=ones, init_hidden=True)
-                held.recurrent = one.recurrent
-                last = snn.Synaptic(alpha_out, beta_out, threshold=ones_out, init_hidden=True)
-            else:
-                held = snn.Leaky(beta, threshold=ones, init_hidden=True)
-                last = snn.Leaky(beta_out, threshold=ones_out, init_hidden=True)
-            whole = nn.Sequential(first, held, second, last)
-            nir.write(place / f"{name}.nir", export_to_nir(whole, torch.zeros(INPUTS)))
+            return one, snn.Synaptic(alpha_out, beta_out, threshold=ones_out, **options)
+        two = snn.Leaky(beta_out, threshold=ones_out, **options)
+        if is_recurrent:
+            return snn.RLeaky(beta, V=some(10, HIDDEN, -0.5, 0.5), all_to_all=False, threshold=ones, **options), two
+        return snn.Leaky(beta, threshold=ones, **options), two
+
+    # The exporter takes neurons that hold their state; the file is the same for every reset.
+    one, two = neurons(init_hidden=True)
+    nir.write(place / f"{name}.nir", export_to_nir(nn.Sequential(first, one, second, two), torch.zeros(INPUTS)))
+    for reset, options in RESETS.items():
+        one, two = neurons(**options)
+        states = 2 if is_synaptic else 1
+        state_one, state_two = [torch.zeros(HIDDEN)] * states, [torch.zeros(OUTPUTS)] * states
         steps, spike = [], torch.zeros(HIDDEN)
-        zero, zero_out = torch.zeros(HIDDEN), torch.zeros(OUTPUTS)
-        state_one, state_two = (zero, zero), (zero_out, zero_out)
         for fired in inputs():
-            x = first(torch.tensor(fired))
-            if recurrent:
-                spike, *state_one = one(x, spike, *state_one)
-                out, *state_two = two(second(spike), *state_two)
-            else:
-                spike, mem = one(x, state_one[0])
-                state_one = (mem,)
-                out, mem = two(second(spike), state_two[0])
-                state_two = (mem,)
+            before = (spike,) if is_recurrent else ()
+            spike, *state_one = one(first(torch.tensor(fired)), *before, *state_one)
+            out, *state_two = two(second(spike), *state_two)
             steps.append((fired, spike.detach(), out.detach(), state_two[-1].detach().numpy()))
         write(place / f"{name}.{reset}.txt", steps)
 
 
-def spikingjelly(place, cuba):
-    first, second = linear(21, INPUTS, HIDDEN, bias=False), linear(22, HIDDEN, OUTPUTS)
-    if cuba:
-        name = "spikingjelly_cuba"
-        one = neuron.CUBALIFNode(v_threshold=1.0, v_reset=0.0)
-        two = neuron.LIFNode(tau=4.0, decay_input=True, v_threshold=0.5, v_reset=-0.25)
-    else:
+def joined(graph, neurons, weights):
+    """Adds recurrent weights to a graph, which the exporter cannot."""
+    graph.nodes["w_rec"] = nir.Linear(weights.detach().numpy())
+    graph.edges += [(neurons, "w_rec"), ("w_rec", neurons)]
+    return graph
+
+
+def spikingjelly(place, name, v_reset=0.0):
+    def neurons(v_reset):
+        if name == "spikingjelly_cuba":
+            one = neuron.CUBALIFNode(v_threshold=1.0, v_reset=0.0)
+            return one, neuron.LIFNode(tau=4.0, decay_input=True, v_threshold=0.5, v_reset=-0.25)
+        if name == "spikingjelly_recurrent":
+            one = neuron.LIFNode(tau=3.0, decay_input=False, v_threshold=1.0, v_reset=v_reset)
+        else:
+            one = neuron.IFNode(v_threshold=4.0, v_reset=v_reset)
+        return one, neuron.LIFNode(tau=3.0, decay_input=False, v_threshold=1.0, v_reset=v_reset)
+
+    is_recurrent = name == "spikingjelly_recurrent"
+    hidden = INPUTS if is_recurrent else HIDDEN
+    first, second = linear(21, INPUTS, hidden, bias=False), linear(22, hidden, OUTPUTS)
+    if name == "spikingjelly":
         # Whole weights: an integrator often stands at its threshold.
-        name = "spikingjelly"
         first.weight.data = torch.round(first.weight.data * 3)
-        one = neuron.IFNode(v_threshold=4.0, v_reset=0.0)
-        two = neuron.LIFNode(tau=3.0, decay_input=False, v_threshold=1.0, v_reset=0.0)
-    net = nn.Sequential(first, one, second, two)
-    nir_exchange.export_to_nir(net, torch.zeros(1, INPUTS), save_path=place / f"{name}.nir")
-    for part in (one, two):
-        part.reset()
+    one, two = neurons(0.0)
+    graph = nir_exchange.export_to_nir(nn.Sequential(first, one, second, two), torch.zeros(1, INPUTS))
+    one, two = neurons(v_reset)
+    if is_recurrent:
+        back = linear(23, hidden, hidden, bias=False).weight.data * 0.4
+        graph = joined(graph, "_1", back)
+        one = layer.LinearRecurrentContainer(one, in_features=hidden, out_features=hidden, bias=False)
+        one.rc.weight.data = torch.cat((first.weight.data, back), dim=1)
+        first = nn.Identity()
+    nir.write(place / f"{name}.nir", graph)
     steps = []
     for fired in inputs():
         spike = one(first(torch.tensor(fired[None])))
         out = two(second(spike))
         steps.append((fired, spike[0].detach(), out[0].detach(), two.v[0].detach().numpy()))
-    write(place / f"{name}.to-value.txt", steps)
+    write(place / f"{name}.{'to-value' if v_reset is not None else 'subtract'}.txt", steps)
 
 
-def of_norse(place, cell):
+def of_norse(place, name, reset=reset_value):
     first, second = linear(31, INPUTS, HIDDEN), linear(32, HIDDEN, OUTPUTS)
     first.weight.data *= 3
     tau_mem, tau_syn = some(33, HIDDEN, 90, 300), some(34, HIDDEN, 100, 400)
-    tau_out = some(35, OUTPUTS, 20, 80)
-    if cell:
-        p = norse.LIFParameters(
-            tau_mem_inv=tau_mem, tau_syn_inv=tau_syn, v_th=0.4 * torch.ones(HIDDEN), v_leak=torch.zeros(HIDDEN),
-            v_reset=torch.zeros(HIDDEN))
-        one = norse.LIFCell(p=p, dt=0.001)
+    tau_out, zeros, v_th = some(35, OUTPUTS, 20, 80), torch.zeros(HIDDEN), 0.4 * torch.ones(HIDDEN)
+    p = norse.LIFParameters(tau_mem_inv=tau_mem, tau_syn_inv=tau_syn, v_th=v_th, v_leak=zeros, v_reset=zeros)
+    if name == "norse":
+        box = norse.LIFBoxParameters(
+            tau_mem_inv=tau_mem, v_th=v_th, v_leak=0.1 * torch.ones(HIDDEN), v_reset=zeros, reset_method=reset)
+        one = norse.LIFBoxCell(p=box, dt=0.001)
+    elif name == "norse_if":
+        one = norse.IAFCell(p=norse.IAFParameters(v_th=torch.ones(HIDDEN), v_reset=zeros), dt=0.001)
     else:
-        p = norse.LIFBoxParameters(
-            tau_mem_inv=tau_mem, v_th=0.4 * torch.ones(HIDDEN), v_leak=0.1 * torch.ones(HIDDEN),
-            v_reset=torch.zeros(HIDDEN))
-        one = norse.LIFBoxCell(p=p, dt=0.001)
-    p = norse.LIBoxParameters(tau_mem_inv=tau_out, v_leak=torch.zeros(OUTPUTS))
-    two = norse.LIBoxCell(p=p, dt=0.001)
-    name = "norse_cell" if cell else "norse"
-    whole = norse.SequentialState(first, one, second, two)
+        one = norse.LIFCell(p=p, dt=0.001)
+    two = norse.LIBoxCell(p=norse.LIBoxParameters(tau_mem_inv=tau_out, v_leak=torch.zeros(OUTPUTS)), dt=0.001)
+    if name == "norse_recurrent":
+        first.bias.data *= 0
     # With a dt of 1 its time constants are right.
-    nir.write(place / f"{name}.nir", to_nir(whole, torch.zeros(INPUTS), dt=1))
-    steps, state_one, state_two = [], None, None
+    graph = to_nir(norse.SequentialState(first, one, second, two), torch.zeros(INPUTS), dt=1)
+    if name == "norse_recurrent":
+        one = norse.LIFRecurrentCell(
+            INPUTS, HIDDEN, p=p, dt=0.001, input_weights=first.weight.data,
+            recurrent_weights=linear(36, HIDDEN, HIDDEN, bias=False).weight.data - 0.5)
+        graph = joined(graph, "1", one.recurrent_weights)
+        first = nn.Identity()
+    nir.write(place / f"{name}.nir", graph)
+    steps, state_one, state_two = [], LIFState(zeros, zeros, zeros) if name == "norse_recurrent" else None, None
     for fired in inputs():
         spike, state_one = one(first(torch.tensor(fired)), state_one)
         out, state_two = two(second(spike), state_two)
         steps.append((fired, spike.detach(), np.zeros(OUTPUTS), out.detach().numpy()))
-    write(place / f"{name}.to-value.txt", steps)
+    write(place / f"{name}.{'to-value' if reset is reset_value else 'subtract'}.txt", steps)
 
 
 def main():
     place = Path(sys.argv[1])
     place.mkdir(exist_ok=True)
     torch.manual_seed(1)
-    for recurrent in (False, True):
-        snntorch(place, recurrent)
-    for kind in (False, True):
-        spikingjelly(place, kind)
-        of_norse(place, kind)
+    for name in ("snntorch", "snntorch_recurrent", "snntorch_one_to_one"):
+        snntorch(place, name)
+    for name in ("spikingjelly", "spikingjelly_cuba", "spikingjelly_recurrent"):
+        spikingjelly(place, name)
+    for name in ("spikingjelly", "spikingjelly_recurrent"):
+        spikingjelly(place, name, v_reset=None)
+    for name in ("norse", "norse_cell", "norse_if", "norse_recurrent"):
+        of_norse(place, name)
+    of_norse(place, "norse", reset_subtract)
 
 
 if __name__ == "__main__":

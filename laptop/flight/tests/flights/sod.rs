@@ -7,6 +7,9 @@ pub mod flight {
     /// Names of the channels, in the order of a sample.
     pub const NAMES: [&str; CHANNELS] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"];
 
+    /// Units of the channels, empty where unknown.
+    pub const UNITS: [&str; CHANNELS] = ["rad/s", "rad/s", "rad/s", "m/s²", "m/s²", "m/s²"];
+
     /// Number of counts in one unit of each channel.
     pub const COUNTS: [f64; CHANNELS] = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 

@@ -1,4 +1,4 @@
-//! EIEIO, the datagrams of SpiNNaker boards: reads and writes their payloads one after the other, as recordings hold
+//! EIEIO, the datagrams of `SpiNNaker` boards: reads and writes their payloads one after the other, as recordings hold
 //! them.
 
 use super::omitted::Omitted;

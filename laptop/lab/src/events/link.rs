@@ -2,7 +2,7 @@
 
 use super::{EventReader, EventWriter, Item, LinkTally, Tally};
 use crate::Result;
-use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Session};
+use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Session, Withheld};
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
@@ -16,6 +16,9 @@ pub trait Values {
 
     /// Adds the decoders' counts to those of the link.
     fn count(&self, tally: &mut LinkTally);
+
+    /// Returns the reason that a channel's value is not exact; `None` if it is.
+    fn withheld(&self, channel: u16) -> Option<Withheld>;
 }
 
 /// Reads link frames as events, or as decoded values.

@@ -43,7 +43,7 @@ pub enum Item {
         address: u16,
         /// The decoded value, in the recording's unit.
         value: f64,
-        /// How certain the value is.
+        /// Certainty of the value.
         known: Known,
     },
     /// Frames were lost on the link, as many as the number says.
@@ -54,7 +54,7 @@ pub enum Item {
     Restart,
 }
 
-/// How certain a decoded value is.
+/// Certainty of a decoded value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
     /// The value comes from a keyframe.

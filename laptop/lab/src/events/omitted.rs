@@ -25,7 +25,7 @@ impl Omitted {
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());
     }
 
-    /// Counts an item left out that is not an event. A restart does not count.
+    /// Counts an item that was left out and is not an event. Restarts are not counted.
     pub(super) fn leave_out(&mut self, item: Item) {
         self.others += u64::from(item != Item::Restart);
     }

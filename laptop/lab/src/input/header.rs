@@ -81,8 +81,8 @@ impl Start {
     }
 }
 
-/// Returns whether the first row holds samples rather than names: it contains numbers, and no text stands above a
-/// number.
+/// Returns whether the first row holds samples rather than names: it contains numbers, and no text in it stands above a
+/// number in the second row.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);

@@ -7,9 +7,9 @@ use catalogue::run::Words;
 /// Ranges of 32-bit clocks, in µs: of a clock that counts µs, and of one that counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Longest step over which a clock may wrap around, in µs, unless [`STEPS`] allows a longer one.
+/// Step in µs up to which a wrap of the clock is always recognised; [`STEPS`] may allow a longer one.
 const SECOND: i64 = 1_000_000;
-/// Longest step over which a clock may wrap around, in multiples of the latest step forward, if that is above
+/// Step up to which a wrap of the clock is recognised, in multiples of the latest step forward, if that is longer than
 /// [`SECOND`].
 const STEPS: i64 = 4;
 

@@ -3,6 +3,7 @@
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
+use crate::network::NetworkKind;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,8 +52,8 @@ pub struct Brought {
     /// part. The number is the share of active steps in which the same outputs fire as in full double precision, on the
     /// recording held out, or on the one tuned on if none is held out.
     pub costs: Vec<(Cost, f64)>,
-    /// Share of active steps in which double precision fires as the training framework did; `None` if the framework's
-    /// spikes are not given.
+    /// Share of active steps in which the network in double precision fires as it did in the training framework; `None`
+    /// if the framework's spikes are not given.
     pub reading: Option<f64>,
 }
 
@@ -128,9 +129,9 @@ pub fn bring(request: &Request) -> Result<Brought> {
         let shown = other.as_ref().map_or((&original, own), |other| (other, own_other));
         let read = shown.0.fired.last();
         reading = read.and_then(|read| agreement(read.get(from..)?, shown.1.get(from..)?));
-        original.fire(own)?;
+        original.replace_spikes(own)?;
         if let Some(other) = &mut other {
-            other.fire(own_other)?;
+            other.replace_spikes(own_other)?;
         }
     }
     let network = chip.quantise(trained, tuned, &original.fired, compare, progress)?;
@@ -181,21 +182,21 @@ impl Original {
         }
     }
 
-    /// Replaces the spikes of the last layer by those that the training framework computed.
+    /// Replaces the spikes of the last layer by `framework`, those that the training framework computed.
     ///
     /// # Errors
-    /// Returns an error if the numbers of steps or outputs differ.
-    fn fire(&mut self, own: &Trains) -> Result<()> {
+    /// Returns an error if `framework` has a different number of steps, or an output that the network does not have.
+    fn replace_spikes(&mut self, framework: &Trains) -> Result<()> {
         if let (None, Some(last)) = (&self.readout, self.fired.last_mut()) {
-            let (steps, given) = (last.len(), own.len());
-            ensure!(steps == given, "spikes of {given} steps, where the recording has {steps}");
+            let (steps, given) = (last.len(), framework.len());
+            ensure!(steps == given, NetworkKind::SpikeSteps { given, steps });
             let outputs = self.layers.last().map_or(0, |(_, neurons)| *neurons);
-            let highest = own.iter().flatten().max().copied().unwrap_or(0);
+            let highest = framework.iter().flatten().max().copied().unwrap_or(0);
             ensure!(
                 usize::from(highest) < outputs,
-                "spikes of output {highest}, of {outputs} outputs"
+                NetworkKind::SpikeOutput { output: highest, outputs }
             );
-            last.clone_from(own);
+            last.clone_from(framework);
         }
         Ok(())
     }

@@ -2,9 +2,9 @@
 
 use super::costs::Cost;
 use super::{ReckOn, TinyOdin, Trained, Trains};
-use crate::network::fault::{Result, bail, fault};
+use crate::network::fault::{FitKind, ModelKind, Result};
 use spikewire_chips::ChipError;
-use std::fmt::{Debug, Display};
+use std::fmt::Display;
 
 /// A chip that a trained network can be brought onto.
 pub trait Chip: Sync {
@@ -60,7 +60,7 @@ pub trait OnChip {
         _steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
         _see: &mut dyn FnMut(Stepped) -> Result<()>,
     ) -> Result<u32> {
-        bail!("this chip's outputs come steps later: only tinyODIN answers step by step here")
+        Err(FitKind::LateOutputs.into())
     }
 
     /// Returns the number of weights that exceeded the chip's range, for each layer; then for the outputs, if they have
@@ -154,6 +154,9 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
 }
 
 /// Converts the error of a driver that runs on the chip's model.
-pub(super) fn refused<B: Debug, P: Debug>(error: &ChipError<B, P>) -> crate::Error {
-    fault(format!("the chip's model: {error}"))
+pub(super) fn refused<B, P>(error: ChipError<B, P>) -> crate::Error
+where
+    ChipError<B, P>: std::error::Error + Send + Sync + 'static,
+{
+    ModelKind::Refused { error: Box::new(error) }.into()
 }

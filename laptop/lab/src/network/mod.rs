@@ -22,7 +22,7 @@ pub use controller::{
 };
 pub use costs::Cost;
 pub use distance::Distance;
-pub use fault::NetworkKind;
+pub use fault::{FitKind, LayerKind, ModelKind, NetworkKind, NirKind};
 pub use reckon::ReckOn;
 pub use tiny_odin::TinyOdin;
 pub use trained::{Trained, Trains};
@@ -77,9 +77,12 @@ impl File {
     /// # Errors
     /// Returns an error if the file and `asked` leave the rule incomplete, or if the chips have no such neurons.
     pub fn on_chip(self, asked: &Asked, seconds: Option<f64>) -> Result<Trained> {
-        match self {
+        let trained = match self {
             Self::Plain(trained) => trained.reset_by(asked),
             Self::Nir(chain) => Model::of_nir(*chain, &asked.on_chip(seconds))?.on_chip(),
-        }
+        }?;
+        let all_reset = trained.layers.iter().all(|layer| layer.reset != Reset::NoReset);
+        fault::ensure!(all_reset, FitKind::NoReset);
+        Ok(trained)
     }
 }

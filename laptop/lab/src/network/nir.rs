@@ -3,7 +3,8 @@
 //!
 //! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
 
-use crate::network::fault::{Context, Result, bail, ensure, fault};
+use crate::network::fault::{Context, LayerKind, NirKind, Result, ensure};
+use crate::{Place, Spot};
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
@@ -97,10 +98,11 @@ const SILENT: [&str; 3] = ["LI", "I", "CubaLI"];
 /// Returns an error if the file is damaged, or if the graph has a different structure.
 pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
     let options = OpenOptions::default().with_max_read_bytes(MOST_BYTES);
-    let file = Hdf5File::from_vec_with_options(bytes, options).context("damaged")?;
-    let no_graph = "an HDF5 file without a NIR graph";
+    let file = Hdf5File::from_vec_with_options(bytes, options)
+        .map_err(|cause| NirKind::Damaged { cause })?;
+    let root = file.group("/node").map_err(|cause| NirKind::NoGraphInFile { cause })?;
     let mut graph = Graph::default();
-    let (first, last) = graph.take(&file.group("/node").context(no_graph)?, "", 0)?;
+    let (first, last) = graph.take(&root, "", 0)?;
     graph.join();
 
     let (mut stages, mut readout) = (Vec::new(), None);
@@ -111,10 +113,10 @@ pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
         let mut read = || -> Result<()> {
             match (kind.as_str(), weights.take()) {
                 ("Flatten" | "Input" | "Output", before) => weights = before,
-                _ if readout.is_some() => bail!("it follows on neurons that never fire"),
+                _ if readout.is_some() => return Err(NirKind::AfterSilent.into()),
                 ("Linear" | "Affine", None) => weights = Some(read_weights(node, &kind)?),
                 ("Linear" | "Affine", Some(_)) => {
-                    bail!("weights follow on weights; there must be neurons between them")
+                    return Err(NirKind::WeightsOnWeights.into());
                 }
                 (fires, Some(weights)) if FIRING.contains(&fires) => {
                     let neurons = read_neurons(node, name, &kind, weights.rows.len())?;
@@ -126,12 +128,9 @@ pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
                     readout = Some(Stage { weights, recurrent: None, neurons });
                 }
                 (neurons, None) if FIRING.contains(&neurons) || SILENT.contains(&neurons) => {
-                    bail!("no weights lead to it")
+                    return Err(NirKind::NoWeights.into());
                 }
-                _ => bail!(
-                    "nothing here has anything like it; Linear, Affine, LIF, IF and CubaLIF are taken, and last LI, \
-                     I and CubaLI"
-                ),
+                _ => return Err(NirKind::UnknownNode.into()),
             }
             Ok(())
         };
@@ -143,7 +142,12 @@ pub(crate) fn read(bytes: Vec<u8>) -> Result<Chain> {
 
 fn kind(node: &Group, name: &str) -> Result<String> {
     let kind = node.dataset("type").and_then(|kind| kind.read_string());
-    kind.with_context(|| format!("node `{name}`: no type"))
+    kind.map_err(|cause| NirKind::NoType { cause }.at(node_at(name)))
+}
+
+/// Returns the place of a node in errors.
+fn node_at(name: &str) -> Spot {
+    Spot::Part(format!("node `{name}`"))
 }
 
 /// Number of levels to which graphs may be nested.
@@ -156,14 +160,15 @@ impl Graph {
     /// # Errors
     /// Returns an error if the group is not a graph with one input and one output.
     fn take(&mut self, group: &Group, path: &str, depth: usize) -> Result<(String, String)> {
-        let of = || if path.is_empty() { String::new() } else { format!("node `{path}`: ") };
-        ensure!(depth < DEEPEST, "{}graphs in graphs, {DEEPEST} deep", of());
-        let no_graph = || format!("{}no NIR graph", of());
+        let at = || Place { file: None, spot: (!path.is_empty()).then(|| node_at(path)) };
+        ensure!(depth < DEEPEST, NirKind::TooDeep { most: DEEPEST }.at(at()));
+        let no_graph = |cause| NirKind::NoGraph { cause }.at(at());
         let under = |name: &str| {
             if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
         };
-        let groups = group.groups().with_context(no_graph)?;
-        let nodes = groups.iter().find(|group| group.name() == "nodes").with_context(no_graph)?;
+        let groups = group.groups().map_err(no_graph)?;
+        let nodes = groups.iter().find(|group| group.name() == "nodes");
+        let nodes = nodes.ok_or_else(|| NirKind::NoNodes.at(at()))?;
         let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
         for node in nodes.groups()? {
             let name = under(node.name());
@@ -179,15 +184,14 @@ impl Graph {
             }
             self.nodes.insert(name, node);
         }
-        let edges = group.dataset("edges").with_context(no_graph)?.read_strings()?;
+        let edges = group.dataset("edges").map_err(no_graph)?.read_strings()?;
         let edges = edges.as_chunks().0.iter().map(|[from, to]| (under(from), under(to)));
         self.edges.extend(edges);
-        let one = |kind: &str, mut found: Vec<String>| match found.pop() {
+        let one = |kind: &'static str, mut found: Vec<String>| match found.pop() {
             Some(one) if found.is_empty() => Ok(one),
             last => {
                 found.extend(last);
-                let count = found.len();
-                bail!("{}{count} nodes are {kind}, where there must be one: {found:?}", of())
+                Err(NirKind::NotOne { kind, found }.at(at()))
             }
         };
         Ok((one("Input", inputs)?, one("Output", outputs)?))
@@ -236,7 +240,7 @@ impl Graph {
     /// Returns an error if the graph is not a chain.
     fn chain(&self, first: &str, last: &str) -> Result<Vec<(&str, Loops<'_>)>> {
         let node = |name: &str| self.nodes.get_key_value(name);
-        let (mut at, _) = node(first).context("no input")?;
+        let (mut at, _) = node(first).ok_or(NirKind::NoInput)?;
         let mut path: Vec<(&str, Loops)> = Vec::new();
         loop {
             let mut loops = Loops { is_direct: false, weights: Vec::new() };
@@ -244,7 +248,7 @@ impl Graph {
             let fires = FIRING.contains(&kind(&self.nodes[at], at)?.as_str());
             for to in self.after(at) {
                 let (to, weights) = node(to)
-                    .with_context(|| format!("node `{at}` leads to `{to}`, which there is not"))?;
+                    .ok_or_else(|| NirKind::NoSuchNode { from: at.clone(), to: to.to_owned() })?;
                 let is_weights = matches!(kind(weights, to)?.as_str(), "Linear" | "Affine");
                 if fires && to == at {
                     loops.is_direct = true;
@@ -260,10 +264,12 @@ impl Graph {
             }
             let is_back = |to: &&&String| path.iter().any(|(name, _)| *name == to.as_str());
             if let Some(back) = next.iter().find(is_back) {
-                bail!("node `{at}` leads back to `{back}`: a layer may lead back to itself only");
+                let (from, to) = (at.clone(), (*back).clone());
+                return Err(NirKind::LeadsBack { from, to }.into());
             }
             let [one] = next[..] else {
-                bail!("node `{at}` leads to {} nodes, {next:?}: only a chain is taken", next.len());
+                let to = next.into_iter().cloned().collect();
+                return Err(NirKind::NotAChain { from: at.clone(), to }.into());
             };
             at = one;
         }
@@ -271,7 +277,8 @@ impl Graph {
             path.iter().any(|(on, loops)| *on == name || loops.weights.contains(&name))
         };
         if let Some(name) = self.nodes.keys().find(|name| !is_on_it(name)) {
-            bail!("node `{name}` is not on the way from `{first}` to `{last}`");
+            let [node, first, last] = [name, first, last].map(str::to_owned);
+            return Err(NirKind::NotOnTheWay { node, first, last }.into());
         }
         Ok(path)
     }
@@ -288,7 +295,8 @@ impl Graph {
             let node = &self.nodes[name];
             let Weights { rows, bias } = read_weights(node, &kind(node, name)?)?;
             let is_square = rows.len() == count && rows.iter().all(|row| row.len() == count);
-            ensure!(is_square, "its recurrent weights `{name}` are not {count} by {count}");
+            let not_square = || NirKind::NotSquare { weights: name.to_owned(), neurons: count };
+            ensure!(is_square, not_square());
             let sums = sum.rows.iter_mut().flatten();
             sums.zip(rows.iter().flatten()).for_each(|(sum, weight)| *sum += weight);
             if let Some(bias) = bias {
@@ -303,13 +311,14 @@ impl Graph {
 fn read_weights(node: &Group, kind: &str) -> Result<Weights> {
     let (shape, weights) = numbers(node, "weight")?;
     let [outputs, inputs] = shape[..] else {
-        bail!("weights of {} dimensions, where there must be 2", shape.len());
+        return Err(NirKind::Dimensions { dimensions: shape.len() }.into());
     };
-    ensure!(outputs > 0 && inputs > 0, "weights of shape {outputs} x {inputs}");
+    ensure!(outputs > 0 && inputs > 0, NirKind::Empty { outputs, inputs });
     let bias = match kind {
         "Affine" => {
             let (_, bias) = numbers(node, "bias")?;
-            ensure!(bias.len() == outputs, "{} values of `bias` for {outputs} neurons", bias.len());
+            let (values, name) = (bias.len(), "bias".to_owned());
+            ensure!(values == outputs, LayerKind::Count { values, name, neurons: outputs });
             Some(bias)
         }
         _ => None,
@@ -321,9 +330,12 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
     let array = |what: &str| -> Result<Array> {
         let (_, numbers) = numbers(node, what)?;
         let given = numbers.len();
-        ensure!(given == 1 || given == count, "{given} values of `{what}` for {count} neurons");
-        if let Some(odd) = numbers.iter().find(|number| !number.is_finite()) {
-            bail!("`{what}` holds {odd}");
+        let name = what.to_owned();
+        if given != 1 && given != count {
+            return Err(LayerKind::Count { values: given, name, neurons: count }.into());
+        }
+        if let Some(&number) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(NirKind::NotFinite { name, number }.into());
         }
         Ok(Array(numbers))
     };
@@ -354,16 +366,20 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
 
 /// Returns the shape and the numbers of an array, converted from its numeric type.
 fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
-    let dataset = node.dataset(name).map_err(|_| fault(format!("no `{name}`")))?;
+    let dataset = node.dataset(name).map_err(|_| NirKind::NoArray { name: name.to_owned() })?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();
     let numbers = match *dataset.dtype() {
         Datatype::FloatingPoint { size: 4, .. } => read_as(&dataset, |n: f32| n.into()),
         Datatype::FloatingPoint { size: 8, .. } => read_as(&dataset, |n: f64| n),
         Datatype::FixedPoint { size: 4, signed: true, .. } => read_as(&dataset, |n: i32| n.into()),
         Datatype::FixedPoint { size: 8, signed: true, .. } => read_as(&dataset, |n: i64| n as f64),
-        _ => bail!("`{name}` holds numbers of a type that is not taken: {:?}", dataset.dtype()),
+        _ => {
+            let datatype = format!("{:?}", dataset.dtype());
+            return Err(NirKind::ArrayType { name: name.to_owned(), datatype }.into());
+        }
     };
-    Ok((shape, numbers.with_context(|| format!("`{name}` cannot be read"))?))
+    let numbers = numbers.map_err(|cause| NirKind::Unread { name: name.to_owned(), cause })?;
+    Ok((shape, numbers))
 }
 
 fn read_as<T: H5Type + Copy>(

@@ -3,7 +3,7 @@
 use super::Trained;
 use super::controller::{Fires, Reset};
 use super::trained::{Layer, Neuron, Readout};
-use crate::network::fault::{Context, Result, bail};
+use crate::network::fault::{Context, LayerKind, Result};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -57,7 +57,8 @@ impl Numbers {
             Self::One(number) => Ok(vec![number; count]),
             Self::Each(numbers) if numbers.len() == count => Ok(numbers),
             Self::Each(numbers) => {
-                bail!("{} values of `{what}` for {count} neurons", numbers.len())
+                let (values, name) = (numbers.len(), what.to_owned());
+                Err(LayerKind::Count { values, name, neurons: count }.into())
             }
         }
     }

@@ -1,7 +1,7 @@
 //! A trained network in double precision, and its simulation.
 
 use super::controller::{Asked, Fires, Reset};
-use crate::network::fault::{Result, bail, ensure};
+use crate::network::fault::{Context, LayerKind, NetworkKind, Result, ensure};
 
 /// Maximum number of layers in a network.
 const LAYERS: usize = 3;
@@ -31,22 +31,17 @@ pub struct Readout {
 
 impl Readout {
     fn check(&self, neurons: usize) -> Result<()> {
-        let Self { name, weights, keep } = self;
-        ensure!(!weights.is_empty() && keep.len() == weights.len(), "{name}: no weights");
+        let Self { weights, keep, .. } = self;
+        ensure!(!weights.is_empty() && keep.len() == weights.len(), LayerKind::NoWeights);
         for (output, row) in weights.iter().enumerate() {
-            ensure!(
-                row.len() == neurons,
-                "{name}: output {output} has {} weights, but the last layer has {neurons} neurons",
-                row.len()
-            );
-            if let Some(weight) = row.iter().find(|weight| !weight.is_finite()) {
-                bail!("{name}: output {output} has a weight of {weight}");
+            let weights = row.len();
+            ensure!(weights == neurons, LayerKind::OutputRow { output, weights, neurons });
+            if let Some(&weight) = row.iter().find(|weight| !weight.is_finite()) {
+                return Err(LayerKind::OutputWeight { output, weight }.into());
             }
         }
-        if let Some(keep) = keep.iter().find(|keep| !(0.0..=1.0).contains(*keep)) {
-            bail!(
-                "{name}: an output keeps {keep} of its potential a step, which must lie in 0..=1"
-            );
+        if let Some(&keep) = keep.iter().find(|keep| !(0.0..=1.0).contains(*keep)) {
+            return Err(LayerKind::OutputKeep { keep }.into());
         }
         Ok(())
     }
@@ -123,42 +118,33 @@ impl Layer {
     }
 
     fn check(&self) -> Result<()> {
-        let Self { name, weights, recurrent, bias, neurons, .. } = self;
-        ensure!(!weights.is_empty() && self.inputs() > 0, "{name}: no weights");
+        let Self { weights, recurrent, bias, neurons, .. } = self;
+        let first = self.inputs();
+        ensure!(!weights.is_empty() && first > 0, LayerKind::NoWeights);
         for (neuron, row) in weights.iter().enumerate() {
-            ensure!(
-                row.len() == self.inputs(),
-                "{name}: neuron {neuron} has {} weights where the first has {}",
-                row.len(),
-                self.inputs()
-            );
-            if let Some(weight) = row.iter().chain(&bias[neuron..=neuron]).find(|w| !w.is_finite())
+            let weights = row.len();
+            ensure!(weights == first, LayerKind::Row { neuron, weights, first });
+            if let Some(&weight) = row.iter().chain(&bias[neuron..=neuron]).find(|w| !w.is_finite())
             {
-                bail!("{name}: neuron {neuron} has a weight of {weight}");
+                return Err(LayerKind::Weight { neuron, weight }.into());
             }
         }
         let count = neurons.len();
         ensure!(
             recurrent.is_empty()
                 || recurrent.len() == count && recurrent.iter().all(|row| row.len() == count),
-            "{name}: recurrent weights are not {count} by {count}"
+            LayerKind::NotSquare { neurons: count }
         );
-        if let Some(weight) = recurrent.iter().flatten().find(|weight| !weight.is_finite()) {
-            bail!("{name}: a recurrent weight of {weight}");
+        if let Some(&weight) = recurrent.iter().flatten().find(|weight| !weight.is_finite()) {
+            return Err(LayerKind::RecurrentWeight { weight }.into());
         }
-        for (neuron, Neuron { keep, threshold, leak }) in neurons.iter().enumerate() {
+        for (neuron, &Neuron { keep, threshold, leak }) in neurons.iter().enumerate() {
             ensure!(
-                *threshold > 0.0 && threshold.is_finite(),
-                "{name}: neuron {neuron} fires at {threshold} above rest, which must be above 0 and finite"
+                threshold > 0.0 && threshold.is_finite(),
+                LayerKind::Threshold { neuron, threshold }
             );
-            ensure!(
-                leak.is_finite() && *leak >= 0.0,
-                "{name}: neuron {neuron} leaks {leak} a step, which must be 0 or above"
-            );
-            ensure!(
-                (0.0..=1.0).contains(keep),
-                "{name}: neuron {neuron} keeps {keep} of its potential a step, which must lie in 0..=1"
-            );
+            ensure!(leak.is_finite() && leak >= 0.0, LayerKind::Leak { neuron, leak });
+            ensure!((0.0..=1.0).contains(&keep), LayerKind::Keep { neuron, keep });
         }
         Ok(())
     }
@@ -203,6 +189,7 @@ impl Layer {
         // late have acted before the comparison.
         let (reached, reset) = match self.reset {
             Reset::ToValue => (next, 0.0),
+            Reset::NoReset => (next, next),
             Reset::Subtract => (next, less),
             Reset::ToValueLate => {
                 let next = if was_over { driven } else { next };
@@ -229,31 +216,27 @@ impl Layer {
     }
 }
 
+/// Returns an error unless a layer of `inputs` inputs fits the layer before it.
+pub(super) fn fits(inputs: usize, before: &str, neurons: usize) -> Result<()> {
+    let misfit = || LayerKind::Inputs { inputs, before: before.to_owned(), neurons }.into();
+    if inputs == neurons { Ok(()) } else { Err(misfit()) }
+}
+
 impl Trained {
     /// Makes a network of these layers, whose outputs are the spikes of the last one.
     ///
     /// # Errors
     /// Returns an error if there are no layers or too many, if they do not fit each other, or if a number is invalid.
     pub fn new(layers: Vec<Layer>) -> Result<Self> {
-        ensure!(!layers.is_empty(), "the network has no layer of LIF or IF neurons");
-        ensure!(
-            layers.len() <= LAYERS,
-            "the network has {} layers, of which {LAYERS} at most are taken",
-            layers.len()
-        );
+        ensure!(!layers.is_empty(), NetworkKind::NoLayers);
+        let (count, most) = (layers.len(), LAYERS);
+        ensure!(count <= most, NetworkKind::TooManyLayers { layers: count, most });
         for layer in &layers {
-            layer.check()?;
+            layer.check().context(&layer.name)?;
         }
         for pair in layers.windows(2) {
             let (before, after) = (&pair[0], &pair[1]);
-            ensure!(
-                after.inputs() == before.neurons.len(),
-                "{}: weights for {} inputs, but {} has {} neurons",
-                after.name,
-                after.inputs(),
-                before.name,
-                before.neurons.len()
-            );
+            fits(after.inputs(), &before.name, before.neurons.len()).context(&after.name)?;
         }
         Ok(Self { layers, readout: None })
     }
@@ -265,7 +248,7 @@ impl Trained {
     pub fn with_readout(layers: Vec<Layer>, readout: Option<Readout>) -> Result<Self> {
         let network = Self::new(layers)?;
         if let (Some(readout), Some(last)) = (&readout, network.layers.last()) {
-            readout.check(last.neurons.len())?;
+            readout.check(last.neurons.len()).context(&readout.name)?;
         }
         Ok(Self { readout, ..network })
     }
@@ -278,8 +261,7 @@ impl Trained {
         let (rule, resets, layers) = (asked.or_plain(), &asked.resets, self.layers.len());
         ensure!(
             resets.len() < 2 || resets.len() == layers,
-            "{} resets are asked for, and {layers} layers fire",
-            resets.len()
+            NetworkKind::Resets { resets: resets.len(), layers }
         );
         for (at, layer) in self.layers.iter_mut().enumerate() {
             let own = if resets.len() < 2 { None } else { resets.get(at) };

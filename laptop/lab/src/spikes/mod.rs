@@ -1,7 +1,7 @@
 //! Files of spikes: a table `index,address,polarity`, below lines `# key=value` with everything that decoding needs.
 //!
-//! `index` is the sample or, with sub-timesteps, the sample times the number of slots, plus the slot. Neurons are
-//! numbered through all channels: those of channel 1 follow those of channel 0.
+//! `index` is the sample's index or, with sub-timesteps, that index times the number of slots, plus the slot. Neurons
+//! are numbered through all channels: those of channel 1 follow those of channel 0.
 //!
 //! Comments between the events report values that were not finite and gaps in time, each where it occurs, and the time
 //! before each gap and at the first and last sample. The last lines give the numbers of samples and events, by which a

@@ -42,7 +42,8 @@ impl Evolution {
         }
     }
 
-    /// Returns the next points whose values are wanted; `spent` is the share of the budget that is used, from 0 to 1.
+    /// Returns the next points, whose values the caller is to compute. `spent` is the share of the budget that is used,
+    /// from 0 to 1.
     pub(super) fn ask(&mut self, spent: f64) -> Vec<Vec<f64>> {
         self.parents.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let (first, fewest) = (self.first_count as f64, FEWEST as f64);
@@ -93,8 +94,8 @@ impl Evolution {
     /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may
     /// leave the last ones out.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Largest gain that counts. Settings that break a limit have values far apart, and such a gain would outweigh
-        /// all others.
+        /// Largest gain by which a success is weighted. Settings that break a limit have values so far apart that their
+        /// gains would outweigh all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);

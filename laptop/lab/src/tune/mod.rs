@@ -1,10 +1,10 @@
 //! Finds parameters of a scheme that meet a goal. The modules define the score of settings, the space in which settings
 //! lie, and the search.
 
+mod bounds;
 mod chance;
 pub mod costs;
 pub mod emit;
-mod ends;
 mod evolution;
 pub mod figures;
 mod kinds;
@@ -17,8 +17,8 @@ mod space;
 mod strategy;
 pub mod stretch;
 
+pub use bounds::Bound;
 pub use costs::Costs;
-pub use ends::End;
 pub use figures::Figures;
 pub use kinds::RequestKind;
 pub use problem::{Goal, Limits, Problem, Scored};

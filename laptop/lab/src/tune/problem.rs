@@ -60,7 +60,7 @@ impl Tally {
     }
 }
 
-/// A quantity of settings that may be limited.
+/// A quantity that a request may limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
     /// Size of a channel's encoder in bytes, limited from above.

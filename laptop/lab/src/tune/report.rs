@@ -3,7 +3,7 @@
 use super::RequestKind;
 use super::problem::{Goal, Tally};
 use super::search::Found;
-use super::{Costs, End, Figures, Problem, Scored, Stretch};
+use super::{Bound, Costs, Figures, Problem, Scored, Stretch};
 use crate::Result;
 use crate::brief::{brief, json, short};
 use catalogue::run::{Asked, SampleType, Settings, Words};
@@ -146,7 +146,7 @@ impl Row {
         if problem.scheme.info().drifts() {
             flags.push(DRIFTS.to_owned());
         }
-        flags.extend(found.ends.iter().map(End::words));
+        flags.extend(found.bounds.iter().map(Bound::words));
         let judged = self.held_out.as_ref().unwrap_or(&self.tuned_on);
         // A code without spikes, or worse than a constant, is reported as such instead of by its error.
         if judged.spikes == 0 {
@@ -339,6 +339,6 @@ pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
         words = words.text(if place > 0 { ", " } else { "" }).setting(one.limit.name());
         words = words.text(format_args!(" {} is {value}", short(one.allowed)));
     }
-    let ends = found.ends.iter().map(|end| format!("; {}", end.words()));
-    words.text(ends.collect::<String>())
+    let bounds = found.bounds.iter().map(|bound| format!("; {}", bound.words()));
+    words.text(bounds.collect::<String>())
 }

@@ -7,7 +7,7 @@ use super::search::{Budget, Found, Method, search, share};
 use super::stretch::{HoldOut, cut};
 use super::{Goal, Limits, Problem, Scored, Stretch, costs};
 use crate::Result;
-use crate::look::Look;
+use crate::look::ChannelSummary;
 use crate::scheme::Scheme;
 use crate::trial::Recording;
 use crate::watch::{Progress, Watch};
@@ -125,7 +125,7 @@ impl TuneRequest {
         let (mut cuts, mut notes): (Vec<Cut>, _) = (Vec::new(), Vec::new());
         for log in &self.logs {
             for (place, recording) in log.iter().enumerate() {
-                match Look::at(recording).objection() {
+                match ChannelSummary::of(recording).objection() {
                     Some(words) if self.anyway && recording.values.len() > 1 => notes.push(words),
                     Some(why) => return Err(RequestKind::NothingToSearch { why }.into()),
                     None => {}

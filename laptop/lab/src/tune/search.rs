@@ -3,8 +3,8 @@
 //! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
 //! every machine.
 
-use super::End;
-use super::ends::ends;
+use super::Bound;
+use super::bounds::bounds;
 use super::evolution::Evolution;
 use super::problem::{Goal, Problem, Scored, front};
 use super::space::{Inner, Role, Space};
@@ -40,7 +40,7 @@ pub struct Found {
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
     /// The bounds of the search at which the best settings lie, if the scheme allows values beyond.
-    pub ends: Vec<End>,
+    pub bounds: Vec<Bound>,
 }
 
 /// Options of a search that do not belong to its problem.
@@ -78,7 +78,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
             listed: 0,
             is_complete: false,
             is_cut_short: false,
-            ends: Vec::new(),
+            bounds: Vec::new(),
         },
         least: f64::INFINITY,
     };
@@ -106,7 +106,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     }
     run.tighten(&space);
     if let Some(best) = &run.found.best {
-        run.found.ends = ends(problem, &space, &best.options);
+        run.found.bounds = bounds(problem, &space, &best.options);
     }
     run.found.front = front(run.found.front);
     run.found

@@ -34,27 +34,26 @@ pub(super) struct Axis {
 /// The conversion of a number on an axis to a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
-    /// Logarithm of the parameter, in multiples of the given unit.
+    /// Natural logarithm of the parameter divided by the given unit.
     Log(f64),
-    /// Offset of the parameter from the first value, in multiples of the second.
+    /// Offset of the parameter from the first value, divided by the second.
     Around(f64, f64),
-    /// The parameter as a share of the filter's sum.
+    /// The parameter divided by the filter's sum.
     OfFilter,
-    /// Logarithm of the parameter, in multiples of the threshold.
+    /// Natural logarithm of the parameter divided by the threshold.
     Thresholds,
     Whole,
     /// A whole number that is a maximum, such as the largest number of spikes in a sample.
     Most,
     Words(&'static [&'static str]),
-    /// Logarithm of the filter's length in taps.
+    /// Natural logarithm of the filter's length in taps.
     Length,
     Shape,
     Alpha,
-    /// Logarithm of the filter's sum, in units of the height of the signal's mean above the shift. In this unit, the
-    /// sum is the number of samples for each spike while the signal is at its mean. The two values bound the sum
-    /// itself.
+    /// Natural logarithm of the filter's sum divided by the height of the signal's mean above the shift. The quotient
+    /// is the number of samples for each spike while the signal is at its mean. The two values bound the sum itself.
     Sum(f64, f64),
-    /// A tap of the filter, in multiples of the given unit.
+    /// A tap of the filter divided by the given unit.
     Tap(f64),
 }
 

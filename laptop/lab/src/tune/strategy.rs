@@ -45,7 +45,7 @@ impl Strategy {
         }
     }
 
-    /// Returns the next points whose values are wanted.
+    /// Returns the next points, whose values the caller is to compute.
     pub(super) fn ask(&mut self) -> Vec<Vec<f64>> {
         let Self { chance, mean, variances, step, .. } = self;
         let mut point = || {

@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use crate::error::{unwrap, within};
+use crate::error::{tri, unwrap, within};
 use crate::num::{Stored, Total};
 use crate::{ConfigError, Fingerprint, Recovery, Sample};
 
@@ -133,10 +133,8 @@ impl<const WORDS: usize> Window<WORDS> {
     /// # Errors
     /// Returns an error if `2^power` is more than `32 WORDS`.
     pub const fn try_new(power: u8) -> Result<Self, ConfigError> {
-        match within("power of the window", power as f64, 0.0, Self::MOST.ilog2() as f32) {
-            Ok(()) => Ok(Self { power }),
-            Err(error) => Err(error),
-        }
+        tri!(within("power of the window", power as f64, 0.0, Self::MOST.ilog2() as f32));
+        Ok(Self { power })
     }
 
     /// How many samples the mean is taken over: `2^power`.
@@ -230,10 +228,8 @@ impl Average {
     /// # Errors
     /// Returns an error if the power is not within 1 to 15.
     pub const fn try_new(power: u8) -> Result<Self, ConfigError> {
-        match within("power of the average", power as f64, 1.0, Self::MOST as f32) {
-            Ok(()) => Ok(Self { power }),
-            Err(error) => Err(error),
-        }
+        tri!(within("power of the average", power as f64, 1.0, Self::MOST as f32));
+        Ok(Self { power })
     }
 }
 

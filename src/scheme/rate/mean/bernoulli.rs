@@ -7,7 +7,7 @@ use rand_core::Rng;
 
 use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
-use crate::error::unwrap;
+use crate::error::{tri, unwrap};
 use crate::num::{Tally, Total};
 use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme, Spike};
 
@@ -95,10 +95,8 @@ impl<S: Sample, G: Rng, A: Averaging> Bernoulli<S, G, A> {
     /// # Errors
     /// Returns an error if the ends are not finite, or do not rise, or are more than 10³¹ from 0.
     pub const fn try_new(range: RangeInclusive<S>, averaging: A) -> Result<Self, ConfigError> {
-        match Range::try_new(*range.start(), *range.end()) {
-            Ok(range) => Ok(Self { range, averaging, generator: PhantomData }),
-            Err(error) => Err(error),
-        }
+        let range = tri!(Range::try_new(*range.start(), *range.end()));
+        Ok(Self { range, averaging, generator: PhantomData })
     }
 
     /// The state of an encoder that draws from this generator, for a bank.

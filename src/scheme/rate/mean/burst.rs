@@ -4,7 +4,7 @@ use core::ops::RangeInclusive;
 
 use super::averaging::{Averaging, Gain, MeanState, Weight, decode_mean};
 use super::range::Range;
-use crate::error::{LARGEST_STEP, step, unwrap, within};
+use crate::error::{LARGEST_STEP, step, tri, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
 use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
@@ -54,8 +54,7 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
     /// # Panics
     /// Panics if [`try_new`](Self::try_new) returns an error.
     pub const fn new(range: RangeInclusive<S>, weight: S, doublings: u8, averaging: A) -> Self {
-        let range = unwrap(Self::checked(*range.start(), *range.end(), weight, doublings));
-        Self { range, weight, doublings, averaging }
+        unwrap(Self::try_new(range, weight, doublings, averaging))
     }
 
     /// A scheme for a range, whose spikes weigh `weight` at first and double at most `doublings` times.
@@ -69,27 +68,17 @@ impl<S: Sample, A: Averaging> WeightedBurst<S, A> {
         doublings: u8,
         averaging: A,
     ) -> Result<Self, ConfigError> {
-        match Self::checked(*range.start(), *range.end(), weight, doublings) {
-            Ok(range) => Ok(Self { range, weight, doublings, averaging }),
-            Err(error) => Err(error),
-        }
-    }
-
-    const fn checked(min: S, max: S, weight: S, doublings: u8) -> Result<Range<S>, ConfigError> {
+        let (min, max) = (*range.start(), *range.end());
+        let range = tri!(Range::try_new(min, max));
+        tri!(step("weight", to_f64(weight)));
+        tri!(within("doublings", doublings as f64, 0.0, MOST_DOUBLINGS as f32));
         let width = to_f64(max) - to_f64(min);
         let largest = to_f64(weight) * (1_u64 << (doublings & 31)) as f64;
-        match (
-            Range::try_new(min, max),
-            step("weight", to_f64(weight)),
-            within("doublings", doublings as f64, 0.0, MOST_DOUBLINGS as f32),
-        ) {
-            (Err(error), _, _) | (_, Err(error), _) | (_, _, Err(error)) => Err(error),
-            (Ok(range), ..) if largest >= width && largest <= LARGEST_STEP as f64 => Ok(range),
-            _ => {
-                let (value, min, max) = (largest as f32, width as f32, LARGEST_STEP);
-                Err(ConfigError::OutOfRange { parameter: "largest weight", value, min, max })
-            }
+        if largest >= width && largest <= LARGEST_STEP as f64 {
+            return Ok(Self { range, weight, doublings, averaging });
         }
+        let (value, min, max) = (largest as f32, width as f32, LARGEST_STEP);
+        Err(ConfigError::OutOfRange { parameter: "largest weight", value, min, max })
     }
 
     #[inline]

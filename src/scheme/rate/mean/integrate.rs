@@ -2,9 +2,10 @@
 
 use core::hint::black_box;
 
-use crate::error::{offset, step, unwrap, within};
+use crate::error::{offset, step, tri, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
 use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::temporal::with_most;
 use crate::temporal::Steps;
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
 
@@ -73,13 +74,9 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// Returns an error if the threshold is not above 0, not finite, or above 10³¹; the power is not within 1 to 15.
     pub const fn try_new(threshold: S, power: u8) -> Result<Self, ConfigError> {
         const { Self::SHAPE };
-        match (
-            step("threshold", to_f64(threshold)),
-            within("power of the mean", power as f64, 1.0, MOST_POWER as f32),
-        ) {
-            (Err(error), _) | (_, Err(error)) => Err(error),
-            _ => Ok(Self { threshold, reference: S::ZERO, power, is_leaky: false, most: K as i8 }),
-        }
+        tri!(step("threshold", to_f64(threshold)));
+        tri!(within("power of the mean", power as f64, 1.0, MOST_POWER as f32));
+        Ok(Self { threshold, reference: S::ZERO, power, is_leaky: false, most: K as i8 })
     }
 
     /// Makes the potential leak: LIF.
@@ -102,31 +99,11 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     /// # Errors
     /// Returns an error if the reference is not within 10³¹ of 0.
     pub const fn try_with_reference(self, reference: S) -> Result<Self, ConfigError> {
-        match offset("reference", to_f64(reference)) {
-            Ok(()) => Ok(Self { reference, ..self }),
-            Err(error) => Err(error),
-        }
+        tri!(offset("reference", to_f64(reference)));
+        Ok(Self { reference, ..self })
     }
 
-    /// Allows at most this many spikes a sample; `K` by default. For constants, where a bad number fails the build.
-    ///
-    /// # Panics
-    /// Panics if the number is not within 1 to `K`.
-    #[must_use]
-    pub const fn with_most(self, most: u8) -> Self {
-        unwrap(self.try_with_most(most))
-    }
-
-    /// Allows at most this many spikes a sample; `K` by default.
-    ///
-    /// # Errors
-    /// Returns an error if the number is not within 1 to `K`.
-    pub const fn try_with_most(self, most: u8) -> Result<Self, ConfigError> {
-        match within("most spikes a sample", most as f64, 1.0, K as f32) {
-            Ok(()) => Ok(Self { most: most as i8, ..self }),
-            Err(error) => Err(error),
-        }
-    }
+    with_most!();
 
     /// The threshold, in the samples' unit times a sample.
     pub const fn threshold(&self) -> S {

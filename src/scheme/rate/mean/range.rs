@@ -1,7 +1,7 @@
 //! The range of values of the codes of a mean, and the weight of a spike that stands for all of it.
 
 use super::averaging::Weight;
-use crate::error::{LARGEST_STEP, range, within};
+use crate::error::{LARGEST_STEP, range, tri, within};
 use crate::num::{Total, to_f64};
 use crate::{ConfigError, Fingerprint, Sample};
 
@@ -18,14 +18,10 @@ impl<S: Sample> Range<S> {
     /// `min < max`, both finite and within 10³¹ of 0 in `f32`.
     pub(super) const fn try_new(min: S, max: S) -> Result<Self, ConfigError> {
         let (low, high) = (to_f64(min), to_f64(max));
-        match (
-            range(low, high),
-            within("min", low, -LARGEST_STEP, LARGEST_STEP),
-            within("max", high, -LARGEST_STEP, LARGEST_STEP),
-        ) {
-            (Err(error), _, _) | (_, Err(error), _) | (_, _, Err(error)) => Err(error),
-            _ => Ok(Self { min, max }),
-        }
+        tri!(range(low, high));
+        tri!(within("min", low, -LARGEST_STEP, LARGEST_STEP));
+        tri!(within("max", high, -LARGEST_STEP, LARGEST_STEP));
+        Ok(Self { min, max })
     }
 
     /// `max - min`.

@@ -4,7 +4,7 @@ use core::ops::RangeInclusive;
 
 use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
-use crate::error::unwrap;
+use crate::error::{tri, unwrap};
 use crate::num::{Tally, Total};
 use crate::{ConfigError, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
@@ -55,10 +55,7 @@ impl<S: Sample, A: Averaging> SigmaDelta<S, A> {
     /// # Errors
     /// Returns an error if the ends are not finite, or do not rise, or are more than 10³¹ from 0.
     pub const fn try_new(range: RangeInclusive<S>, averaging: A) -> Result<Self, ConfigError> {
-        match Range::try_new(*range.start(), *range.end()) {
-            Ok(range) => Ok(Self { range, averaging }),
-            Err(error) => Err(error),
-        }
+        Ok(Self { range: tri!(Range::try_new(*range.start(), *range.end())), averaging })
     }
 }
 

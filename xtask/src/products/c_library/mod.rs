@@ -1,8 +1,10 @@
 //! `cargo xtask c-library` and `cargo verify c`: the C library, its header, and its tests.
 
+mod bundle;
 mod compiler;
 mod cost;
 mod declared;
+mod flights;
 mod guides;
 mod package;
 mod sizes;
@@ -20,7 +22,9 @@ use std::{
     sync::OnceLock,
 };
 
+pub use bundle::{bundle, verify as verify_bundle};
 pub use cost::cost;
+pub use flights::write_flights;
 pub use guides::guides;
 pub use sizes::write as write_sizes;
 pub use tests::{cores, verify, watched};
@@ -145,7 +149,7 @@ fn archive(board: &Board) -> Result<PathBuf> {
     shell::run(&mut cargo).with_context(|| format!("the library for {}", board.core))?;
     // Two cores share a target.
     let built = paths::thumb_target().join(board.target).join("release").join(ARCHIVE);
-    apart(&built, board.cpu, "arm-none-eabi-objcopy")
+    apart(&built, board.cpu, &format!("{}objcopy", board.tools()))
 }
 
 /// Writes a file if its content differs.

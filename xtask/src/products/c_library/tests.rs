@@ -1,6 +1,6 @@
 //! The C library's tests: programs in C on the host and on emulated boards, compared with the crate.
 
-use super::{archive, compiler, ensure_written, host_archive, watched_archive};
+use super::{archive, compiler, ensure_written, flights, host_archive, watched_archive};
 use crate::common::shell;
 use crate::programs::boards::{BOARDS, Board};
 use crate::programs::{host, qemu};
@@ -25,7 +25,8 @@ pub fn verify() -> Result<()> {
     let rust = in_rust()?;
     let flight = compiler::on_host("flight", "c99", &archive, &SAMPLES)?;
     compare("host", &shell::output(&mut Command::new(flight))?, &rust)?;
-    fly("M4F", &rust)
+    fly("M4F", &rust)?;
+    flights::verify()
 }
 
 /// Runs the tests on the host with the library, too, under the address sanitizer.

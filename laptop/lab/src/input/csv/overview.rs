@@ -17,7 +17,7 @@ pub struct Summary {
     pub rows: u64,
     /// The times of the rows: length, rate and gaps.
     pub clock: Clock,
-    /// How often the recorder's clock wrapped around.
+    /// Wraps of the recorder's 32-bit clock.
     pub rollover: Rollover,
     /// Notes for the user on how the table is read.
     pub notes: Vec<Words>,

@@ -25,7 +25,7 @@ pub struct Overview {
     pub count: u64,
     /// The times of the messages: length, rate and gaps.
     pub clock: Clock,
-    /// How often the recorder's clock wrapped around.
+    /// Wraps of the recorder's 32-bit clock.
     pub rollover: Rollover,
     /// Number of missing messages, according to the counter in the messages.
     pub missing: u64,

@@ -7,7 +7,7 @@ use super::{Lines, Rows, end, odd};
 use crate::Result;
 use flight_logs::files::scratch;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek};
+use std::io::{self, BufReader, Cursor, Read, Seek};
 use zip::ZipArchive;
 
 /// Maximum number of columns of an array.
@@ -125,10 +125,34 @@ impl Array {
         let header = String::from_utf8_lossy(&header);
         let (fields, size, left) = layout(&header, name).ok_or_else(|| {
             let own = header.trim();
-            odd(format!("no array of numbers with one or two dimensions, in order of rows: {own}"))
+            odd(format!("no array of numbers with one or two dimensions: {own}"))
         })?;
-        Ok(Self { input: Box::new(input), fields, row: vec![0; size], left })
+        let input: Box<dyn Read> = if header.contains("'fortran_order': True") && fields.len() > 1 {
+            Box::new(Cursor::new(by_rows(input, size / fields.len(), fields.len(), left)?))
+        } else {
+            Box::new(input)
+        };
+        Ok(Self { input, fields, row: vec![0; size], left })
     }
+}
+
+/// Reads an array that is stored column by column, and returns its bytes row by row. It is held in memory.
+fn by_rows(mut input: impl Read, size: usize, columns: usize, rows: u64) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    input.read_to_end(&mut bytes)?;
+    let rows = usize::try_from(rows).ok();
+    let length = rows.and_then(|rows| rows.checked_mul(columns)?.checked_mul(size));
+    let Some(rows) = rows.filter(|_| length == Some(bytes.len())) else {
+        return Err(odd(format!("an array of {} bytes where its header has others", bytes.len())));
+    };
+    let mut sorted = Vec::with_capacity(bytes.len());
+    for row in 0..rows {
+        for column in 0..columns {
+            let at = (column * rows + row) * size;
+            sorted.extend(&bytes[at..at + size]);
+        }
+    }
+    Ok(sorted)
 }
 
 /// Returns where the numbers of a row lie, the length of a row in bytes, and the number of rows.
@@ -146,9 +170,7 @@ fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
         [rows, columns] => (rows, Some(usize::try_from(columns).ok()?)),
         _ => return None,
     };
-    let is_by_columns = header.contains("'fortran_order': True");
-    if is_by_columns && columns.is_some_and(|own| own > 1) || columns.is_some_and(|own| own > MOST)
-    {
+    if columns.is_some_and(|own| own > MOST) {
         return None;
     }
     let descr = header.split_once("'descr':")?.1.trim_start();

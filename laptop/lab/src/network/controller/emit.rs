@@ -111,13 +111,14 @@ use spikewire_network::{{{used}}};
 }
 
 /// Names that a generated module imports only if it uses them.
-const NAMES: [&str; 16] = [
+const NAMES: [&str; 17] = [
     "Cuba",
     "Forward",
     "Full",
     "Layer",
     "Li",
     "Lif",
+    "NoReset",
     "OneToOne",
     "Spiking",
     "Subtract",

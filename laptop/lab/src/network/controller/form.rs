@@ -7,7 +7,7 @@ use super::net::{Layer, Net, Neuron, Recurrent, Spike};
 use super::rule::{Current, Decay, Framework, Needs, Reset, Rule};
 use super::{Asked, Model};
 use crate::network::NetworkKind;
-use crate::network::fault::{Context, Result, bail, ensure};
+use crate::network::fault::{Context, FitKind, LayerKind, Result, ensure};
 
 /// Largest absolute value of a number that `spikewire-network` accepts in `f32`.
 const LARGEST: f64 = 1e15;
@@ -26,14 +26,11 @@ impl Model {
     /// Returns an error if a number is out of its range, or if the controller does not support the network.
     pub(in super::super) fn of_plain(trained: trained::Trained, asked: &Asked) -> Result<Self> {
         let trained::Trained { layers, readout } = trained;
-        ensure!(
-            asked.resets.len() < 2,
-            "layers in JSON have one reset, and {} are asked for",
-            asked.resets.len()
-        );
+        let resets = asked.resets.len();
+        ensure!(resets < 2, NetworkKind::JsonResets { resets });
         ensure!(
             layers.iter().flat_map(|layer| &layer.neurons).all(|neuron| neuron.leak == 0.0),
-            "a leak by an amount is tinyODIN's: the controller's neurons keep a share"
+            FitKind::LeakByAmount { owner: "the controller's" }
         );
         let rule = asked.or_plain();
         let of_layer = |layer: trained::Layer| {
@@ -72,8 +69,7 @@ impl Model {
         let (firing, resets) = (stages.len(), &asked.resets);
         ensure!(
             resets.len() < 2 || resets.len() == firing,
-            "{} resets are asked for, and {firing} layers fire",
-            resets.len()
+            NetworkKind::Resets { resets: resets.len(), layers: firing }
         );
         let mut layers = Vec::new();
         for stage in stages.into_iter().chain(readout) {
@@ -103,17 +99,11 @@ impl Model {
     }
 
     fn new(net: Net<f64>, notes: Vec<String>) -> Result<Self> {
-        ensure!(!net.layers.is_empty(), "the network has no neurons");
+        ensure!(!net.layers.is_empty(), NetworkKind::NoNeurons);
         for pair in net.layers.windows(2) {
             let (before, after) = (&pair[0], &pair[1]);
-            ensure!(
-                after.inputs() == before.neurons.len(),
-                "{}: weights for {} inputs, but {} has {} neurons",
-                after.name,
-                after.inputs(),
-                before.name,
-                before.neurons.len()
-            );
+            let fits = trained::fits(after.inputs(), &before.name, before.neurons.len());
+            fits.context(&after.name)?;
         }
         for layer in &net.layers {
             layer.check().with_context(|| layer.name.clone())?;
@@ -132,17 +122,12 @@ impl Layer<f64> {
                 neuron.spike.unwrap_or(Spike { threshold: 0.0, reset: 0.0 });
             [neuron.bias, neuron.inner, threshold, reset]
         });
-        if let Some(odd) =
-            weights.copied().chain(of_neurons).find(|n| n.is_nan() || n.abs() > LARGEST)
-        {
-            bail!("a weight, bias, threshold or reset value of {odd}, where 1e15 is the most");
+        let mut numbers = weights.copied().chain(of_neurons);
+        if let Some(number) = numbers.find(|n| n.is_nan() || n.abs() > LARGEST) {
+            return Err(FitKind::Number { number }.into());
         }
-        ensure!(
-            self.inputs() <= 1 << 16 && self.neurons.len() <= 1 << 16,
-            "{} inputs and {} neurons, of which 65536 are the most",
-            self.inputs(),
-            self.neurons.len()
-        );
+        let (inputs, neurons, most) = (self.inputs(), self.neurons.len(), 1 << 16);
+        ensure!(inputs.max(neurons) <= most, FitKind::Size { inputs, neurons, most });
         Ok(())
     }
 }
@@ -153,8 +138,8 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Converts recurrent weights from one row for each receiving neuron. If neurons lead only to themselves, keeps the
-/// diagonal only.
+/// Converts recurrent weights from one row for each receiving neuron. If no weight leads from a neuron to another,
+/// keeps the diagonal only.
 fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
@@ -237,6 +222,8 @@ fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
     let dt = rule.dt;
     let resistance = neurons.resistance.at(at);
     let (decay, mut gain, leak) = match &neurons.leak {
+        // Norse adds the whole input, however long a step is.
+        None if rule.framework == Some(Framework::Norse) => (1.0, resistance, 0.0),
         None => (1.0, resistance * dt, 0.0),
         Some(leak) => {
             let tau = leak.tau.at(at);
@@ -297,7 +284,7 @@ impl Neuron<f64> {
 /// Returns an error if `tau` is not positive, or so short that [`Decay::Euler`] would give a negative factor.
 fn left(tau: f64, rule: &Rule) -> Result<f64> {
     let Rule { dt, framework, decay, .. } = *rule;
-    ensure!(tau > 0.0 && tau.is_finite(), "a time constant of {tau} s");
+    ensure!(tau > 0.0 && tau.is_finite(), LayerKind::TimeConstant { tau });
     if decay == Decay::Exponential {
         return Ok((-dt / tau).exp());
     }

@@ -17,7 +17,7 @@ use super::Trains;
 use super::bring::{Brought, HeldOut, Original, figures};
 use super::chip::{OnChip, Ran, Remarks, Stepped};
 use super::costs::Cost;
-use crate::network::fault::{Result, bail};
+use crate::network::fault::{FitKind, Result};
 use net::{Done, Net, Recurrent, State};
 use number::Number;
 use quantise::Integers;
@@ -300,7 +300,7 @@ impl OnChip for OnController {
     }
 
     fn bytes(&self) -> Result<Vec<u8>> {
-        bail!("a network on the controller is compiled in: there are no bytes to load")
+        Err(FitKind::NoBytes.into())
     }
 
     fn notes(&self) -> Vec<String> {

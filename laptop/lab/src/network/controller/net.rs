@@ -95,6 +95,10 @@ impl<K: Number> Neuron<K> {
                 let u = if fires(v) { reset } else { integrate(v) };
                 (u, fires(u))
             }
+            Reset::NoReset => {
+                let u = integrate(v);
+                (u, fires(u))
+            }
             Reset::Subtract => {
                 let u = integrate(v);
                 (if fires(u) { u.minus(reset) } else { u }, fires(u))

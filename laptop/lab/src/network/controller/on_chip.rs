@@ -4,7 +4,7 @@
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
 use super::net::{Layer, Neuron, Recurrent, Spike};
-use crate::network::fault::{Context, Result, ensure};
+use crate::network::fault::{Context, FitKind, Result, ensure};
 
 /// Largest share of a current that may remain after a step.
 const CURRENT: f64 = 1e-3;
@@ -39,11 +39,7 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 fn check_current(neuron: &Neuron<f64>) -> Result<()> {
     let left = neuron.current.unwrap_or(0.0);
-    ensure!(
-        left <= CURRENT,
-        "a spike's current lasts: a step leaves {left:.3} of it, and the chip's neurons have no current; train with \
-         `tau_syn` of a step, or LIF"
-    );
+    ensure!(left <= CURRENT, FitKind::LastingCurrent { left });
     Ok(())
 }
 
@@ -71,8 +67,7 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     for neuron in neurons {
         check_current(&neuron)?;
         let Neuron { decay: keep, bias, inner, spike, .. } = neuron;
-        let Spike { threshold, reset } =
-            spike.context("neurons that never fire must be the last")?;
+        let Spike { threshold, reset } = spike.ok_or(FitKind::SilentInside)?;
         // On the chips a spike resets neurons to 0, so potentials are counted from the reset value.
         let zero = if rule.reset.subtracts() { 0.0 } else { reset };
         let bias = bias + inner - (1.0 - keep) * zero;
@@ -89,10 +84,7 @@ fn readout(layer: Layer<f64>) -> Result<Readout> {
     for (at, neuron) in neurons.iter().enumerate() {
         check_current(neuron)?;
         let bias = neuron.bias + neuron.inner;
-        ensure!(
-            bias == 0.0,
-            "output {at} has a bias of {bias}: it must be 0, and be added where it is read"
-        );
+        ensure!(bias == 0.0, FitKind::OutputBias { output: at, bias });
         keep.push(neuron.decay);
     }
     Ok(Readout { name, weights: turned(&weights), keep })

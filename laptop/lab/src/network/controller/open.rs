@@ -48,7 +48,7 @@ impl Choice {
             (Self::Reset, Some(Framework::SnnTorch)) => (
                 "reset",
                 " subtract-late (its default), to-value-late (reset_mechanism=\"zero\"), subtract-no-delay \
-                 (reset_delay=False), or to-value (both, or a file that snnTorch has read);\n    \
+                 (reset_delay=False), to-value (both, or a file that snnTorch has read), or none;\n    \
                  of each layer that fires, with commas between; in 1.0.0 RSynaptic does not heed reset_delay=False",
             ),
             (Self::Reset, Some(Framework::Nir)) => {
@@ -56,8 +56,8 @@ impl Choice {
             }
             (Self::Reset, _) => (
                 "reset",
-                " to-value or subtract, to-value-late or subtract-late for a step late, or snnTorch's to-value-held \
-                 and subtract-no-delay",
+                " to-value or subtract, to-value-late or subtract-late for a step late, none, or snnTorch's \
+                 to-value-held and subtract-no-delay",
             ),
             (Self::Fires, _) => ("fires", " above (v > threshold) or at (v >= threshold)"),
             (Self::Decay, _) => {

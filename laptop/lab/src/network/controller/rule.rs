@@ -36,6 +36,8 @@ pub enum Reset {
     SubtractLate,
     /// snnTorch's subtraction with `reset_delay=False`.
     SubtractNoDelay,
+    /// Leaves the potential as it is.
+    NoReset,
 }
 
 /// Whether a neuron fires when its potential equals its threshold.
@@ -77,7 +79,7 @@ pub struct Asked {
     pub resets: Vec<Reset>,
     /// Whether a neuron fires when its potential equals its threshold.
     pub fires: Option<Fires>,
-    /// How time constants become factors.
+    /// How time constants become the factors of a step.
     pub decay: Option<Decay>,
     /// Which current drives the potential.
     pub current: Option<Current>,
@@ -94,7 +96,7 @@ pub struct Rule {
     pub reset: Reset,
     /// Whether a neuron fires when its potential equals its threshold.
     pub fires: Fires,
-    /// How time constants become factors.
+    /// How time constants become the factors of a step.
     pub decay: Decay,
     /// Which current drives the potential.
     pub current: Current,
@@ -237,12 +239,13 @@ impl Reset {
             Self::Subtract => "Subtract",
             Self::SubtractLate => "SubtractLate",
             Self::SubtractNoDelay => "SubtractNoDelay",
+            Self::NoReset => "NoReset",
         }
     }
 
     /// Returns whether a spike subtracts the threshold from the potential. Otherwise it sets the potential to a value.
     pub const fn subtracts(self) -> bool {
-        !matches!(self, Self::ToValue | Self::ToValueLate | Self::ToValueHeld)
+        matches!(self, Self::Subtract | Self::SubtractLate | Self::SubtractNoDelay)
     }
 }
 
@@ -256,6 +259,7 @@ impl Display for Rule {
             Reset::Subtract => "loses its threshold at once",
             Reset::SubtractLate => "loses its threshold a step late",
             Reset::SubtractNoDelay => "loses its threshold as snnTorch's reset_delay=False has it",
+            Reset::NoReset => "keeps its potential",
         };
         write!(f, "fires {fires} its threshold, and then {reset}")
     }

@@ -1,7 +1,8 @@
 //! Assigns the neurons of a network to those of the chip.
 
 use super::super::Trained;
-use crate::network::fault::{Result, ensure};
+use crate::Spot;
+use crate::network::fault::{FitKind, Result, ensure};
 
 const NEURONS: usize = 256;
 const INPUTS: usize = 256;
@@ -16,6 +17,10 @@ pub(super) struct Places {
     pub(super) neurons: Vec<Option<(usize, usize)>>,
     /// The number of the chip's neuron, by layer and index in the layer.
     by_layer: Vec<Vec<usize>>,
+}
+
+fn part(layer: &str) -> Spot {
+    Spot::Part(layer.to_owned())
 }
 
 impl Places {
@@ -39,31 +44,20 @@ impl Places {
                 own[neuron] = neurons.len();
                 neurons.push(Some((at, neuron)));
             }
-            ensure!(
-                neurons.len() <= NEURONS,
-                "{}: the chip has {NEURONS} neurons, and with this layer's {} the network needs {}",
-                layer.name,
-                layer.neurons.len(),
-                neurons.len()
-            );
+            let (count, needed) = (layer.neurons.len(), neurons.len());
+            let kind = || FitKind::Neurons { most: NEURONS, layer: count, needed };
+            ensure!(needed <= NEURONS, kind().at(part(&layer.name)));
             by_layer.push(own);
         }
         let inputs = trained.inputs() + usize::from(has_bias);
-        ensure!(
-            inputs <= INPUTS,
-            "{}: the chip has {INPUTS} inputs, and the network has {inputs}{}",
-            trained.layers[0].name,
-            if has_bias { ", one of them the bias" } else { "" }
-        );
+        let kind = || FitKind::Inputs { most: INPUTS, inputs, has_bias };
+        ensure!(inputs <= INPUTS, kind().at(part(&trained.layers[0].name)));
         let (name, outputs) = match (&trained.readout, trained.layers.last()) {
             (Some(readout), _) => (readout.name.as_str(), readout.weights.len()),
             (None, Some(layer)) => (layer.name.as_str(), layer.neurons.len()),
             (None, None) => ("", 0),
         };
-        ensure!(
-            outputs <= OUTPUTS,
-            "{name}: the chip has {OUTPUTS} outputs, and the network has {outputs}"
-        );
+        ensure!(outputs <= OUTPUTS, FitKind::Outputs { most: OUTPUTS, outputs }.at(part(name)));
         Ok(Self { neurons, by_layer })
     }
 

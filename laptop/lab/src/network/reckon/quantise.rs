@@ -3,8 +3,9 @@
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
+use crate::Spot;
 use crate::network::Fires;
-use crate::network::fault::{Result, ensure};
+use crate::network::fault::{FitKind, Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -158,13 +159,10 @@ pub(super) fn quantise(
     let resets_to_zero = !trained.layers.iter().any(|layer| layer.reset.subtracts());
     ensure!(
         resets_to_zero || trained.layers.iter().all(|layer| layer.reset.subtracts()),
-        "some layers subtract their threshold and others reset to a value: ReckOn does the same in all"
+        FitKind::MixedResets
     );
     let mut neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
-    ensure!(
-        neurons.all(|neuron| neuron.leak == 0.0),
-        "a leak by an amount is tinyODIN's: ReckOn's neurons keep a share"
-    );
+    ensure!(neurons.all(|neuron| neuron.leak == 0.0), FitKind::LeakByAmount { owner: "ReckOn's" });
     let at = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
     let peaks = peaks(trained, inputs, fired);
     let pairs: Vec<Vec<Source>> = places
@@ -435,11 +433,8 @@ impl Quantised {
         let Readout { name, weights, keep } = readout;
         let mean = keep.iter().sum::<f64>() / keep.len() as f64;
         let held = (mean * OUTPUT_KEEP).round();
-        ensure!(
-            held >= 1.0,
-            "{name}: the chip's outputs are read after they have leaked, and these keep {mean:.4} of their potential a \
-             step"
-        );
+        let kind = FitKind::OutputLeak { keep: mean };
+        ensure!(held >= 1.0, kind.at(Spot::Part(name.clone())));
         for &keep in keep {
             self.tell_keep(keep, held / OUTPUT_KEEP, 0.5 / OUTPUT_KEEP);
         }

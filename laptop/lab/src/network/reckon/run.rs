@@ -4,7 +4,7 @@ use super::super::Trains;
 use super::super::chip::{Ran, refused};
 use super::Quantised;
 use super::quantise::FIRED;
-use crate::network::fault::{Result, bail};
+use crate::network::fault::{ModelKind, Result};
 use silicon::reckon::{Board, Port, Spi};
 use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
 
@@ -23,10 +23,10 @@ const RATIO: u32 = 10;
 pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
     let board = Board::new(RATIO, 1);
     let mut chip = Chip::new(board.spi(), board.port(), Chip::MAX_CLOCKS);
-    let mut programmed = chip.reset(&mut board.clone()).map_err(|error| refused(&error))?;
-    programmed.load(network, |_| ()).map_err(|error| refused(&error))?;
-    let started = programmed.run(&ReckOnSettings::POTENTIALS).map_err(|error| refused(&error))?;
-    let mut sample = started.begin().map_err(|error| refused(&error))?;
+    let mut programmed = chip.reset(&mut board.clone()).map_err(refused)?;
+    programmed.load(network, |_| ()).map_err(refused)?;
+    let started = programmed.run(&ReckOnSettings::POTENTIALS).map_err(refused)?;
+    let mut sample = started.begin().map_err(refused)?;
 
     let layers = network.layers.len();
     let mut ran = Ran {
@@ -49,18 +49,18 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         sent.dedup();
         ran.lost += (all - sent.len()) as u32;
         for input in sent.into_iter().chain(network.bias.map(|bias| bias as u16)) {
-            sample.send(input as u8).map_err(|error| refused(&error))?;
+            sample.send(input as u8).map_err(refused)?;
         }
-        let answer = sample.step(ReckOnStep::default()).map_err(|error| refused(&error))?;
+        let answer = sample.step(ReckOnStep::default()).map_err(refused)?;
         let Some(ReckOnAnswer::Potentials(answer)) = answer else {
-            bail!("the chip's model answers {answer:?}")
+            return Err(ModelKind::Answer { answer }.into());
         };
         if step < inputs.len() {
             ran.clocks.push(board.pins().chip.clocks - before);
         }
         for neuron in std::mem::take(&mut board.pins().chip.fired) {
             let Some((layer, place)) = network.places.neurons[usize::from(neuron)] else {
-                bail!("neuron {neuron} fires, which the network has not")
+                return Err(ModelKind::StrayNeuron { neuron }.into());
             };
             if let Some(step) = step.checked_sub(layer + 1).filter(|_| layer < read_out)
                 && let Some(step) = ran.fired[layer].get_mut(step)

@@ -10,7 +10,8 @@ use super::bring::{Original, figures};
 use super::chip::{Chip, Compare, OnChip, Ran, Remarks, Stepped, written};
 use super::costs::Cost;
 use super::{Trained, Trains};
-use crate::network::fault::{Context, Result, bail};
+use crate::Spot;
+use crate::network::fault::{FitKind, Result};
 use quantise::{Quantised, quantise};
 use spikewire_chips::NetworkBytes;
 
@@ -31,7 +32,7 @@ impl Chip for TinyOdin {
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Box<dyn OnChip>> {
         if let Some(readout) = &trained.readout {
-            bail!("{}: tinyODIN has no outputs that never fire; ReckOn has", readout.name);
+            return Err(FitKind::NoReadout.at(Spot::Part(readout.name.clone())));
         }
         if compare == Some(Compare::Spike) {
             return Ok(Box::new(quantise(trained, inputs, fired, progress)?));
@@ -60,9 +61,7 @@ impl Chip for TinyOdin {
                 best = Some((holds, network));
             }
         }
-        let (_, best) = best.context(
-            "the network leaves no room for comparing once a step: one neuron must be free, a row for each layer, and two",
-        )?;
+        let (_, best) = best.ok_or(FitKind::NoRoomToCompare)?;
         Ok(best)
     }
 }

@@ -3,7 +3,8 @@
 use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::climb::climb;
-use crate::network::fault::{Result, ensure};
+use crate::Spot;
+use crate::network::fault::{FitKind, Result, ensure};
 use rayon::prelude::*;
 use spikewire_chips::{Describe, Input, TinyOdinInput, TinyOdinNeuron};
 use std::collections::{BTreeSet, VecDeque};
@@ -151,25 +152,16 @@ pub(super) fn quantise(
 fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
     let mut neurons = 0;
     for layer in &trained.layers {
-        neurons += layer.neurons.len();
-        ensure!(
-            neurons <= NEURONS,
-            "{}: the chip has {NEURONS} neurons, and with this layer's {} the network has {neurons}",
-            layer.name,
-            layer.neurons.len()
-        );
+        let count = layer.neurons.len();
+        neurons += count;
+        let kind = || FitKind::Neurons { most: NEURONS, layer: count, needed: neurons };
+        ensure!(neurons <= NEURONS, kind().at(Spot::Part(layer.name.clone())));
     }
     let loops = trained.layers.iter().any(|layer| !layer.recurrent.is_empty());
-    let own = if trained.layers.len() > 1 || loops { neurons } else { 0 };
+    let senders = if trained.layers.len() > 1 || loops { neurons } else { 0 };
     let inputs = trained.inputs() + usize::from(has_bias);
-    ensure!(
-        own + inputs <= ROWS,
-        "{}: the chip has {ROWS} rows of synapses, and {inputs} inputs{} with {own} neurons that send spikes to \
-         neurons need {}",
-        trained.layers[0].name,
-        if has_bias { ", one of them the bias," } else { "" },
-        own + inputs
-    );
+    let kind = || FitKind::Rows { most: ROWS, inputs, has_bias, senders };
+    ensure!(senders + inputs <= ROWS, kind().at(Spot::Part(trained.layers[0].name.clone())));
     Ok(())
 }
 

@@ -26,9 +26,9 @@ pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'
     let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
     board.pins().has_full_pin = true;
     let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
-    let mut gated = chip.reset(&mut board.clone()).map_err(|error| refused(&error))?;
-    gated.load(network, |_| ()).map_err(|error| refused(&error))?;
-    let mut running = gated.run(&network.registers()).map_err(|error| refused(&error))?;
+    let mut gated = chip.reset(&mut board.clone()).map_err(refused)?;
+    gated.load(network, |_| ()).map_err(refused)?;
+    let mut running = gated.run(&network.registers()).map_err(refused)?;
 
     let bias = network.has_bias.then(|| network.inputs() - 1);
     let leaks = network.leaks();
@@ -45,11 +45,11 @@ pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'
         let driven = bias.into_iter().chain(inputs?);
         let words = leak.into_iter().chain(driven.filter_map(|input| network.input(input)));
         for word in words {
-            running.send(word, &mut on_output).map_err(|error| refused(&error))?;
+            running.send(word, &mut on_output).map_err(refused)?;
         }
         // The model can be asked whether it is at rest; with a chip, one has to wait.
         while !board.pins().chip.is_idle() {
-            running.poll(&mut on_output).map_err(|error| refused(&error))?;
+            running.poll(&mut on_output).map_err(refused)?;
         }
         see(Stepped { fired, clocks: board.pins().chip.clocks - before })?;
     }

@@ -45,9 +45,9 @@ pub(super) fn follow(
         let board = Board::<silicon::TinyOdin>::new(RATIO, 1);
         board.pins().has_full_pin = true;
         let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
-        let mut gated = chip.reset(&mut board.clone()).map_err(|error| refused(&error))?;
-        gated.load(network, |_| ()).map_err(|error| refused(&error))?;
-        let mut running = gated.run(&network.registers()).map_err(|error| refused(&error))?;
+        let mut gated = chip.reset(&mut board.clone()).map_err(refused)?;
+        gated.load(network, |_| ()).map_err(refused)?;
+        let mut running = gated.run(&network.registers()).map_err(refused)?;
         let mut state = StepsState::REST;
         for inputs in inputs {
             let before = board.pins().chip.clocks;
@@ -57,9 +57,9 @@ pub(super) fn follow(
                     fired[layer].push(place as u16);
                 }
             };
-            running.step(steps, &mut state, inputs?, on_output).map_err(|error| refused(&error))?;
+            running.step(steps, &mut state, inputs?, on_output).map_err(refused)?;
             while !board.pins().chip.is_idle() {
-                running.poll(|_| ()).map_err(|error| refused(&error))?;
+                running.poll(|_| ()).map_err(refused)?;
             }
             // Sorts the neurons by number, as in double precision.
             for layer in &mut fired {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// The largest slope of a recording, compared with the largest that a code can follow.
 #[derive(Clone, Debug, Serialize)]
-pub struct Steep {
+pub struct Slope {
     /// Name of the scheme.
     #[serde(skip)]
     scheme: &'static str,
@@ -26,7 +26,7 @@ pub struct Steep {
     per: &'static str,
 }
 
-impl Steep {
+impl Slope {
     /// Measures the slopes; returns `None` for a code that can climb by more than one step a sample.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;

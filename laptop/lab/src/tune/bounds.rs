@@ -7,7 +7,7 @@ use catalogue::run::Asked;
 
 /// A bound of a parameter's search at which the best settings lie.
 #[derive(Clone, Debug)]
-pub struct End {
+pub struct Bound {
     /// Name of the parameter.
     pub parameter: &'static str,
     /// Value of the parameter in the best settings, formatted.
@@ -16,7 +16,7 @@ pub struct End {
     pub searched: [String; 2],
 }
 
-impl End {
+impl Bound {
     /// Returns a sentence for the user that reports the bound.
     pub fn words(&self) -> String {
         let Self { parameter, value, searched: [low, high] } = self;
@@ -28,7 +28,7 @@ impl End {
 
 /// Returns the bounds of the search at which the settings `best` lie. A bound is left out if no value beyond it can be
 /// built, because such a bound is the scheme's and not the search's.
-pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
+pub(super) fn bounds(problem: &Problem, space: &Space, best: &Asked) -> Vec<Bound> {
     /// Distance from a bound, as a share of the axis, within which a value lies at the bound.
     const NEAR: f64 = 0.02;
     let point = space.point(best);
@@ -51,7 +51,7 @@ pub(super) fn ends(problem: &Problem, space: &Space, best: &Asked) -> Vec<End> {
         let is_bound = is_count && meaning(axis, beyond[place]) < 0.0;
         if is_near && !is_bound && is_built(&space.meant(&beyond)) {
             let searched = [axis.low, axis.high].map(|end| short(meaning(axis, end)));
-            found.push(End { parameter: axis.name, value: short(value), searched });
+            found.push(Bound { parameter: axis.name, value: short(value), searched });
         }
     }
     found
