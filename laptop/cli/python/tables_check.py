@@ -26,7 +26,7 @@ def run(spikewire, *words):
 
 def write(directory, recording):
     """The recording in every format: the path of each, and what reads it."""
-    table = pd.read_csv(recording, float_precision="round_trip")
+    table = pd.read_csv(recording)
     at = directory.joinpath
     for packing in ("none", "snappy", "lz4", "gzip"):
         table.to_parquet(at(f"{packing}.parquet"), compression=packing, index=False)
@@ -83,7 +83,7 @@ def main():
     spikes = pd.DataFrame([line.split(",") for line in told if line[0].isdigit()], columns=["index", "channel", "polarity", "time_us"])
     assert (events == spikes.astype(events.dtypes)).all(axis=None) and len(events) == sum(row.spikes)
     values = parquet.read_table(directory / "dataset" / row["values"]).to_pandas()
-    table = pd.read_csv(recording, float_precision="round_trip")
+    table = pd.read_csv(recording)
     assert values.equals(table[values.columns])
     print(f"the data set: {len(events)} spikes and {values.size} values agree")
 
