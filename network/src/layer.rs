@@ -157,8 +157,8 @@ where
         let is_alike = own.is_empty() || scale == own_scale;
         let is_few = rows.len().wrapping_add(own.len()) <= N::Value::MOST_ROWS;
         let is_plain = is_alike && is_few && rest.is_empty();
+        let mut first = self.done;
         for ((potentials, currents), neurons) in potentials.iter_mut().zip(currents).zip(neurons) {
-            let first = self.done;
             let neuron = first.wrapping_mul(4);
             let start = || {
                 let mut sums = [[N::Value::default(); 4]; W];
@@ -186,6 +186,9 @@ where
             for (((potentials, currents), neurons), sums) in fours {
                 let each = potentials.iter_mut().zip(currents).zip(neurons).zip(sums);
                 for (((v, current), neuron), sum) in each {
+                    // A copy's numbers are read at once, by fewer instructions, if there are registers for them.
+                    let copy = *neuron;
+                    let neuron = if IS_SMALL { neuron } else { &copy };
                     if neuron.step(v, current, *sum) && N::FIRES {
                         if IS_SMALL {
                             append(bit.trailing_zeros());
@@ -208,8 +211,9 @@ where
                 append(fired.trailing_zeros());
                 fired &= fired.wrapping_sub(1);
             }
-            self.done = first.wrapping_add(W);
+            first = first.wrapping_add(W);
         }
+        self.done = first;
         (last_potentials, last_currents, last_neurons)
     }
 

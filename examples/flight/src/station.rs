@@ -206,7 +206,7 @@ impl<I: Registers, T: Schemes<N, Scheme: Start<Sample: OfCounts>>, const N: usiz
 
     fn second(&self) -> Option<News> {
         let a_second = 1_000_000 / u64::from(self.period).max(1);
-        (self.periods % a_second == 0).then_some(News::Second)
+        self.periods.is_multiple_of(a_second).then_some(News::Second)
     }
 
     /// As many periods as last this long at least. The current one may be over at once.

@@ -52,7 +52,8 @@ struct Channel {
 }
 
 impl Panel {
-    /// Makes an empty panel. Channels have this many neurons; each is added with its number when it first sends.
+    /// Makes an empty panel, for channels with `neurons` neurons each. A channel's line appears when the channel first
+    /// sends; its name is its number.
     pub(crate) fn new(neurons: usize) -> Self {
         let neurons = u16::try_from(neurons).unwrap_or(u16::MAX).max(1);
         Self { channels: Vec::new(), neurons, now: None, elapsed: 0, spikes: 0 }
@@ -77,7 +78,7 @@ impl Panel {
         Box::new(Noting { panel: Rc::clone(panel), values })
     }
 
-    /// Returns the channel of an address; `None` beyond the maximum.
+    /// Returns the channel to which an address belongs; `None` beyond [`MOST_CHANNELS`].
     fn channel(&mut self, address: u16) -> Option<&mut Channel> {
         let place = usize::from(address / self.neurons);
         if place >= self.channels.len() && place < MOST_CHANNELS {
@@ -88,7 +89,7 @@ impl Panel {
         self.channels.get_mut(place)
     }
 
-    /// Adds a frame's spikes, and moves the panel's time to the frame's.
+    /// Adds the spikes of a received frame, and moves the panel's time to the time of the frame.
     fn hear(&mut self, received: &Received<'_>) {
         for event in received.frame.events() {
             self.spikes += 1;

@@ -6,7 +6,7 @@ use common::{events, flight, flight_logs, good, ran, refused};
 
 const COLUMNS: [&str; 6] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"];
 
-/// Schemes, with parameters that are the same for every column, and the number of neurons of each scheme.
+/// Options of a scheme, used for every column, and the number of neurons of one column.
 const SCHEMES: [(&str, usize); 6] = [
     ("sf --threshold 0.1", 1),
     ("tbr --factor 0.5", 1),

@@ -192,6 +192,9 @@ fn a_file_that_does_not_say_the_rule_is_refused_with_the_choices() {
     let chip = network("braille_subtract.nir", "--as snntorch --reset zero")
         .replace("controller", "tinyodin");
     refused(&format!("{chip} --numbers i8"), "", &["--on controller"]);
+    let chip =
+        network("snntorch.nir", "--as snntorch --reset none").replace("controller", "tinyodin");
+    refused(&chip, "", &["--reset none is for the controller"]);
 }
 
 #[test]

@@ -79,7 +79,7 @@ fn sent(flight: &Flight) -> Vec<u8> {
     bytes
 }
 
-/// Returns the bits by which a keyframe expresses a sample.
+/// Returns the word that a keyframe carries for a sample: the bits of the sample in the flight's sample type.
 fn bits(flight: &Flight, value: f64) -> u32 {
     use catalogue::run::SampleType;
     match flight.sample {
@@ -107,7 +107,7 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
-/// A sender: its flight file, the kinds that this file belongs to, and the sender's frames.
+/// A sender: its flight file, the kinds of mistake for which the file serves, and the sender's frames.
 struct Sender {
     text: String,
     kinds: BTreeSet<&'static str>,

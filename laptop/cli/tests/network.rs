@@ -269,8 +269,8 @@ fn reset_modes_are_required_and_compared_with_the_frameworks_spikes() {
     refused(&short, "", &["1 steps", "200"]);
 }
 
-/// `ReckOn` subtracts the threshold after the leak, the trained network before it. Weights from each neuron to itself
-/// compensate for the difference.
+/// A network whose neurons subtract the threshold before the leak is compensated on `ReckOn`, which subtracts it after the
+/// leak: each neuron gets a weight to itself for the difference.
 #[test]
 fn a_reset_by_subtraction_is_corrected_for_reckon() {
     let json = r#"{"layers": [{"name": "one", "weights": [[127, -20], [60, 50]], "keep": 0.9,

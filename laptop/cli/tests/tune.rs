@@ -120,9 +120,8 @@ fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
     assert!(steps.contains("not to be relied on in another flight"), "{steps}");
 }
 
-/// Held-out blocks are encoded as part of the whole flight, not one by one: a code that drifts must not start each
-/// block from the right value. For `mw`, this makes the RMSE on held-out blocks more than three times that on the tuned
-/// ones.
+/// Held-out blocks are encoded as part of the whole flight, so that the decoded value carries its drift into each block.
+/// For `mw`, which drifts, the RMSE is more than three times as large on held-out blocks as on tuned ones.
 #[test]
 fn held_out_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     let text = std::fs::read_to_string(flight("hexarotor.csv")).unwrap();
@@ -141,8 +140,8 @@ fn held_out_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     }
 }
 
-/// In a flight with an impact, an RMSE of 0.06 needs more than 16 spikes a sample. The search finds such a number, at
-/// most twice the number of spikes that any sample needs.
+/// In a flight with an impact, an RMSE of 0.06 needs more than 16 spikes a sample. The search finds a maximum number
+/// of spikes a sample that suffices, and that is at most twice as large as any sample needs.
 #[test]
 fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     let flight = flight("hexarotor.csv");
@@ -161,8 +160,8 @@ fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     assert!((17..=2 * needed).contains(&spikes), "{spikes} of {needed}");
 }
 
-/// If no settings satisfy the goal, the message mentions a setting that is at the bound of its search range, unless it
-/// is also the scheme's own bound or was given.
+/// If no settings satisfy the goal, the message names each setting that reached the bound of its search range. Settings
+/// that the user fixed, and bounds that the scheme itself has, are not named.
 #[test]
 fn a_setting_at_the_bound_of_its_search_is_reported() {
     let flight = flight("hexarotor.csv");

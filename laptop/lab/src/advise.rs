@@ -357,8 +357,8 @@ impl Advice {
         Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
     }
 
-    /// Returns the low-pass behind which the scheme flew in the simulated control loop. Returns `None` if no loop
-    /// bandwidth was given, or if the filter is not possible at the recording's sample rate.
+    /// Returns the low-pass filter that came before the encoder when the scheme flew in the simulated control loop.
+    /// Returns `None` if no loop bandwidth was given, or if the filter is not possible at the recording's sample rate.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;

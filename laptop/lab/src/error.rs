@@ -78,7 +78,7 @@ pub enum ErrorKind {
     /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
-    /// A trained network, or what is asked for it, is refused as a whole.
+    /// A trained network, or a request about it such as its inputs, is refused as a whole.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
     /// A NIR file cannot be read, or its graph is not taken.

@@ -41,7 +41,7 @@ pub fn emulate(args: &[String]) -> Result<()> {
     let (image, directory) =
         (std::env::current_dir()?.join(image), paths::target().join("emulated/image"));
     _ = fs::remove_dir_all(&directory); // what an earlier image left
-    let run = emulator::launch(part, &image, sensor, seconds, &directory, &fates);
+    let run = emulator::strictly(part, &image, sensor, seconds, &directory, &fates);
     // An image that ends in a fault has said something, too.
     if let Ok(said) = fs::read(directory.join("uart")) {
         stdout().write_all(&said)?;

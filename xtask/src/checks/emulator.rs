@@ -367,12 +367,12 @@ fn emulate(
 ) -> Result<(Seen, PathBuf)> {
     let directory = paths::target().join("emulated").join(part.name);
     let fates: Vec<String> = fates.iter().map(|(at, name)| format!("{at}:{name}")).collect();
-    let seen = launch(part.memory, image, sensor, seconds, &directory, &fates)?;
+    let seen = launch(part.memory, image, sensor, seconds, &directory, &fates, false)?;
     Ok((seen, directory))
 }
 
-/// Runs an image on a part, with a sensor on its bus; all other output goes to the directory.
-pub fn launch(
+/// Runs an image on a part, with a sensor on its bus, and ends where it uses what nothing models.
+pub fn strictly(
     part: &str,
     image: &Path,
     sensor: &str,
@@ -380,13 +380,27 @@ pub fn launch(
     directory: &Path,
     fates: &[String],
 ) -> Result<Seen> {
+    launch(part, image, sensor, seconds, directory, fates, true)
+}
+
+/// Runs an image on a part; all other output goes to the directory.
+fn launch(
+    part: &str,
+    image: &Path,
+    sensor: &str,
+    seconds: f64,
+    directory: &Path,
+    fates: &[String],
+    is_strict: bool,
+) -> Result<Seen> {
     let home = installed()?;
     fs::create_dir_all(directory)?;
     let mut emulator = if part == "rp2040" {
         let mut node = command("node");
-        node.arg(home.join("pico.mjs"));
+        node.arg(home.join("pico.mjs")).env("STRICT", if is_strict { "1" } else { "0" });
         node
     } else {
+        // Always strict.
         let mut python = command(unicorn()?);
         python.arg(home.join("board.py")).arg(part);
         python

@@ -43,7 +43,7 @@ pub fn templates() -> Result<()> {
     let is_asked = |own: &&Template| asked.as_ref().is_none_or(|hal| own.hal == hal);
     TEMPLATES.iter().filter(is_asked).try_for_each(|template| {
         let elsewhere = tempfile::tempdir()?;
-        let project = elsewhere.path().join(template.hal);
+        let project = elsewhere.path().join(format!("my-{}", template.hal)); // not the HAL's own name
         let image = build(template, &project)?;
         let Some(part) = template.emulated else {
             println!("{}: compiled and linked", template.hal);
@@ -99,14 +99,15 @@ fn build(template: &Template, project: &Path) -> Result<PathBuf> {
     let target = paths::thumb_target().join("templates");
     let mut cargo = cargo_for(template.target, "build --release")?;
     run(lint(cargo.current_dir(project).env("CARGO_TARGET_DIR", &target)))?;
-    Ok(target.join(template.target).join("release").join(template.hal))
+    let name = project.file_name().context("a project has a name")?;
+    Ok(target.join(template.target).join("release").join(name))
 }
 
 /// Checks two seconds without faults: `spikewire listen`, with the same file, says every value exactly, and each is one that
 /// the sensor had. Returns the number of values.
 fn well(template: &Template, part: &str, image: &Path, flight: &Path) -> Result<usize> {
     let directory = paths::target().join("emulated").join(template.hal);
-    let seen = emulator::launch(part, image, "icm42688p", 2.0, &directory, &[])?;
+    let seen = emulator::strictly(part, image, "icm42688p", 2.0, &directory, &[])?;
     ensure!(seen.configured && seen.pulled_up, "the sensor is not configured, or its line floats");
     let log = emulator::log(image, &directory)?;
     ensure!(log.contains("Started") && !log.contains("Fault"), "the log says\n{log}");
@@ -128,7 +129,7 @@ fn faults(template: &Template, part: &str, image: &Path, flight: &Path) -> Resul
     }
     let seconds = (FAULTS.len() as u64 + 1) * EACH;
     let seen =
-        emulator::launch(part, image, "icm42688p", seconds as f64 / 1e3, &directory, &fates)?;
+        emulator::strictly(part, image, "icm42688p", seconds as f64 / 1e3, &directory, &fates)?;
     ensure!(seen.configured, "the sensor did not come back");
     let log = emulator::log(image, &directory)?;
     for (fault, words, _) in FAULTS {

@@ -48,7 +48,7 @@ SECTIONS
 } INSERT BEFORE .text;
 ";
 
-pub const TEMPLATES: [Template; 7] = [
+pub const TEMPLATES: [Template; 6] = [
     STM32,
     Template {
         hal: "embassy-nrf",
@@ -62,13 +62,4 @@ pub const TEMPLATES: [Template; 7] = [
     Template { hal: "stm32f4xx-hal", ..STM32 },
     Template { hal: "rp2040-hal", ..RP },
     Template { hal: "rtic", ..STM32 },
-    Template {
-        hal: "rp235x-hal",
-        target: "thumbv8m.main-none-eabihf",
-        chip: "RP235x",
-        memory: "rp2350",
-        sections: "",
-        emulated: None,
-        ..RP
-    },
 ];

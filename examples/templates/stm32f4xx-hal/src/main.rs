@@ -43,12 +43,13 @@ static ROUNDS: Rounds = Rounds::new();
 const GATHER: u32 = 5_000_u32.div_ceil(flight::PERIOD as u32);
 
 type Flown = Station<Sensor, [&'static flight::Code; flight::CHANNELS], { flight::CHANNELS }>;
+type Own = (Flown, CounterUs<TIM2>);
 /// What main has set up, until the interrupt takes it.
-static READY: Mutex<RefCell<Option<(Flown, CounterUs<TIM2>)>>> = Mutex::new(RefCell::new(None));
+static READY: Mutex<RefCell<Option<Own>>> = Mutex::new(RefCell::new(None));
 
 #[interrupt]
 fn TIM2() {
-    static mut OWN: Option<(Flown, CounterUs<TIM2>)> = None;
+    static mut OWN: Option<Own> = None;
     if OWN.is_none() {
         *OWN = critical_section::with(|cs| READY.take(cs));
     }

@@ -160,7 +160,7 @@ fn listen(
     values: Option<(Box<dyn Values + '_>, SampleType)>,
     mut screen: Option<Screen>,
 ) -> Result<()> {
-    /// Maximum number of bytes of a recording between two pictures.
+    /// Number of bytes that `--live` reads from a recording before it updates the terminal.
     const PART: usize = 64;
     let mut port = Port::open(&options.input, options.baud)?;
     let stop = Stop::new(options.seconds)?;

@@ -284,7 +284,8 @@ impl Tune {
     /// Returns the text of a flight file (`flight.toml`) with the settings found for each channel.
     ///
     /// # Errors
-    /// Returns an error if the first log has no sample rate, or if the channels do not make a flight.
+    /// Returns an error if the first log has no sample rate, or if the channels cannot share a flight file, for example
+    /// because two have the same name.
     fn flight(
         &self,
         request: &TuneRequest,

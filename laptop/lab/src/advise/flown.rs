@@ -28,9 +28,9 @@ pub(crate) struct Flown {
     low_pass: Option<f32>,
     /// Time between keyframes, in ms; `None` if the code needs none.
     keyframe_ms: Option<f64>,
-    /// Flights of one drone and controller, with 1 % of the frames lost.
+    /// Flights of the reference drone and its controller, with 1 % of the frames lost.
     here: Flights,
-    /// Flights of the drone and controller of `here`, with 10 % of the frames lost.
+    /// Flights of the same drone and controller, with 10 % of the frames lost.
     #[serde(rename = "every tenth frame lost")]
     tenth: Flights,
     /// Flights of several drones and controllers at several sample rates. A key names simulator, controller and rate.

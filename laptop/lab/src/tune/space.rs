@@ -38,7 +38,7 @@ pub(super) enum Role {
     Log(f64),
     /// Offset of the parameter from the first value, divided by the second.
     Around(f64, f64),
-    /// The parameter divided by the filter's sum.
+    /// The parameter divided by the sum of the taps of the scheme's filter.
     OfFilter,
     /// Natural logarithm of the parameter divided by the threshold.
     Thresholds,
