@@ -1,14 +1,11 @@
 //! Reads a file from start to end, decompressed if necessary, and parses little-endian integers.
 
 use crate::files::File;
-use crate::zstd::{Frames, ZSTD};
+use crate::packed::Packing;
+use crate::zstd::Frames;
 use crate::{Error, ErrorKind, Result};
-use flate2::read::MultiGzDecoder;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::Path;
-
-/// First bytes of a file compressed by gzip.
-pub const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// Content of a file, decompressed if the whole file is compressed.
 pub(crate) struct Bytes {
@@ -77,9 +74,9 @@ pub(crate) fn open(path: &Path) -> Result<File> {
 /// Returns an error if the file cannot be opened or read.
 pub(crate) fn is_packed(path: &Path) -> Result<bool> {
     let mut start = Vec::new();
-    let read = open(path)?.take(4).read_to_end(&mut start);
+    let read = open(path)?.take(Packing::START as u64).read_to_end(&mut start);
     read.map_err(|error| Error::of(path, ErrorKind::Read(error)))?;
-    Ok(start.starts_with(&GZIP) || start.starts_with(&ZSTD))
+    Ok(Packing::of(&start).is_some())
 }
 
 /// Returns a reader of the file's content, decompressed if it starts as gzip or Zstandard does.
@@ -87,16 +84,12 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     const BUFFER: usize = 1 << 18;
     let mut head = Vec::new();
     let mut input = BufReader::with_capacity(BUFFER, file);
-    input.by_ref().take(4).read_to_end(&mut head)?;
-    let is_gzip = head.starts_with(&GZIP);
-    let is_zstd = head.starts_with(&ZSTD);
+    input.by_ref().take(Packing::START as u64).read_to_end(&mut head)?;
+    let packing = Packing::of(&head);
     let all = Cursor::new(head).chain(input);
-    Ok(if is_gzip {
-        Box::new(BufReader::with_capacity(BUFFER, MultiGzDecoder::new(all)))
-    } else if is_zstd {
-        Box::new(BufReader::with_capacity(BUFFER, Frames::new(all)))
-    } else {
-        Box::new(all)
+    Ok(match packing {
+        Some(packing) => packing.reader(all),
+        None => Box::new(all),
     })
 }
 

@@ -56,11 +56,16 @@ impl Faults {
     /// Returns an error if damage is refused.
     pub fn skip(&mut self, at: u64, what: impl Display) -> Result<()> {
         self.refuse(at, &what, Rest::Behind)?;
+        self.lose(at, what);
+        Ok(())
+    }
+
+    /// Counts a fault that is common in good logs of this kind, and therefore never refused.
+    pub(crate) fn lose(&mut self, at: u64, what: impl Display) {
         self.skipped += 1;
         if self.skipped == 1 {
             self.notes.push(format!("skipped at byte {at}: {what}"));
         }
-        Ok(())
     }
 
     /// Notes damage after which nothing can be read. `at` is its offset in the file, in bytes; `what` describes it.

@@ -3,8 +3,8 @@
 //!
 //! All formats are read in the same way. [`Kind::of`] recognises a log by its first bytes. [`Reading`] returns its
 //! messages in the order of the file, and reads the numbers of a message by the names of their fields. Memory use does
-//! not grow with the length of the log, except for `ULog`, which is read as a whole. Logs compressed by gzip or Zstandard
-//! are decompressed while they are read.
+//! not grow with the length of the log, except for `ULog`, which is read as a whole. Logs compressed by gzip, Zstandard,
+//! bzip2 or xz are decompressed while they are read.
 //!
 //! **Damage.** An [`Error`] names the byte at which a log is damaged. With [`Damage::Skip`], reading continues after the
 //! damage, and [`Reading::notes`] lists what was left out. No log makes a reader panic; the tests read a thousand damaged
@@ -48,6 +48,7 @@ mod mavlink;
 mod mcap;
 #[cfg(test)]
 mod mutated;
+mod packed;
 mod reading;
 mod rosbag2;
 mod sqlite;
@@ -55,11 +56,11 @@ mod topic;
 mod ulog;
 mod window;
 mod wire;
-pub mod zstd;
+mod zstd;
 
-pub use bytes::GZIP;
 pub use error::{Error, ErrorKind, MessageFault, Rest, Result};
 pub use faults::Faults;
+pub use packed::Packing;
 pub use reading::{Reading, microseconds};
 pub use topic::Topic;
 pub use wire::{Fault, Wire};
@@ -101,7 +102,8 @@ pub trait Log {
 /// Reaction to damage in a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Damage {
-    /// Return an error at the first damage.
+    /// Return an error at the first damage. Bad frames in a blackbox log are noted instead, because its recorder drops
+    /// some even in a good flight.
     #[default]
     Refuse,
     /// Leave out the damaged parts, count them, and describe them in the notes.
@@ -166,6 +168,12 @@ impl Kind {
             }
             (Ok(_), kind) => Ok(kind),
         }
+    }
+
+    /// Recognises the kind of a log by its first bytes, decompressed, of which 8 KiB are enough; `None` if they are not
+    /// those of a log. A ROS 2 bag that is a directory has none.
+    pub fn of_start(start: &[u8]) -> Option<Self> {
+        of_start(start)
     }
 
     /// Returns the name of the topic that most users want, if the format has one.

@@ -4,11 +4,11 @@ use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use std::io::{self, Cursor, ErrorKind, Read};
 
 /// First bytes of a file compressed by Zstandard.
-pub const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+pub(crate) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// Decompresses all frames of a Zstandard file, one after the other. Packers that run on several cores write several
 /// frames.
-pub struct Frames<R> {
+pub(crate) struct Frames<R> {
     input: R,
     decoder: FrameDecoder,
     is_within: bool,
@@ -16,7 +16,7 @@ pub struct Frames<R> {
 
 impl<R: Read> Frames<R> {
     /// Creates a reader of the decompressed content of `input`.
-    pub fn new(input: R) -> Self {
+    pub(crate) fn new(input: R) -> Self {
         Self { input, decoder: FrameDecoder::new(), is_within: false }
     }
 

@@ -159,8 +159,7 @@ impl Blackbox {
         if frame.is_ok()
             && let Some(damaged) = self.damaged.take()
         {
-            let what = format!("{} bytes are no frames", offset - damaged);
-            self.faults.skip(damaged, what)?;
+            self.faults.lose(damaged, format!("{} bytes are no frames", offset - damaged));
         }
         match frame {
             Ok(Frame::Message { topic, time, numbers }) => {
@@ -361,7 +360,7 @@ impl Log for Blackbox {
             if self.window.left().is_empty() {
                 if let Some(damaged) = self.damaged.take() {
                     let what = format!("{} bytes are no frames", self.window.offset() - damaged);
-                    self.faults.skip(damaged, what)?;
+                    self.faults.lose(damaged, what);
                 }
                 if self.session.take().is_some() {
                     self.faults.note("the log has no end, as when power is cut".to_owned());

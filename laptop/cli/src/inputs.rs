@@ -1,9 +1,14 @@
 //! Options that choose the recording and its channels, and options for converting events between formats.
 
+use anyhow::Result;
 use clap::Args;
 use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
+use flight_logs::{Kind, Packing};
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
+use std::io::{self, BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use tempfile::NamedTempFile;
 
 /// Options for converting events from one format to another.
 #[derive(Args, Clone, Copy, Debug)]
@@ -19,9 +24,8 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// CSV table with a header, or a log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, a bag of
-    /// ROS 1 or 2, MCAP, Betaflight's blackbox; any of these may be compressed; `-` reads a CSV table from standard
-    /// input
+    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`,
+    /// telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is standard input
     pub input: PathBuf,
     #[command(flatten)]
     channel: ChannelOptions,
@@ -73,7 +77,7 @@ pub(crate) struct ChannelOptions {
     /// emitted for skipped rows
     #[arg(long, help_heading = "Input")]
     skip_non_finite: bool,
-    /// Read the undamaged part of a log that is cut short or damaged
+    /// Read the undamaged part of a log that is cut short or damaged, and a table up to its last whole line
     #[arg(long, help_heading = "Input")]
     accept_cut: bool,
 }
@@ -90,9 +94,12 @@ fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
 }
 
 impl InputOptions {
-    /// Converts the options to the type that the library `lab` takes.
-    pub(crate) fn to_lab(&self) -> input::InputOptions {
-        self.channel.of(&self.input)
+    /// Converts the options to the library's form; a log from standard input is copied to a file first.
+    ///
+    /// # Errors
+    /// Returns an error if standard input cannot be read or copied.
+    pub(crate) fn to_lab(&self) -> Result<input::InputOptions> {
+        Ok(self.channel.of(&as_file(&self.input)?))
     }
 }
 
@@ -116,4 +123,45 @@ impl ChannelOptions {
         };
         input::InputOptions { input: input.to_owned(), channel }
     }
+}
+
+/// The file to which a log from standard input was copied.
+static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
+
+/// Returns the path of a recording: of standard input that of a copy if it is a log or an archive, which are not read in
+/// one go.
+///
+/// # Errors
+/// Returns an error if standard input cannot be read or copied.
+pub(crate) fn as_file(input: &Path) -> Result<PathBuf> {
+    /// First bytes of files of NumPy's arrays, and of Parquet.
+    const TABLES: [&[u8]; 2] = [b"PK\x03\x04", b"PAR1"];
+    if input != Path::new("-") {
+        return Ok(input.to_owned());
+    }
+    let mut stdin = io::stdin().lock();
+    // These bytes are read again.
+    let start = stdin.fill_buf()?;
+    let is_log = match Packing::of(start) {
+        None => Kind::of_start(start).is_some(),
+        Some(packing) => {
+            let mut content = Vec::new();
+            // The content goes on behind these bytes; of some packings they give none yet.
+            let _ = packing.reader(Cursor::new(start.to_vec())).read_to_end(&mut content);
+            content.is_empty() || Kind::of_start(&content).is_some()
+        }
+    };
+    if !is_log && !TABLES.iter().any(|own| start.starts_with(own)) {
+        return Ok(input.to_owned());
+    }
+    let mut file = tempfile::Builder::new().prefix("standard-input-").tempfile()?;
+    io::copy(&mut stdin, &mut file)?;
+    let path = file.path().to_owned();
+    *COPIED.lock().unwrap_or_else(PoisonError::into_inner) = Some(file);
+    Ok(path)
+}
+
+/// Deletes the copy of standard input.
+pub(crate) fn delete_copy() {
+    drop(COPIED.lock().unwrap_or_else(PoisonError::into_inner).take());
 }

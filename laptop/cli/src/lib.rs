@@ -27,6 +27,7 @@ enum Command {
     Decode(decode::Decode),
     Listen(listen::Listen),
     Convert(convert::Convert),
+    Dataset(commands::dataset::Dataset),
     Capture(capture::Capture),
     Score(score::Score),
     Bench(commands::bench::Bench),
@@ -52,6 +53,7 @@ pub fn run() -> ExitCode {
         Command::Decode(options) => decode::run(&options),
         Command::Listen(options) => listen::run(&options),
         Command::Convert(options) => convert::run(&options),
+        Command::Dataset(options) => commands::dataset::run(&options),
         Command::Capture(options) => capture::run(&options),
         Command::Score(options) => score::run(&options),
         Command::Bench(options) => commands::bench::run(&options),
@@ -64,6 +66,7 @@ pub fn run() -> ExitCode {
         Command::Tune(options) => commands::tune::run(&options),
         Command::Frames(options) => commands::frames::run(&options),
     });
+    inputs::delete_copy();
     match done {
         Ok(()) => ExitCode::SUCCESS,
         // A reader that closes the pipe early, such as `head`, is no error.

@@ -1,6 +1,7 @@
 //! Handles Ctrl-C. A command that runs until it is stopped finishes normally and keeps its output; any other command is
 //! ended at once, and its unfinished output file is removed.
 
+use crate::inputs::delete_copy;
 use anyhow::{Context, Result};
 use lab::output::abandon;
 use spikewire::Tick;
@@ -23,6 +24,7 @@ pub(crate) fn handle() -> Result<()> {
     ctrlc::set_handler(|| {
         if IS_WANTED.swap(true, Ordering::Relaxed) || !IS_AWAITED.load(Ordering::Relaxed) {
             abandon();
+            delete_copy();
             process::exit(INTERRUPTED);
         }
     })?;

@@ -4,9 +4,9 @@ mod common;
 
 use common::{good, ran};
 
-const COMMANDS: [&str; 13] = [
-    "encode", "decode", "listen", "convert", "score", "bench", "plot", "network", "info", "signal",
-    "tune", "advise", "frames",
+const COMMANDS: [&str; 14] = [
+    "encode", "dataset", "decode", "listen", "convert", "score", "bench", "plot", "network",
+    "info", "signal", "tune", "advise", "frames",
 ];
 
 #[test]

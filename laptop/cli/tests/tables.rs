@@ -77,6 +77,51 @@ fn all_frames_of_zstandard_are_read() {
     }
 }
 
+/// Returns an array as `NumPy` writes it.
+fn npy(descr: &str, shape: &str, data: &[&[u8]]) -> Vec<u8> {
+    let header = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}\n");
+    let length = (header.len() as u16).to_le_bytes();
+    [b"\x93NUMPY\x01\0", &length[..], header.as_bytes(), &data.concat()].concat()
+}
+
+#[test]
+fn arrays_of_numpy_are_read() {
+    let spikes = |array: &[u8], column: &str| {
+        let ran = good_bytes(&format!("{SF} {column} -"), array);
+        String::from_utf8(ran.output).unwrap()
+    };
+    let row = |time: i64, x: f64| [time.to_le_bytes(), x.to_le_bytes()].concat();
+    let fields = npy("[('t_ms', '<i8'), ('x', '<f8')]", "(2,)", &[&row(0, 0.0), &row(5, 1.0)]);
+    assert!(spikes(&fields, "").contains("\n1,0,1,5000\n"));
+    assert_eq!(spikes(&gzip(&fields), ""), spikes(&fields, ""));
+    let text = npy(
+        "[('s', '|S3'), ('x', '>f4'), ('i', '|i1')]",
+        "(2,)",
+        &[b"abc\0\0\0\0\0", b"abc\x3f\x80\0\0\xff"],
+    );
+    assert!(spikes(&text, "--column x").contains("\n1,0,1\n"));
+    assert!(spikes(&text, "--column i").contains("\n1,0,-1\n"));
+    let plain = npy("'<u2'", "(2, 3)", &[&[1, 0, 2, 0, 3, 0, 1, 0, 2, 0, 4, 0]]);
+    assert!(spikes(&plain, "--column 3").contains("# first=3\n"));
+    assert!(spikes(&plain, "--column 3").contains("\n1,0,1\n"));
+    // Stored column by column.
+    let mut turned = npy("'<u2'", "(2, 3)", &[&[1, 0, 1, 0, 2, 0, 2, 0, 3, 0, 4, 0]]);
+    let at = turned.windows(5).position(|own| own == b"False").unwrap();
+    turned[at..at + 5].copy_from_slice(b"True ");
+    assert_eq!(spikes(&turned, "--column 3"), spikes(&plain, "--column 3"));
+    for (array, words) in [
+        (npy("'<c16'", "(1,)", &[&[0; 16]]), "no array of numbers"),
+        (npy("'<f8'", "(1, 1, 1)", &[&[0; 8]]), "one or two dimensions"),
+        (npy("[('x', '<f8', (2,))]", "(1,)", &[&[0; 16]]), "no array of numbers"),
+        (npy("'<f8'", "(2,)", &[&[0; 15]]), "standard input"),
+        (npy("'<f8'", "(2, 1000000000)", &[]), "no array of numbers"),
+        (b"\x93NUMPY\x01\0\xff\xff{}".to_vec(), "no array of numbers"),
+    ] {
+        let ran = spikewire_bytes(&format!("{SF} -"), &array);
+        assert!(ran.status == 2 && ran.stderr.contains(words), "{words}: {}", ran.stderr);
+    }
+}
+
 #[test]
 fn other_files_are_named() {
     for (start, words) in [

@@ -27,7 +27,7 @@ pub fn encode_flight(
     let input = flight::input(flight, input);
     let open =
         || -> Result<Box<dyn Source + '_>> { Ok(Box::new(Sampled::new(flight, input.open()?)?)) };
-    encode_from(&open, &input, (scheme, sample, &asked), format, output)
+    encode_to(&open, &input, (scheme, sample, &asked), format, output)
 }
 
 /// Encodes channels of a recording to a log in `format`, or to a table of spikes if `None`. The output is opened last,
@@ -46,23 +46,73 @@ pub fn encode(
     output: impl FnOnce() -> Result<Output>,
 ) -> Result<(Output, Vec<Words>)> {
     let open = || input.open().map(|own| -> Box<dyn Source> { own });
-    encode_from(&open, input, (scheme, sample, parameters), format, output)
+    encode_to(&open, input, (scheme, sample, parameters), format, output)
 }
 
 /// A function that opens the recording at its start, each time it is called.
-type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
+pub(crate) type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
 
-fn encode_from(
+/// What a writer of spikes is made from.
+pub(crate) struct Start<'a> {
+    pub header: &'a Header,
+    /// Names of the channels.
+    pub names: Vec<&'a str>,
+    /// Whether the samples have times.
+    pub is_timed: bool,
+    /// Number of samples from which the usual step was taken.
+    pub first: usize,
+    /// Returns the smallest and largest sample of each channel, after a pass over the recording.
+    pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,
+}
+
+/// The outcome of encoding a recording.
+pub(crate) struct Encoded {
+    /// The output, still to be finished.
+    pub output: Output,
+    /// Names of the channels.
+    pub names: Vec<String>,
+    /// Number of spikes of each channel.
+    pub spikes: Vec<u64>,
+    pub summary: Summary,
+    pub clock: Clock,
+    /// Notes of the reader, and then those of the encoder, a line each.
+    pub notes: Vec<Words>,
+}
+
+fn encode_to(
     open: &Open<'_>,
     input: &InputOptions,
-    (scheme, sample, parameters): (Scheme, SampleType, &Asked),
+    coding: (Scheme, SampleType, &Asked),
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
 ) -> Result<(Output, Vec<Words>)> {
-    parameters.check(scheme.info())?;
     if format.is_some() && input.is_stdin() {
         return Err(RequestKind::RangeAtEnd.into());
     }
+    let encoded = encode_from(open, input, coding, |start| {
+        let output = output()?;
+        Ok(match format {
+            None => Box::new(Writer::new(output, start.header, start.is_timed)?),
+            Some(format) => {
+                let ranges = (start.ranges)()?;
+                Box::new(Recorder::new(output, format, start.header, start.is_timed, &ranges)?)
+            }
+        })
+    })?;
+    Ok((encoded.output, encoded.notes))
+}
+
+/// Encodes channels of a recording to the writer that `write` makes, once recording and parameters are known to be valid.
+///
+/// # Errors
+/// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.
+pub(crate) fn encode_from(
+    open: &Open<'_>,
+    input: &InputOptions,
+    (scheme, sample, parameters): (Scheme, SampleType, &Asked),
+    write: impl FnOnce(&Start<'_>) -> Result<Box<dyn Record>>,
+) -> Result<Encoded> {
+    parameters.check(scheme.info())?;
     let calibrated = match scheme.needs_signal(parameters) {
         None => None,
         Some(needs) if input.is_stdin() => {
@@ -101,15 +151,20 @@ fn encode_from(
     let rate = clock.rate();
     let header = Header { scheme, sample, channels, rate, notes };
     let is_timed = !chunk.times.is_empty();
-    let output = output()?;
-    let mut writer: Box<dyn Record> = match format {
-        None => Box::new(Writer::new(output, &header, is_timed)?),
-        Some(format) => {
-            let calibrated = calibrated.map_or_else(|| calibrate(open, sample), Ok)?;
-            let ranges: Vec<_> = calibrated.iter().filter_map(Calibrated::range).collect();
-            Box::new(Recorder::new(output, format, &header, is_timed, &ranges)?)
+    let ranges = || -> Result<Vec<(f64, f64)>> {
+        let ranges = |all: &[Calibrated]| all.iter().filter_map(Calibrated::range).collect();
+        match &calibrated {
+            Some(all) => Ok(ranges(all)),
+            None => Ok(ranges(&calibrate(open, sample)?)),
         }
     };
+    let mut writer = write(&Start {
+        header: &header,
+        names: source.names(),
+        is_timed,
+        first: chunk.len(),
+        ranges: &ranges,
+    })?;
 
     let mut events = Vec::new();
     let mut spikes = vec![0; header.channels.len()];
@@ -138,15 +193,16 @@ fn encode_from(
     let mut notes = source.notes().to_vec();
     let lines = report(&summary, &clock, header.channels.len());
     notes.extend(rounded.into_iter().chain(lines).map(Words::from));
-    for (((fit, settings), spikes), name) in
-        fits.iter().zip(&header.channels).zip(spikes).zip(source.names())
+    for (((fit, settings), &spikes), name) in
+        fits.iter().zip(&header.channels).zip(&spikes).zip(source.names())
     {
         let of = if fits.len() > 1 { format!("{name}: ") } else { String::new() };
         for note in fit.notes(settings, spikes).lines() {
             notes.push(format!("{of}{note}").into());
         }
     }
-    Ok((output, notes))
+    let names = source.names().into_iter().map(str::to_owned).collect();
+    Ok(Encoded { output, names, spikes, summary, clock, notes })
 }
 
 /// Reads the start of a recording: at least `enough` finite samples, or all samples if fewer are finite.

@@ -72,6 +72,9 @@ pub enum ErrorKind {
     Spikes(SpikesKind),
     /// An output file cannot be written.
     Output(OutputKind),
+    /// A data set cannot be made or read.
+    #[cfg(all(feature = "datasets", not(target_family = "wasm")))]
+    Dataset(crate::dataset::DatasetKind),
     /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
@@ -228,6 +231,8 @@ impl ErrorKind {
             Self::Events(kind) => kind.name(),
             Self::Spikes(kind) => kind.name(),
             Self::Output(kind) => kind.name(),
+            #[cfg(all(feature = "datasets", not(target_family = "wasm")))]
+            Self::Dataset(kind) => kind.name(),
             #[cfg(feature = "frames")]
             Self::Frames(kind) => kind.name(),
             #[cfg(feature = "networks")]
@@ -329,6 +334,8 @@ impl Worded for Error {
             ErrorKind::Events(kind) => kind.word_about(f, spell, about),
             ErrorKind::Spikes(kind) => kind.word_about(f, spell, about),
             ErrorKind::Output(kind) => kind.word_about(f, spell, about),
+            #[cfg(all(feature = "datasets", not(target_family = "wasm")))]
+            ErrorKind::Dataset(kind) => kind.word_about(f, spell, about),
             #[cfg(feature = "frames")]
             ErrorKind::Frames(kind) => kind.word_about(f, spell, about),
             #[cfg(feature = "networks")]

@@ -8,6 +8,8 @@ pub mod bank;
 pub mod bench;
 pub mod brief;
 pub mod coding;
+#[cfg(all(feature = "datasets", not(target_family = "wasm")))]
+pub mod dataset;
 pub mod emit;
 pub mod encode;
 mod error;

@@ -21,7 +21,10 @@ pub fn logs() -> Result<()> {
     let place = paths::target().join("logs-check");
     let recording = paths::root().join("data/hexarotor.csv");
     let check = paths::root().join("laptop/cli/python/logs_check.py");
-    run(command(&python).arg(check).args([program, recording, place.clone()]))?;
+    run(command(&python).arg(check).args([&program, &recording, &place]))?;
+    let check = paths::root().join("laptop/cli/python/tables_check.py");
+    let tables = paths::target().join("tables-check");
+    run(command(&python).arg(check).args([program, recording, tables]))?;
     run(&mut cargo("build --package flight-logs --example numbers"))?;
     let numbers = paths::target().join("debug/examples/numbers");
     let check = paths::root().join("laptop/cli/python/ardupilot_check.py");

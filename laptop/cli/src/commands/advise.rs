@@ -80,7 +80,7 @@ pub(crate) struct Advise {
 /// # Errors
 /// Returns an error if the log or the options are invalid, or if no scheme can be advised for any channel.
 pub(crate) fn run(options: &Advise) -> Result<()> {
-    let recordings = Recording::read_all(&options.input.to_lab().or_all()?)?;
+    let recordings = Recording::read_all(&options.input.to_lab()?.or_all()?)?;
     if options.picture.is_some() && recordings.len() > 1 {
         bail!("--picture draws one channel; --channel says which");
     }

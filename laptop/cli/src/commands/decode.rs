@@ -6,6 +6,7 @@ use clap::Args;
 use flight_logs::Kind;
 use lab::Place;
 use lab::bank::Bank;
+use lab::dataset::restore;
 use lab::input::text;
 use lab::output::{Output, is_table};
 use lab::spikes::{Header, Item, Messages, Reader, Spikes};
@@ -13,9 +14,10 @@ use lab::timeline::Timeline;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
 
-/// Decode a file of spikes that `encode` wrote, or a ROS log with messages `spyke_msgs`, of the toolbox by Dupeyroux et
-/// al. (2022). The scheme and its parameters are read from the file itself.
+/// Decode a file of spikes that `encode` wrote, a Parquet file of spikes that `dataset` wrote, or a ROS log with messages
+/// `spyke_msgs`, of the toolbox by Dupeyroux et al. (2022). The scheme and its parameters are read from the file itself.
 ///
 /// Writes the columns `index,value`; with several channels, one column for each, under its name. If times were
 /// recorded, the column `time_us` follows: exact at events and at gaps, evenly spaced between them.
@@ -23,9 +25,11 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Example:
   spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
-  spikewire decode spikes.csv -o decoded.csv")]
+  spikewire decode spikes.csv -o decoded.csv
+  spikewire decode --spikes dataset/events/flight-0123456789ab.parquet -o spikes.csv")]
 pub(crate) struct Decode {
-    /// File of spikes, or a ROS bag or MCAP file with spikes; `-` reads a file of spikes from standard input
+    /// File of spikes, a ROS bag or MCAP file with spikes, or a Parquet file of spikes in a data set; `-` reads a file of
+    /// spikes from standard input
     #[arg(default_value = "-")]
     spikes: PathBuf,
     /// Read the undamaged part of a log that is cut short or damaged
@@ -34,6 +38,9 @@ pub(crate) struct Decode {
     /// CSV file to write, `index,value` and `time_us` if times were recorded; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
+    /// Write the spikes of a Parquet file as `encode` writes them, instead of values
+    #[arg(long = "spikes")]
+    is_restored: bool,
 }
 
 const BUFFER: usize = 1 << 18;
@@ -43,7 +50,7 @@ const BUFFER: usize = 1 << 18;
 /// # Errors
 /// Returns an error if the file of spikes is invalid, or if the output cannot be written.
 pub(crate) fn run(options: &Decode) -> Result<()> {
-    let Decode { spikes, output, accept_cut } = options;
+    let Decode { spikes, output, accept_cut, is_restored } = options;
     if let Some(output) = output {
         is_table(output, "")?;
     }
@@ -56,6 +63,21 @@ pub(crate) fn run(options: &Decode) -> Result<()> {
     }
     if *accept_cut {
         bail!("{}: a file of spikes takes no --accept-cut", spikes.display());
+    }
+    let is_part = spikes.extension().is_some_and(|ending| ending == "parquet");
+    if *is_restored {
+        if !is_part {
+            bail!("{}: --spikes takes a Parquet file of a data set", spikes.display());
+        }
+        return Ok(restore(spikes, open)?.finish()?);
+    }
+    if is_part {
+        let restored = NamedTempFile::new()?;
+        restore(spikes, || Output::to(Some(restored.path())))?.finish()?;
+        let name = spikes.display().to_string();
+        let input = BufReader::with_capacity(BUFFER, File::open(restored.path())?);
+        let (reader, header) = Reader::open(input, &name)?;
+        return decode(reader, &header, &name, open);
     }
     let (input, name): (Box<dyn Read>, _) = if is_stdin {
         (Box::new(io::stdin()), "standard input".to_owned())

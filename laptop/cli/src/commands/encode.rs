@@ -51,10 +51,10 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
         if !coding.chosen()?.2.is_empty() {
             bail!("--flight says all parameters");
         }
-        encode_flight(&Flight::read(flight)?, &input.to_lab(), format, open)?
+        encode_flight(&Flight::read(flight)?, &input.to_lab()?, format, open)?
     } else {
         let (scheme, sample, parameters) = coding.one()?;
-        encode(&input.to_lab(), scheme, sample, &parameters, format, open)?
+        encode(&input.to_lab()?, scheme, sample, &parameters, format, open)?
     };
     output.finish()?;
     tell(&notes);

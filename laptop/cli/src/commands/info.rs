@@ -1,13 +1,16 @@
 //! `spikewire info`: lists the content of a log or a table.
 
-use crate::words::option;
-use anyhow::Result;
+use crate::inputs::as_file;
+use crate::words::{self, option};
+use anyhow::{Result, bail};
 use catalogue::run::Worded;
 use clap::Args;
 use flight_logs::Kind;
+use lab::dataset;
 use lab::input::messages::{Overview, overview};
-use lab::input::{ChannelOptions, InputOptions, Summary, above_zero, summary};
+use lab::input::{ChannelOptions, Clock, InputOptions, Rollover, Summary, above_zero, summary};
 use lab::output::Output;
+use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -15,44 +18,159 @@ use std::path::{Path, PathBuf};
 /// rows, rate and gaps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
-  spikewire info flight.ulg")]
+Examples:
+  spikewire info flight.ulg
+  spikewire info --json logs 'more/*.bag'")]
 pub(crate) struct Info {
     /// Log or table: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an
-    /// MCAP file, Betaflight's blackbox or a CSV table; any of these may be compressed; `-` reads a table from standard
-    /// input
-    log: PathBuf,
+    /// MCAP file, Betaflight's blackbox, or a table in CSV, JSON lines, Parquet or `NumPy`'s arrays, also compressed; `-` is
+    /// standard input. Of several, of directories and of patterns such as 'logs/*.bag', each is listed under its name
+    #[arg(required = true)]
+    logs: Vec<PathBuf>,
     /// Report time steps longer than this multiple of the usual step
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
     gap: f64,
     /// Read the undamaged part of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
+    /// Print one object for each log, as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// The content of a file.
+enum Content {
+    Log(Kind, Vec<Overview>, Vec<String>),
+    Table(Summary),
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if the log cannot be read.
+/// Returns an error if a log cannot be read; if there are several, the others are listed first.
 pub(crate) fn run(options: &Info) -> Result<()> {
-    let Info { log, gap, accept_cut } = options;
-    let (gap, accept_cut) = (*gap, *accept_cut);
-    let kind = if log == Path::new("-") { None } else { Kind::of(log)? };
+    let logs = dataset::expand(&options.logs)?;
+    let is_single = logs.len() == 1;
     let mut output = Output::to(None)?;
-    let Some(kind) = kind else {
-        let channel = ChannelOptions { gap, accept_cut, ..ChannelOptions::default() };
-        let input = InputOptions { input: log.clone(), channel };
-        write_table(&input.name(), &summary(&input)?, &mut output)?;
-        return Ok(output.finish()?);
-    };
-    let (topics, notes) = overview(log, kind, accept_cut, gap)?;
-    for note in notes {
-        writeln!(output, "{note}")?;
+    let (mut all, mut failed) = (Vec::new(), None);
+    for log in &logs {
+        let content = as_file(log).and_then(|own| options.content(&own));
+        let name = log.display().to_string();
+        match content {
+            Ok(content) if options.json => all.push(json(&name, &content)),
+            Ok(content) => {
+                if !is_single {
+                    writeln!(output, "{name}")?;
+                }
+                match content {
+                    Content::Table(table) => write_table(&name_of(log), &table, &mut output)?,
+                    Content::Log(_, topics, notes) => {
+                        for note in notes {
+                            writeln!(output, "{note}")?;
+                        }
+                        for topic in &topics {
+                            write(topic, &mut output)?;
+                        }
+                    }
+                }
+                if !is_single {
+                    writeln!(output)?;
+                }
+            }
+            Err(error) if is_single => return Err(error),
+            Err(error) => {
+                let words = words::of(&error);
+                all.push(json!({ "log": name, "refused": words }));
+                eprintln!("error: {words}");
+                failed = Some(error);
+            }
+        }
     }
-    for topic in &topics {
-        write(topic, &mut output)?;
+    if options.json {
+        writeln!(output, "{:#}", serde_json::Value::Array(all))?;
     }
-    Ok(output.finish()?)
+    output.finish()?;
+    match failed {
+        Some(_) => bail!("not all of the {} logs can be read", logs.len()),
+        None => Ok(()),
+    }
+}
+
+impl Info {
+    /// Reads the content of a file.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read.
+    fn content(&self, log: &Path) -> Result<Content> {
+        let Self { gap, accept_cut, .. } = *self;
+        let kind = if log == Path::new("-") { None } else { Kind::of(log)? };
+        Ok(match kind {
+            Some(kind) => {
+                let (topics, notes) = overview(log, kind, accept_cut, gap)?;
+                Content::Log(kind, topics, notes)
+            }
+            None => {
+                let channel = ChannelOptions { gap, accept_cut, ..ChannelOptions::default() };
+                Content::Table(summary(&InputOptions { input: log.to_owned(), channel })?)
+            }
+        })
+    }
+}
+
+/// Returns the name of a recording in text.
+fn name_of(log: &Path) -> String {
+    InputOptions { input: log.to_owned(), channel: ChannelOptions::default() }.name()
+}
+
+/// Describes a file for programs.
+fn json(name: &str, content: &Content) -> serde_json::Value {
+    match content {
+        Content::Log(kind, topics, notes) => {
+            let topics: Vec<_> = topics
+                .iter()
+                .map(|own| {
+                    let mut all = json!({
+                        "name": own.name,
+                        "type": own.kind,
+                        "samples": own.count,
+                        "fields": own.fields,
+                        "texts": own.texts,
+                        "unread": own.unread,
+                        "missing": own.missing,
+                    });
+                    add_times(&mut all, &own.clock, &own.rollover);
+                    all
+                })
+                .collect();
+            json!({ "log": name, "kind": dataset::name(Some(*kind)), "notes": notes, "topics": topics })
+        }
+        Content::Table(Summary { columns, rows, clock, rollover, notes }) => {
+            let columns: Vec<_> = columns
+                .iter()
+                .map(|own| {
+                    let text =
+                        own.text.as_ref().map(|(line, text)| json!({ "line": line, "text": text }));
+                    json!({ "name": own.name, "missing": own.missing, "text": text })
+                })
+                .collect();
+            let notes: Vec<_> = notes.iter().map(|own| own.spelled(option).to_string()).collect();
+            let kind = dataset::name(None);
+            let mut all = json!({ "log": name, "kind": kind, "notes": notes, "samples": rows, "columns": columns });
+            add_times(&mut all, clock, rollover);
+            all
+        }
+    }
+}
+
+/// Adds what the times say.
+fn add_times(all: &mut serde_json::Value, clock: &Clock, rollover: &Rollover) {
+    all["rate"] = json!(clock.rate());
+    all["seconds"] = json!(clock.seconds());
+    all["gaps"] = json!(clock.gaps());
+    all["steps_back"] = json!(clock.steps_back());
+    all["restarts"] = json!(clock.restarts());
+    all["times"] = json!(clock.to_string());
+    all["rollover"] = json!(rollover.note());
 }
 
 fn write_table(name: &str, table: &Summary, output: &mut impl Write) -> Result<()> {

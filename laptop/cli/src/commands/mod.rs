@@ -4,6 +4,7 @@ pub(crate) mod advise;
 pub(crate) mod bench;
 pub(crate) mod capture;
 pub(crate) mod convert;
+pub(crate) mod dataset;
 pub(crate) mod decode;
 pub(crate) mod emit;
 pub(crate) mod encode;

@@ -154,7 +154,7 @@ impl Converted {
 /// or if the output cannot be written.
 pub(crate) fn run(options: &Network) -> Result<()> {
     let Network { trained: path, output, .. } = options;
-    let input = &options.input.to_lab();
+    let input = &options.input.to_lab()?;
     ensure!(
         !input.is_stdin(),
         "the recording calibrates scheme and chip, and is read as a whole: give a file"

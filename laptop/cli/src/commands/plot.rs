@@ -54,7 +54,7 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
         bail!("--scheme must say which, or --params, or --all");
     }
     let (schemes, sample, parameters) = chosen(coding)?;
-    let recording = Recording::read(&input.to_lab())?;
+    let recording = Recording::read(&input.to_lab()?)?;
     let shown = shown(range.as_deref(), recording.values.len())?;
     // The paper's figure has one population code, GRF.
     let is_drawn = |scheme: &Scheme| !options.all || scheme.info().is_drawn;

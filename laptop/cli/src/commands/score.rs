@@ -55,7 +55,7 @@ enum Scored {
 pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { coding, input, json } = options;
     let (schemes, sample, parameters) = chosen(coding)?;
-    let recording = Recording::read(&input.to_lab())?;
+    let recording = Recording::read(&input.to_lab()?)?;
     let is_single = schemes.len() == 1;
     let mut scored = Vec::new();
     for scheme in schemes {

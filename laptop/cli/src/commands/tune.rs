@@ -1,6 +1,6 @@
 //! `spikewire tune`: finds the parameters of a scheme that suit flight logs best.
 
-use crate::inputs::ChannelOptions;
+use crate::inputs::{ChannelOptions, as_file};
 use crate::options::{FREE, answer, augment, given, option_group, whole};
 use crate::stop::Stop;
 use crate::words::{option, tell};
@@ -258,8 +258,8 @@ impl Tune {
     /// Reads the chosen channels of each log: an entry for each log, with a recording for each channel.
     fn logs(&self) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
-        for input in &self.inputs {
-            let recordings = Recording::read_all(&self.channel.of(input))?;
+        for input in &lab::dataset::expand(&self.inputs)? {
+            let recordings = Recording::read_all(&self.channel.of(&as_file(input)?))?;
             if let Some(first) = recordings.first() {
                 tell(&first.notes());
             }

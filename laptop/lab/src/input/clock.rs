@@ -142,6 +142,21 @@ impl Clock {
         (self.usual_step / self.samples_a_step).round() as i64
     }
 
+    /// Returns the number of steps above the bound of gaps.
+    pub fn gaps(&self) -> u64 {
+        self.gaps.count
+    }
+
+    /// Returns the number of steps back in time, without those at which the clock restarted.
+    pub fn steps_back(&self) -> u64 {
+        self.backward.count
+    }
+
+    /// Returns how often the clock restarted.
+    pub fn restarts(&self) -> u64 {
+        self.restarts.count
+    }
+
     fn segment(&self) -> i64 {
         self.span.map_or(0, |(first, last)| last.saturating_sub(first))
     }

@@ -4,8 +4,10 @@ mod overview;
 
 pub use overview::{ColumnSummary, Summary, summary};
 
+use super::cut::WholeLines;
 use super::header::{Header, Start, is_data};
-use super::text::{name, shown, text};
+use super::spaces::OneBlank;
+use super::text::{decode, name, shown, unpacked};
 use super::time::{Named, Reading, TimeUnit, implausible};
 use super::time::{microseconds, number, of_given, of_name};
 use super::{ALL, CHUNK, Chunk, InputOptions, Source, TableKind, near};
@@ -29,6 +31,8 @@ pub(super) struct Table {
     rows: Rows,
     /// Number of comments below the header.
     comments: Rc<Cell<u64>>,
+    /// A note on where the table is cut.
+    cut: Rc<Cell<Option<String>>>,
     ahead: VecDeque<ByteRecord>,
     /// The current row.
     record: ByteRecord,
@@ -60,33 +64,78 @@ struct Time {
 }
 
 impl Table {
+    /// Opens a table of text, JSON lines or an array of `NumPy`.
+    ///
+    /// # Errors
+    /// Returns an error if the input holds no table, or not the columns that were asked for.
     pub(super) fn open(
         input: impl Read + 'static,
         file: &str,
         options: &InputOptions,
     ) -> Result<Self> {
-        let mut input = BufReader::with_capacity(1 << 16, text(input, file)?);
+        let (head, input) = unpacked(input, file)?;
+        let cut = Rc::default();
+        #[cfg(not(target_family = "wasm"))]
+        let input = match super::rows::of_stream(&head, input, file)? {
+            Ok(rows) => return Self::of_rows(rows, file, options),
+            Err(text) => text,
+        };
+        let text = decode(&head, input, file)?;
+        let text: Box<dyn Read> = if options.accept_cut {
+            Box::new(WholeLines::new(text, Rc::clone(&cut)))
+        } else {
+            text
+        };
+        Self::of_text(text, 0, cut, file, options)
+    }
+
+    /// Opens a table whose rows were in another format, and whose header is no line of the file.
+    ///
+    /// # Errors
+    /// See [`open`](Self::open).
+    #[cfg(not(target_family = "wasm"))]
+    pub(super) fn of_rows(rows: Box<dyn Read>, file: &str, options: &InputOptions) -> Result<Self> {
+        Self::of_text(rows, 1, Rc::default(), file, options)
+    }
+
+    /// `above` is the number of lines that are not the file's own.
+    fn of_text(
+        text: Box<dyn Read>,
+        above: u64,
+        cut: Rc<Cell<Option<String>>>,
+        file: &str,
+        options: &InputOptions,
+    ) -> Result<Self> {
+        let mut input = BufReader::with_capacity(1 << 16, text);
         let start = Start::read(&mut input).at(|| file)?;
         let asked = options.delimiter.map(|own| own.0);
         let comment = start.comment(asked);
-        let delimiter = asked
-            .or(comment.as_ref().map(|own| own.delimiter))
-            .unwrap_or_else(|| start.delimiter());
+        let delimiter = if above > 0 {
+            b','
+        } else {
+            asked.or(comment.as_ref().map(|own| own.delimiter)).unwrap_or_else(|| start.delimiter())
+        };
         let comments = Rc::default();
-        let mut rows = Rows::new(start, input, delimiter, &comments);
+        let mut rows = Rows::new(start, input, delimiter, above, &comments);
         let mut ahead = ahead(&mut rows, file)?;
         let Some(first) = ahead.front() else {
             return Err(TableKind::Empty.at(file));
         };
         let mut notes = Vec::new();
+        let is_data = above == 0 && is_data(&ahead, delimiter);
         let names = match comment {
-            Some(Header { names, .. }) if is_data(&ahead, delimiter) => {
+            Some(Header { names, .. }) if is_data => {
                 notes.push("the header is the comment above the first row".into());
                 names
             }
-            _ if is_data(&ahead, delimiter) => {
-                let line = line(first);
-                return Err(TableKind::NoHeader { line }.at(file));
+            _ if is_data => {
+                let last = first.len();
+                let what = "no line has names; the columns are called";
+                notes.push(match last {
+                    1 => format!("{what} 1").into(),
+                    _ => format!("{what} 1 to {last}").into(),
+                });
+                (1..=last).map(|number| number.to_string()).collect()
             }
             _ => ahead.pop_front().iter().flatten().map(name).collect(),
         };
@@ -94,6 +143,7 @@ impl Table {
             ahead,
             rows,
             comments,
+            cut,
             record: ByteRecord::new(),
             was_ahead: false,
             file: file.to_owned(),
@@ -203,6 +253,9 @@ impl Table {
             let what = "below the header begin with # and are left out";
             self.notes.push(format!("{comments} lines {what}").into());
         }
+        if !is_there {
+            self.notes.extend(self.cut.take().map(Words::from));
+        }
         Ok(is_there)
     }
 
@@ -307,23 +360,35 @@ struct Rows {
     reader: Reader<Box<dyn Read>>,
     /// Whether lines end in CR and LF. If so, the CSV reader counts the LF as part of the next line.
     is_of_windows: bool,
+    /// Number of lines above the first of the file.
+    above: u64,
 }
 
 impl Rows {
-    /// Makes a reader of the rows in `start` and of those in `input`. Comment lines of `input` are counted in `count`.
-    fn new(start: Start, input: impl Read + 'static, delimiter: u8, count: &Rc<Cell<u64>>) -> Self {
+    /// Makes a reader of the rows in `start` and of those in `input`. Comment lines are counted in `count`. `above` is the
+    /// number of lines above the first of the file.
+    fn new(
+        start: Start,
+        input: impl Read + 'static,
+        delimiter: u8,
+        above: u64,
+        count: &Rc<Cell<u64>>,
+    ) -> Self {
         let is_of_windows = start.is_of_windows();
         // With an end of line appended, the last line ends as all others do; an empty line is not a row.
         let end: &[u8] = if is_of_windows { b"\r\n" } else { b"\n" };
+        count.set(start.is_followed_by_comment().into());
         let rest = Comments { input, before: b'\n', count: count.clone() };
-        let all: Box<dyn Read> = Box::new(Cursor::new(start.text).chain(rest).chain(end));
+        let all = Cursor::new(start.text).chain(rest).chain(end);
+        let all: Box<dyn Read> =
+            if delimiter == b' ' { Box::new(OneBlank::new(all)) } else { Box::new(all) };
         let reader = ReaderBuilder::new()
             .buffer_capacity(1 << 18)
             .comment(Some(b'#'))
             .has_headers(false)
             .delimiter(delimiter)
             .from_reader(all);
-        Self { reader, is_of_windows }
+        Self { reader, is_of_windows, above }
     }
 
     /// Reads the next row; returns false at the end of the table.
@@ -337,7 +402,7 @@ impl Rows {
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
-        self.reader.position().line().saturating_sub(ends).max(1)
+        self.reader.position().line().saturating_sub(ends + self.above).max(1)
     }
 }
 

@@ -14,6 +14,8 @@ pub(super) struct Start {
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
+    /// Offset in `text` of the line after it.
+    next: usize,
 }
 
 /// The names of a table's columns, and the delimiter between them.
@@ -23,7 +25,7 @@ pub(super) struct Header {
 }
 
 impl Start {
-    /// Reads lines up to and including the first that is neither a comment nor empty.
+    /// Reads lines up to and including the first that is neither a comment nor empty, and the line after it.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read.
@@ -35,28 +37,42 @@ impl Start {
             input.by_ref().take(LONGEST).read_until(b'\n', &mut text)?;
             let is_passed = text[line..].starts_with(b"#") || text[line..].trim_ascii().is_empty();
             if text.len() == line || !is_passed {
-                return Ok(Self { text, line });
+                let next = text.len();
+                input.by_ref().take(LONGEST).read_until(b'\n', &mut text)?;
+                return Ok(Self { text, line, next });
             }
         }
     }
 
     /// Returns whether lines end in CR and LF.
     pub(super) fn is_of_windows(&self) -> bool {
-        self.text.ends_with(b"\r\n")
+        self.text[..self.next].ends_with(b"\r\n")
+    }
+
+    /// Returns whether the line after the first is a comment.
+    pub(super) fn is_followed_by_comment(&self) -> bool {
+        self.text[self.next..].starts_with(b"#")
     }
 
     /// Returns the delimiter that occurs most often in the first line after the comments.
     pub(super) fn delimiter(&self) -> u8 {
-        delimiter(&self.text[self.line..])
+        let (header, row) = (&self.text[self.line..self.next], &self.text[self.next..]);
+        match delimiter(header) {
+            Some(found) => found,
+            None if is_aligned(header, row) => b' ',
+            None => b',',
+        }
     }
 
     /// Returns the header if a comment holds it: the last comment that has as many fields as the line after the
     /// comments, if that line contains a number and the comment none. `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
-        let (above, line) = self.text.split_at(self.line);
+        let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
         comments.rev().find_map(|comment| {
-            let delimiter = asked.unwrap_or_else(|| delimiter(comment));
+            let delimiter = asked
+                .or_else(|| delimiter(comment))
+                .unwrap_or_else(|| if is_aligned(comment, line) { b' ' } else { b',' });
             let (names, row) = (split(comment, delimiter), split(line, delimiter));
             let has_number = |row: &ByteRecord| row.iter().any(|own| is_number(own, delimiter));
             let is_header = names.len() == row.len() && has_number(&row) && !has_number(&names);
@@ -83,8 +99,18 @@ fn is_number(field: &[u8], delimiter: u8) -> bool {
     number(field.trim_ascii(), delimiter != b',').is_some()
 }
 
+/// Returns whether a header and the row below it have the same number of words, more than one, and the row is numbers.
+fn is_aligned(header: &[u8], row: &[u8]) -> bool {
+    let (names, row) = (split(header, b' '), split(row, b' '));
+    names.len() > 1 && names.len() == row.len() && row.iter().all(|own| is_number(own, b' '))
+}
+
 /// Splits a line into the fields of a CSV record.
 fn split(line: &[u8], delimiter: u8) -> ByteRecord {
+    if delimiter == b' ' {
+        let words = line.split(|byte| byte.is_ascii_whitespace());
+        return words.filter(|word| !word.is_empty()).collect();
+    }
     let mut record = ByteRecord::new();
     let mut builder = ReaderBuilder::new();
     let mut reader = builder.has_headers(false).delimiter(delimiter).from_reader(line.trim_ascii());
@@ -93,8 +119,8 @@ fn split(line: &[u8], delimiter: u8) -> ByteRecord {
     record
 }
 
-/// Returns the delimiter that occurs most often in a line, outside of quotes; a comma if there is none.
-fn delimiter(header: &[u8]) -> u8 {
+/// Returns the delimiter that occurs most often in a line, outside of quotes; `None` if there is none but blanks.
+fn delimiter(header: &[u8]) -> Option<u8> {
     let mut is_quoted = false;
     let mut counts = [(b',', 0), (b';', 0), (b'\t', 0), (b'|', 0)];
     for byte in header.trim_ascii_end() {
@@ -104,5 +130,6 @@ fn delimiter(header: &[u8]) -> u8 {
         }
     }
     // The comma comes last in reverse, and `max_by_key` returns the last of equals.
-    counts.into_iter().rev().max_by_key(|&(_, count)| count).map_or(b',', |(found, _)| found)
+    let most = counts.into_iter().rev().max_by_key(|&(_, count)| count);
+    most.filter(|&(_, count)| count > 0).map(|(found, _)| found)
 }

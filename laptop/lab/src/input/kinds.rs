@@ -8,13 +8,13 @@ kinds! {
     /// The reason for which a table of samples cannot be read.
     pub enum TableKind by spell of subject {
         Empty => ("empty; a CSV table starts with a header"),
-        NoHeader { line: u64 } => ("line {line} holds numbers; a CSV table starts with a header"),
         NoSamples => ("no samples below the header"),
         Uneven { line: u64, columns: u64, expected: u64 } =>
             ("line {line} has {columns} columns where the header has {expected}"),
         Unreadable { error: csv::Error } => ("{error}"),
         NotUnpacked { error: std::io::Error } => ("cannot be unpacked: {error}"),
         NoTable { what: &'static str } => ("{what}"),
+        OddTable { what: String } => ("{what}"),
         NoChannel => ("no channel"),
         // Values.
         NotANumber { value: String } => ("value `{value}` is not a number"),

@@ -2,11 +2,15 @@
 
 mod clock;
 mod csv;
+mod cut;
 mod header;
 mod kinds;
 pub mod messages;
 mod names;
 mod rollover;
+#[cfg(not(target_family = "wasm"))]
+mod rows;
+mod spaces;
 mod text;
 mod time;
 mod times;
@@ -36,8 +40,9 @@ pub const CHUNK: usize = 8192;
 /// The file of a recording, and options for reading it.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// CSV table with a header, or a log: PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`, telemetry `.tlog`, bag of ROS
-    /// 1 or 2, MCAP, Betaflight's blackbox; plain or compressed. `-` reads a CSV table from standard input.
+    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`,
+    /// telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed. `-` reads a table from
+    /// standard input.
     pub input: PathBuf,
     /// The channels to read.
     pub channel: ChannelOptions,
@@ -52,7 +57,7 @@ impl Deref for InputOptions {
 }
 
 /// The chosen channels of a recording, and options for reading them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
@@ -79,7 +84,8 @@ pub struct ChannelOptions {
     /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
     /// row is an error.
     pub skip_non_finite: bool,
-    /// Whether a log that is cut short or damaged is read without its damaged parts. Otherwise, damage is an error.
+    /// Whether a log that is cut short or damaged is read without its damaged parts, and a table up to its last whole
+    /// line. Otherwise, damage is an error.
     pub accept_cut: bool,
 }
 
@@ -103,7 +109,7 @@ impl Default for ChannelOptions {
 }
 
 /// The delimiter of a table's columns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Delimiter(pub u8);
 
 impl FromStr for Delimiter {
@@ -245,15 +251,20 @@ impl InputOptions {
             ("topic", self.topic.is_some()),
             ("field", !self.field.is_empty()),
             ("fields", !self.fields.is_empty()),
-            ("accept_cut", self.accept_cut),
         ];
+        let name = self.name();
         if self.is_stdin() {
             self.refuse(&of_logs, "a CSV table")?;
-            return csv::Table::open(io::stdin(), "standard input", self);
+            return csv::Table::open(io::stdin(), &name, self);
         }
-        let name = self.input.display().to_string();
         let file = File::open(&self.input).map_err(|error| Error::open(&name, error))?;
         self.refuse(&of_logs, "a CSV table")?;
+        #[cfg(not(target_family = "wasm"))]
+        if self.input.is_file()
+            && let Some(rows) = rows::of_file(&self.input, &name)?
+        {
+            return csv::Table::of_rows(rows, &name, self);
+        }
         csv::Table::open(file, &name, self)
     }
 

@@ -3,17 +3,21 @@
 use super::TableKind;
 use crate::Result;
 use crate::error::At;
-use flate2::read::MultiGzDecoder;
-use flight_logs::GZIP;
-use flight_logs::zstd::{Frames, ZSTD};
-use std::io::{self, BufReader, Cursor, Read};
+use flight_logs::Packing;
+use std::io::{self, Cursor, Read};
 
 /// Number of bytes at the start of a file by which its kind is recognised.
 const HEAD: usize = 16;
 
+const PARQUET: &str = if cfg!(feature = "datasets") {
+    "a Parquet file; it is read from a file only, not compressed once more"
+} else {
+    "a Parquet file; export it as CSV"
+};
+
 /// Kinds of files that are not tables: their first bytes, and words for the user that name the kind and suggest what to
 /// do.
-const OTHERS: [(&[u8], &str); 11] = [
+const OTHERS: [(&[u8], &str); 12] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
     (b"\xa3\x95", "an ArduPilot log; it is read from a file only"),
@@ -21,7 +25,8 @@ const OTHERS: [(&[u8], &str); 11] = [
     (b"#ROSBAG", "a ROS bag; it is read from a file only"),
     (b"SQLite format 3", "a database, perhaps a ROS 2 bag; those are read from a file only"),
     (b"\x89MCAP", "an MCAP file; it is read from a file only"),
-    (b"PAR1", "a Parquet file; export it as CSV"),
+    (b"PAR1", PARQUET),
+    (b"ARROW1", "an Arrow or Feather file; export it as Parquet or CSV"),
     (b"\x89HDF", "an HDF5 or MATLAB file; export it as CSV"),
     (b"MATLAB", "a MATLAB file; export it as CSV"),
     (b"ULog", "a flight log; it is read from a file only"),
@@ -33,17 +38,20 @@ const OTHERS: [(&[u8], &str); 11] = [
 /// # Errors
 /// Returns an error if the file is not text.
 pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
-    let (head, input) = peek(input).at(|| name)?;
-    let unpacked: Box<dyn Read> = if head.starts_with(&GZIP) {
-        Box::new(MultiGzDecoder::new(input))
-    } else if head.starts_with(&ZSTD) {
-        Box::new(Frames::new(BufReader::new(input)))
-    } else {
-        return decode(&head, input, name);
-    };
-    let (head, input) =
-        peek(unpacked).map_err(|error| TableKind::NotUnpacked { error }.at(name))?;
+    let (head, input) = unpacked(input, name)?;
     decode(&head, input, name)
+}
+
+/// Decompresses a file, and returns its first bytes and all of them.
+///
+/// # Errors
+/// Returns an error if the file cannot be read or decompressed.
+pub(super) fn unpacked(input: impl Read + 'static, name: &str) -> Result<(Vec<u8>, Box<dyn Read>)> {
+    let (head, input) = peek(input).at(|| name)?;
+    let Some(packing) = Packing::of(&head) else { return Ok((head, Box::new(input))) };
+    let (head, input) =
+        peek(packing.reader(input)).map_err(|error| TableKind::NotUnpacked { error }.at(name))?;
+    Ok((head, Box::new(input)))
 }
 
 /// Decodes a name in a table from UTF-8, or from Latin-1 if the bytes are not UTF-8.
@@ -71,7 +79,11 @@ pub fn shown(bytes: &[u8]) -> String {
     }
 }
 
-fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
+/// Decodes text, whose first bytes are `head`.
+///
+/// # Errors
+/// Returns an error if it is not text.
+pub(super) fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     let is_utf16 = head.len() >= 4 && head.len().is_multiple_of(2);
     match *head {
         [0xff, 0xfe, ..] => return encoding::utf16(input, false, name),

@@ -10,7 +10,7 @@ use std::str::FromStr;
 const MICROSECOND: i128 = 1_000_000;
 
 /// A unit of time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub enum TimeUnit {
     /// Seconds.
     S,

@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::NamedTempFile;
 
+/// Start of the names of unfinished files.
+pub(crate) const UNFINISHED_NAME: &str = ".spikewire-";
+
 /// Paths of unfinished files, which are to be deleted if the program is ended early.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -126,7 +129,7 @@ fn target(mut path: PathBuf) -> io::Result<PathBuf> {
 /// Creates a temporary file in a directory, with the permissions of an ordinary new file.
 fn named(directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".spikewire-");
+    builder.prefix(UNFINISHED_NAME);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -4,6 +4,8 @@
 mod beside;
 mod kinds;
 
+#[cfg(all(feature = "datasets", not(target_family = "wasm")))]
+pub(crate) use beside::UNFINISHED_NAME;
 #[cfg(not(target_family = "wasm"))]
 pub use beside::abandon;
 pub use kinds::OutputKind;

@@ -1,0 +1,445 @@
+//! The manifest of a data set: a row for each log, as JSON lines.
+
+use super::{DatasetKind, Flights, unwritten};
+use crate::input::Clock;
+use crate::output::{Output, OutputKind, UNFINISHED_NAME};
+use crate::{Error, Place, Result};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, HashMap};
+use std::fs::{self, OpenOptions};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+/// Name of the manifest in the directory of a data set.
+pub(super) const MANIFEST: &str = "manifest.jsonl";
+/// Name of the file with the settings.
+const SETTINGS: &str = "dataset.json";
+/// Directories of the parts: spikes, and samples.
+const EVENTS: &str = "events";
+const VALUES: &str = "values";
+
+/// The side of the split on which a flight is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Split {
+    /// For training.
+    Train,
+    /// For testing.
+    Test,
+}
+
+/// A row of the manifest: one log, and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Full path of the log.
+    pub log: String,
+    /// Kind of the log, one of [`NAMES`](super::NAMES); empty if the log cannot be opened.
+    pub kind: String,
+    /// Length of the log, in bytes.
+    pub bytes: u64,
+    /// Time of the log's last change, in µs since 1970.
+    pub modified_us: u64,
+    /// SHA-256 of the log; of a directory, of its files one after the other, by name.
+    pub sha256: String,
+    /// SHA-256 of the settings, as in `dataset.json`.
+    pub settings: String,
+    /// Side of the split; `None` before the run ends, and for a log that was refused.
+    pub split: Option<Split>,
+    /// Reason that the log was refused, if it was.
+    pub refused: Option<String>,
+    /// The kind of that reason, for programs.
+    pub refused_kind: Option<String>,
+    /// File of the spikes, from the directory of the data set.
+    pub events: Option<String>,
+    /// Length of that file, in bytes.
+    pub events_bytes: u64,
+    /// File of the samples.
+    pub values: Option<String>,
+    /// Length of that file, in bytes.
+    pub values_bytes: u64,
+    /// Names of the channels.
+    pub channels: Vec<String>,
+    /// Samples a second, if known.
+    pub rate: Option<f64>,
+    /// Length in seconds, without the unknown time where a clock restarted.
+    pub seconds: f64,
+    /// Number of samples of each channel.
+    pub samples: u64,
+    /// Number of samples that are missing or not finite, and emitted nothing.
+    pub not_finite: u64,
+    /// Number of spikes of each channel.
+    pub spikes: Vec<u64>,
+    /// Number of gaps in time.
+    pub gaps: u64,
+    /// Number of steps back in time.
+    pub steps_back: u64,
+    /// Number of times that the clock restarted.
+    pub restarts: u64,
+    /// Notes of the reader, such as damaged places that were skipped, and of the encoder.
+    pub notes: Vec<String>,
+}
+
+impl Row {
+    pub(super) fn new(log: &Path, settings: &Settings) -> Self {
+        Self {
+            log: log.display().to_string(),
+            kind: String::new(),
+            bytes: 0,
+            modified_us: 0,
+            sha256: String::new(),
+            settings: settings.sha256.clone(),
+            split: None,
+            refused: None,
+            refused_kind: None,
+            events: None,
+            events_bytes: 0,
+            values: None,
+            values_bytes: 0,
+            channels: Vec::new(),
+            rate: None,
+            seconds: 0.0,
+            samples: 0,
+            not_finite: 0,
+            spikes: Vec::new(),
+            gaps: 0,
+            steps_back: 0,
+            restarts: 0,
+            notes: Vec::new(),
+        }
+    }
+
+    /// Notes why the log was refused.
+    pub(super) fn refuse(&mut self, kind: &str, why: String) {
+        (self.refused, self.refused_kind) = (Some(why), Some(kind.to_owned()));
+    }
+
+    /// Computes the hash of the log.
+    ///
+    /// # Errors
+    /// Returns an error if the log cannot be read, or can be read only once.
+    pub(super) fn hash(&mut self, log: &Path) -> Result<()> {
+        let mut hash = Hash(Sha256::new());
+        for file in files(log)? {
+            let open = |error| Error::open(file.display().to_string(), error);
+            io::copy(&mut fs::File::open(&file).map_err(open)?, &mut hash).map_err(open)?;
+        }
+        self.sha256 = hex(hash.0);
+        Ok(())
+    }
+
+    /// Takes the figures of a clock. They are rounded, so that they are written as they were read.
+    pub(super) fn take(&mut self, clock: &Clock) {
+        let rounded = |number: f64| (number * 1e6).round() / 1e6;
+        self.rate = clock.rate().map(rounded);
+        self.seconds = rounded(clock.seconds());
+        self.gaps = clock.gaps();
+        self.steps_back = clock.steps_back();
+        self.restarts = clock.restarts();
+    }
+
+    /// Returns the paths of the log's parts, from the directory of the data set: spikes, and samples.
+    pub(super) fn parts(&self) -> (String, String) {
+        const LONGEST: usize = 60;
+        let stem = Path::new(&self.log).file_stem().unwrap_or_default().to_string_lossy();
+        let plain =
+            |own: char| if own.is_alphanumeric() || "-_.".contains(own) { own } else { '_' };
+        let stem: String = stem.chars().take(LONGEST).map(plain).collect();
+        let mark = &hex(Sha256::new_with_prefix(&self.log))[..12];
+        let part = |directory| format!("{directory}/{stem}-{mark}.parquet");
+        (part(EVENTS), part(VALUES))
+    }
+
+    /// Returns whether the files of the row are there, whole.
+    fn is_there(&self, directory: &Path) -> bool {
+        let is_whole = |part: &Option<String>, bytes: u64| match part {
+            None => true,
+            Some(part) => directory.join(part).metadata().is_ok_and(|data| data.len() == bytes),
+        };
+        is_whole(&self.events, self.events_bytes) && is_whole(&self.values, self.values_bytes)
+    }
+
+    /// Returns whether the log was refused for a reason that may have passed, such as a disk that was not there.
+    fn may_pass(&self) -> bool {
+        self.refused_kind.as_deref().is_some_and(|kind| ["Open", "Io"].contains(&kind))
+    }
+}
+
+/// A log as a file: what shows whether it has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct File {
+    bytes: u64,
+    modified_us: u64,
+}
+
+impl File {
+    /// # Errors
+    /// Returns an error if the log is missing.
+    pub(super) fn of(log: &Path) -> Result<Self> {
+        let mut own = Self { bytes: 0, modified_us: 0 };
+        for file in files(log)? {
+            let open = |error| Error::open(file.display().to_string(), error);
+            let data = file.metadata().map_err(open)?;
+            if !data.is_file() {
+                return Err(open(io::Error::other("it can be read only once")));
+            }
+            let since = data.modified().map_err(open)?.duration_since(UNIX_EPOCH);
+            own.bytes += data.len();
+            own.modified_us = own.modified_us.max(since.map_or(0, |own| own.as_micros() as u64));
+        }
+        Ok(own)
+    }
+
+    pub(super) fn describe(self, row: &mut Row) {
+        (row.bytes, row.modified_us) = (self.bytes, self.modified_us);
+    }
+}
+
+/// Returns the files of a log: itself, or all files of a directory, by name.
+fn files(log: &Path) -> Result<Vec<PathBuf>> {
+    if !log.is_dir() {
+        return Ok(vec![log.to_owned()]);
+    }
+    let open = |error| Error::open(log.display().to_string(), error);
+    let mut files = Vec::new();
+    for entry in fs::read_dir(log).map_err(open)? {
+        let path = entry.map_err(open)?.path();
+        if path.is_file() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// The settings of a data set, and their hash.
+pub(super) struct Settings {
+    json: serde_json::Value,
+    sha256: String,
+}
+
+impl Settings {
+    pub(super) fn new(json: serde_json::Value) -> Self {
+        let sha256 = hex(Sha256::new_with_prefix(json.to_string()));
+        Self { json, sha256 }
+    }
+}
+
+/// A manifest that is being completed.
+pub(super) struct Manifest {
+    directory: PathBuf,
+    /// The open file, which is locked.
+    file: fs::File,
+    rows: BTreeMap<String, Row>,
+}
+
+impl Manifest {
+    /// Opens the manifest of a data set, and deletes what a run that was killed left unfinished.
+    ///
+    /// # Errors
+    /// Returns an error if the directory cannot be written, is in use, or has other settings.
+    pub(super) fn open(directory: &Path, settings: &Settings) -> Result<Self> {
+        let at = || directory.display().to_string();
+        let failed = |error| OutputKind::Unwritten { error }.at(at());
+        for own in [EVENTS, VALUES] {
+            fs::create_dir_all(directory.join(own)).map_err(failed)?;
+        }
+        let mut options = OpenOptions::new();
+        let path = directory.join(MANIFEST);
+        let mut file = options.read(true).append(true).create(true).open(path).map_err(failed)?;
+        lock(&file).map_err(|_| DatasetKind::InUse.at(at()))?;
+        let described = directory.join(SETTINGS);
+        if let Ok(text) = fs::read_to_string(&described) {
+            let known: Option<serde_json::Value> = serde_json::from_str(&text).ok();
+            if known.is_none_or(|known| known["sha256"] != *settings.sha256) {
+                return Err(DatasetKind::OtherSettings.at(at()));
+            }
+        } else {
+            write(&described, &described_as(settings, &serde_json::Value::Null))?;
+        }
+        for own in [directory, &directory.join(EVENTS), &directory.join(VALUES)] {
+            delete_unfinished(own).map_err(failed)?;
+        }
+        let mut text = String::new();
+        file.read_to_string(&mut text).map_err(failed)?;
+        // A row that was being written is none.
+        let whole = text.rfind('\n').map_or(0, |end| end + 1);
+        file.set_len(whole as u64).map_err(failed)?;
+        let mut rows = parse(&text[..whole], &directory.join(MANIFEST))?;
+        rows.retain(|row| row.is_there(directory));
+        let rows = rows.into_iter().map(|row| (row.log.clone(), row)).collect();
+        Ok(Self { directory: directory.to_owned(), file, rows })
+    }
+
+    /// Returns whether the manifest has a row for a log, as it is now.
+    pub(super) fn has(&self, log: &Path, file: &File) -> bool {
+        let File { bytes, modified_us } = *file;
+        self.rows.get(&log.display().to_string()).is_some_and(|row| {
+            (row.bytes, row.modified_us) == (bytes, modified_us) && !row.may_pass()
+        })
+    }
+
+    /// Appends a row, whose parts must be in their places.
+    ///
+    /// # Errors
+    /// Returns an error if the manifest cannot be written.
+    pub(super) fn add(&mut self, row: Row) -> Result<()> {
+        let line = serde_json::to_string(&row)? + "\n";
+        let written = self.file.write_all(line.as_bytes());
+        written.map_err(|error| OutputKind::Unwritten { error }.at(self.path().as_path()))?;
+        self.rows.insert(row.log.clone(), row);
+        Ok(())
+    }
+
+    fn path(&self) -> PathBuf {
+        self.directory.join(MANIFEST)
+    }
+
+    /// Splits the flights, and writes the manifest anew: a row for each log, sorted by path. The same logs and settings
+    /// give the same bytes, whatever the order in which they were encoded.
+    ///
+    /// # Errors
+    /// Returns an error if a file cannot be written.
+    pub(super) fn finish(
+        self,
+        settings: &Settings,
+        test: f64,
+        flights: Flights,
+    ) -> Result<Vec<Row>> {
+        let path = self.path();
+        let mut rows: Vec<Row> = self.rows.into_values().collect();
+        split(&mut rows, test, flights);
+        let mut text = String::new();
+        for row in &rows {
+            text += &serde_json::to_string(row)?;
+            text.push('\n');
+        }
+        let by = match flights {
+            Flights::Logs => "log",
+            Flights::Directories => "directory",
+        };
+        let shares = serde_json::json!({ "test": test, "by": by });
+        write(&self.directory.join(SETTINGS), &described_as(settings, &shares))?;
+        write(&path, &text)?;
+        Ok(rows)
+    }
+}
+
+/// Puts each flight on a side of the split: those with the smallest hashes are for testing. Copies of one log are one
+/// flight.
+fn split(rows: &mut [Row], test: f64, flights: Flights) {
+    let flight = |row: &Row| match flights {
+        Flights::Logs => row.sha256.clone(),
+        Flights::Directories => {
+            Path::new(&row.log).parent().unwrap_or(Path::new("")).display().to_string()
+        }
+    };
+    // A flight goes by its first hash, and not by a name that another machine may not know.
+    let mut first: HashMap<String, String> = HashMap::new();
+    for row in rows.iter_mut() {
+        row.split = None;
+    }
+    for row in rows.iter().filter(|row| row.events.is_some()) {
+        let own = first.entry(flight(row)).or_insert_with(|| row.sha256.clone());
+        if row.sha256 < *own {
+            own.clone_from(&row.sha256);
+        }
+    }
+    // Hashed once more, or another program that splits by hash would choose the same logs.
+    let mixed = |sha256: &String| hex(Sha256::new_with_prefix(format!("split {sha256}")));
+    let mut order: Vec<String> = first.values().map(mixed).collect();
+    order.sort();
+    order.dedup();
+    let most = order.len().saturating_sub(1).max(usize::from(test == 1.0) * order.len());
+    let least = usize::from(test > 0.0).min(most);
+    let count = ((order.len() as f64 * test).round() as usize).clamp(least, most);
+    for row in rows.iter_mut().filter(|row| row.events.is_some()) {
+        let is_test = first
+            .get(&flight(row))
+            .is_some_and(|own| order[..count].binary_search(&mixed(own)).is_ok());
+        row.split = Some(if is_test { Split::Test } else { Split::Train });
+    }
+}
+
+/// Reads the manifest of a data set.
+///
+/// # Errors
+/// Returns an error if there is no manifest, or if a line is no row.
+pub fn rows(directory: &Path) -> Result<Vec<Row>> {
+    let path = directory.join(MANIFEST);
+    let text = fs::read_to_string(&path)
+        .map_err(|error| Error::open(path.display().to_string(), error))?;
+    parse(&text, &path)
+}
+
+fn parse(text: &str, path: &Path) -> Result<Vec<Row>> {
+    let rows = (1..).zip(text.lines()).map(|(line, own)| {
+        serde_json::from_str(own).map_err(|error| {
+            DatasetKind::NoRow { error }.at(Place::line(path.display().to_string(), line))
+        })
+    });
+    rows.collect()
+}
+
+fn described_as(settings: &Settings, split: &serde_json::Value) -> String {
+    let Settings { json, sha256 } = settings;
+    format!("{:#}\n", serde_json::json!({ "settings": json, "sha256": sha256, "split": split }))
+}
+
+/// Writes a file that appears complete or not at all.
+fn write(path: &Path, text: &str) -> Result<()> {
+    let all = || -> Result<()> {
+        let mut output = Output::to(Some(path))?;
+        output.write_all(text.as_bytes())?;
+        output.finish()
+    };
+    all().map_err(unwritten)
+}
+
+/// Deletes files that a killed run was writing.
+fn delete_unfinished(directory: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(directory)? {
+        let entry = entry?;
+        if entry.file_name().to_string_lossy().starts_with(UNFINISHED_NAME) {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// Locks a file for this run.
+#[cfg(unix)]
+fn lock(file: &fs::File) -> io::Result<()> {
+    use rustix::fs::{FlockOperation, flock};
+    Ok(flock(file, FlockOperation::NonBlockingLockExclusive)?)
+}
+
+/// Locks nothing: the least Rust of this crate has locks on Unix only.
+#[cfg(not(unix))]
+fn lock(_: &fs::File) -> io::Result<()> {
+    Ok(())
+}
+
+/// A hash that is written to.
+struct Hash(Sha256);
+
+impl Write for Hash {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn hex(hash: Sha256) -> String {
+    use std::fmt::Write;
+    let mut text = String::new();
+    for byte in hash.finalize() {
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
+}

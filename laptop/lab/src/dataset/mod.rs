@@ -1,0 +1,400 @@
+//! Encodes many logs to Parquet files: in parallel, in constant memory, and again from where a run was ended.
+//!
+//! Each log gets two files, one of spikes and one of samples, and a row of the manifest. A file appears under its name
+//! once it is complete, and the row is written after both files. A run that is killed thus leaves complete rows, and
+//! the next run encodes the logs without one.
+
+mod kinds;
+mod manifest;
+mod parts;
+mod paths;
+mod restore;
+
+pub use kinds::DatasetKind;
+pub use manifest::{Row, Split, rows};
+pub use restore::restore;
+
+use crate::coding::Coding;
+use crate::encode::{Encoded, encode_from};
+use crate::flight::{Flight, Sampled};
+use crate::input::{ChannelOptions, InputOptions, LogKind, Source, TableKind};
+use crate::output::{Output, OutputKind};
+use crate::watch::Progress;
+use crate::{Error, ErrorKind, Result};
+use catalogue::run::Given;
+use flight_logs::Kind;
+use manifest::{File, Manifest, Settings};
+use parts::Parts;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+
+/// A data set to make, or to complete.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// Files, directories and patterns such as `logs/*.ulg`.
+    pub logs: Vec<PathBuf>,
+    /// The code of all logs.
+    pub code: Code,
+    /// How the logs are read. An option that a kind of log does not take is ignored for that kind.
+    pub channel: ChannelOptions,
+    /// Channels of single kinds of logs; of several for one kind, the first that a log has is taken.
+    pub channels_of: Vec<ChannelsOf>,
+    /// Directory of the data set.
+    pub output: PathBuf,
+    /// Share of the flights that is for testing, 0 to 1.
+    pub test: f64,
+    /// What counts as one flight for the split.
+    pub flights: Flights,
+    /// Number of logs that are encoded at once.
+    pub jobs: usize,
+}
+
+/// The code of all logs.
+#[derive(Clone, Debug)]
+pub enum Code {
+    /// One scheme for all channels.
+    Coding(Box<Coding>),
+    /// A flight's file: its channels, coded as the flight's sender does.
+    Flight(Box<Flight>),
+}
+
+/// What counts as one flight, whose logs are on one side of the split.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flights {
+    /// Each log; copies of one log are one flight.
+    Logs,
+    /// All logs of a directory.
+    Directories,
+}
+
+/// The channels to read from logs of one kind, written `ulog=sensor_combined.gyro_rad[0],sensor_combined.gyro_rad[1]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChannelsOf {
+    /// Name of the kind, one of [`NAMES`].
+    pub kind: &'static str,
+    /// Columns, or for a log `TOPIC.FIELD`.
+    pub names: Vec<String>,
+}
+
+/// Names of the kinds of logs.
+pub const NAMES: [&str; 8] =
+    ["table", "ulog", "ardupilot", "mavlink", "bag", "ros2", "mcap", "blackbox"];
+
+/// Returns the name of a kind of log; `None` is a table.
+pub fn name(kind: Option<Kind>) -> &'static str {
+    match kind {
+        None => "table",
+        Some(Kind::Ulog) => "ulog",
+        Some(Kind::ArduPilot | Kind::ArduPilotText) => "ardupilot",
+        Some(Kind::Mavlink) => "mavlink",
+        Some(Kind::Bag) => "bag",
+        Some(Kind::Sqlite | Kind::Directory) => "ros2",
+        Some(Kind::Mcap) => "mcap",
+        Some(Kind::Blackbox) => "blackbox",
+    }
+}
+
+impl FromStr for ChannelsOf {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let unknown = || DatasetKind::KindOfLog { name: text.to_owned() };
+        let (kind, names) = text.split_once('=').ok_or_else(unknown)?;
+        let kind = NAMES.into_iter().find(|own| *own == kind).ok_or_else(unknown)?;
+        Ok(Self { kind, names: names.split(',').map(|name| name.trim().to_owned()).collect() })
+    }
+}
+
+/// The number of logs in a data set, by what became of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Outcome {
+    /// Logs that were asked for.
+    pub logs: usize,
+    /// Logs among them that an earlier run had done.
+    pub done_before: usize,
+    /// Logs among them that cannot be read or encoded; the manifest has the reasons.
+    pub refused: usize,
+    /// Files in directories that are neither logs nor tables.
+    pub passed_over: usize,
+    /// Samples of each channel, over all logs.
+    pub samples: u64,
+    /// Spikes of all channels, over all logs.
+    pub events: u64,
+    /// Logs for training.
+    pub train: usize,
+    /// Logs for testing.
+    pub test: usize,
+}
+
+/// Makes a data set, or completes one that an earlier run began with the same settings.
+///
+/// # Errors
+/// Returns an error if there are no logs, if the directory holds other settings, or if a file cannot be written. A log
+/// that cannot be read or encoded is no error: its row of the manifest has the reason.
+pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome> {
+    request.check()?;
+    let settings = request.settings();
+    let (logs, passed_over) = paths::find(&request.logs, &request.output)?;
+    let mut manifest = Manifest::open(&request.output, &settings)?;
+    let mut outcome = Outcome { logs: logs.len(), passed_over, ..Outcome::default() };
+    let mut left = Vec::new();
+    for log in &logs {
+        let file = File::of(log);
+        match &file {
+            Ok(file) if manifest.has(log, file) => outcome.done_before += 1,
+            _ => left.push((log, file)),
+        }
+    }
+    let mut progress = Progress { total: logs.len(), ..Progress::default() };
+    let (next, left) = (AtomicUsize::new(0), &left[..]);
+    let (sender, rows) = mpsc::channel();
+    thread::scope(|scope| -> Result<()> {
+        // Dropped before the workers are waited for, even after an error: their next row finds nobody.
+        let rows = rows;
+        for _ in 0..request.jobs.clamp(1, left.len().max(1)) {
+            let (sender, settings, next) = (sender.clone(), &settings, &next);
+            scope.spawn(move || {
+                while let Some((log, file)) = left.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if sender.send(request.row(log, file, settings)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let mut refused = 0;
+        progress.done = outcome.done_before;
+        tell(&progress);
+        for row in &rows {
+            let row = row?;
+            refused += usize::from(row.refused.is_some());
+            progress.done += 1;
+            progress.words = format!("{refused} refused, last {}", row.log);
+            manifest.add(row)?;
+            tell(&progress);
+        }
+        Ok(())
+    })?;
+    let rows = manifest.finish(&settings, request.test, request.flights)?;
+    let logs: HashSet<String> = logs.iter().map(|log| log.display().to_string()).collect();
+    for row in rows.iter().filter(|row| logs.contains(&row.log)) {
+        outcome.refused += usize::from(row.refused.is_some());
+        outcome.samples += row.samples;
+        outcome.events += row.spikes.iter().sum::<u64>();
+        outcome.train += usize::from(row.split == Some(Split::Train));
+        outcome.test += usize::from(row.split == Some(Split::Test));
+    }
+    Ok(outcome)
+}
+
+/// Returns the recordings among files, directories and patterns. A data set, by its directory or its manifest, stands for
+/// the samples of its flights for training; standard input and names of missing files are returned as they are.
+///
+/// # Errors
+/// Returns an error if a directory cannot be read, or holds nothing, or if a manifest is invalid.
+pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut all = Vec::new();
+    for path in given {
+        let directory = if path.file_name().is_some_and(|own| own == manifest::MANIFEST) {
+            path.parent()
+        } else {
+            Some(path.as_path()).filter(|own| own.join(manifest::MANIFEST).is_file())
+        };
+        if let Some(directory) = directory {
+            let train = rows(directory)?.into_iter().filter(|row| row.split == Some(Split::Train));
+            all.extend(train.filter_map(|row| row.values).map(|own| directory.join(own)));
+            continue;
+        }
+        let is_pattern = !path.exists() && path.display().to_string().contains(['*', '?', '[']);
+        if is_pattern || path.is_dir() && Kind::of(path).is_err() {
+            let (found, _) = paths::find(std::slice::from_ref(path), Path::new(""))?;
+            if found.is_empty() {
+                // Of a directory, the words say what it might have been.
+                Kind::of(path)?;
+                return Err(DatasetKind::NoneThere.at(path.as_path()));
+            }
+            all.extend(found);
+        } else {
+            all.push(path.clone());
+        }
+    }
+    Ok(all)
+}
+
+impl Request {
+    /// # Errors
+    /// Returns an error if a setting is invalid.
+    fn check(&self) -> Result<()> {
+        if self.logs.is_empty() {
+            return Err(DatasetKind::NoLogs.into());
+        }
+        if !(0.0..=1.0).contains(&self.test) {
+            return Err(DatasetKind::Share.of(Given::new("test", self.test)));
+        }
+        let Code::Flight(flight) = &self.code else { return Ok(()) };
+        let channels = flight.channels.len();
+        match self.channels_of.iter().find(|own| own.names.len() != channels) {
+            Some(other) => {
+                let given = Given::new("channels_of", other.kind);
+                Err(DatasetKind::OtherCount { names: other.names.len(), channels }.of(given))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns all that decides the content of the parts.
+    fn settings(&self) -> Settings {
+        let (code, paper) = match &self.code {
+            Code::Coding(coding) => (coding.to_toml(&[]), coding.asked.paper),
+            Code::Flight(flight) => (flight.to_toml(&[]), false),
+        };
+        let channels_of: Vec<String> = self
+            .channels_of
+            .iter()
+            .map(|own| format!("{}={}", own.kind, own.names.join(",")))
+            .collect();
+        Settings::new(serde_json::json!({
+            "spikewire": env!("CARGO_PKG_VERSION"),
+            "is_flight": matches!(self.code, Code::Flight(_)),
+            "code": code,
+            "paper": paper,
+            "input": self.channel,
+            "channels_of": channels_of,
+        }))
+    }
+
+    /// Encodes a log, and returns its row.
+    ///
+    /// # Errors
+    /// Returns an error if a part cannot be written.
+    fn row(&self, log: &Path, file: &Result<File>, settings: &Settings) -> Result<Row> {
+        let mut row = Row::new(log, settings);
+        match file.as_ref().map_err(ToString::to_string) {
+            Ok(file) => file.describe(&mut row),
+            Err(why) => {
+                row.refuse("Open", why);
+                return Ok(row);
+            }
+        }
+        match self.encoded(log, &mut row) {
+            Err(error) if matches!(*error.kind, ErrorKind::Output(_)) => return Err(error),
+            Err(error) => row.refuse(error.kind.name(), error.to_string()),
+            Ok(()) => {}
+        }
+        Ok(row)
+    }
+
+    /// Encodes a log to its parts, and adds to its row what came of it.
+    fn encoded(&self, log: &Path, row: &mut Row) -> Result<()> {
+        let kind = Kind::of(log)?;
+        name(kind).clone_into(&mut row.kind);
+        row.hash(log)?;
+        let mut choices: Vec<Option<&[String]>> = self
+            .channels_of
+            .iter()
+            .filter(|own| own.kind == row.kind)
+            .map(|own| Some(&own.names[..]))
+            .collect();
+        if choices.is_empty() {
+            choices.push(None);
+        }
+        let mut last = None;
+        for names in choices {
+            match self.encoded_from(&self.input(log, kind, names), row) {
+                Err(error) if is_channel_missing(&error) => last = Some(error),
+                other => return other,
+            }
+        }
+        last.map_or(Ok(()), Err)
+    }
+
+    /// Returns the options that read a log, without those that its kind does not take.
+    fn input(&self, log: &Path, kind: Option<Kind>, names: Option<&[String]>) -> InputOptions {
+        let mut channel = self.channel.clone();
+        let own;
+        let names = match (names, &self.code) {
+            (None, Code::Flight(flight)) => {
+                own = flight.channels.iter().map(|own| own.source.clone()).collect::<Vec<_>>();
+                Some(&own[..])
+            }
+            (names, _) => names,
+        };
+        if let Some(names) = names {
+            let (time, time_unit) = (channel.time, channel.time_unit);
+            channel = ChannelOptions {
+                columns: names.to_vec(),
+                time,
+                time_unit,
+                column: Vec::new(),
+                topic: None,
+                field: Vec::new(),
+                fields: Vec::new(),
+                ..channel
+            };
+        }
+        if kind.is_some() {
+            (channel.delimiter, channel.rate) = (None, None);
+        }
+        if kind == Some(Kind::Ulog) {
+            (channel.time, channel.time_unit) = (None, None);
+        }
+        InputOptions { input: log.to_owned(), channel }
+    }
+
+    fn encoded_from(&self, input: &InputOptions, row: &mut Row) -> Result<()> {
+        let (events, values) = row.parts();
+        let [events_path, values_path] = [&events, &values].map(|own| self.output.join(own));
+        let to = |path: &Path| Output::to(Some(path)).map_err(unwritten);
+        let parts = |start: &crate::encode::Start<'_>| -> Result<Box<dyn crate::spikes::Record>> {
+            let outputs = [to(&events_path)?, to(&values_path)?];
+            Ok(Box::new(Parts::new(outputs, start, &input.channel)?))
+        };
+        let encoded = match &self.code {
+            Code::Coding(coding) => {
+                let open = || input.open();
+                encode_from(&open, input, (coding.scheme, coding.sample, &coding.asked), parts)?
+            }
+            Code::Flight(flight) => {
+                let Coding { scheme, sample, asked } = Coding::of_flight(flight);
+                let open = || -> Result<Box<dyn Source + '_>> {
+                    Ok(Box::new(Sampled::new(flight, input.open()?)?))
+                };
+                encode_from(&open, input, (scheme, sample, &asked), parts)?
+            }
+        };
+        let Encoded { output, names, spikes, summary, clock, notes } = encoded;
+        output.finish().map_err(unwritten)?;
+        let length = |path: &Path| path.metadata().map(|data| data.len());
+        row.events_bytes = length(&events_path)?;
+        row.values_bytes = length(&values_path)?;
+        (row.events, row.values) = (Some(events), Some(values));
+        (row.channels, row.spikes) = (names, spikes);
+        row.take(&clock);
+        (row.samples, row.not_finite) = (summary.samples, summary.rejected);
+        row.notes = notes.iter().map(ToString::to_string).collect();
+        Ok(())
+    }
+}
+
+/// Returns whether a log lacks the channels that were asked for, so that others may be tried.
+fn is_channel_missing(error: &Error) -> bool {
+    matches!(
+        &*error.kind,
+        ErrorKind::Table(TableKind::NoColumn { .. })
+            | ErrorKind::Log(
+                LogKind::NoTopic { .. } | LogKind::NoField { .. } | LogKind::NoMessages { .. }
+            )
+    )
+}
+
+/// Turns an error of writing into one that ends the run, unlike the errors of a single log.
+fn unwritten(error: Error) -> Error {
+    match *error.kind {
+        ErrorKind::Io(error) => OutputKind::Unwritten { error }.into(),
+        _ => error,
+    }
+}

@@ -1,0 +1,133 @@
+//! JSON lines: an object on each line. Members of an object within are called `pose.x`, elements of an array `gyro[0]`.
+
+use super::{Lines, Rows, end, odd, quote};
+use crate::Result;
+use serde_json::value::RawValue;
+use std::collections::{BTreeMap, VecDeque};
+use std::io::{self, BufRead, BufReader, Read};
+
+/// Number of lines whose names make up the columns. Names that first appear on a later line are not read.
+const AHEAD: usize = 64;
+
+/// Reads JSON lines as a CSV table.
+pub(super) fn lines(input: impl Read + 'static) -> Result<Box<dyn Read>> {
+    let mut rows = Objects {
+        input: BufReader::with_capacity(1 << 16, input),
+        names: BTreeMap::new(),
+        ahead: VecDeque::new(),
+        line: String::new(),
+        number: 0,
+    };
+    let mut names = Vec::new();
+    while rows.ahead.len() < AHEAD && rows.read()? {
+        rows.number += 1;
+        for (name, _) in fields(&rows.line, rows.number)? {
+            if !rows.names.contains_key(&name) {
+                rows.names.insert(name.clone(), names.len());
+                names.push(name);
+            }
+        }
+        rows.ahead.push_back(rows.line.clone());
+    }
+    if names.is_empty() {
+        return Err(odd("its first lines hold no values"));
+    }
+    rows.number = 0;
+    Ok(Box::new(Lines::new(names, rows)))
+}
+
+struct Objects<R> {
+    input: BufReader<R>,
+    /// The column of each name.
+    names: BTreeMap<String, usize>,
+    /// Lines that were read for their names.
+    ahead: VecDeque<String>,
+    line: String,
+    number: u64,
+}
+
+impl<R: Read> Objects<R> {
+    /// Reads the next line; returns false at the end.
+    fn read(&mut self) -> io::Result<bool> {
+        self.line.clear();
+        Ok(self.input.read_line(&mut self.line)? > 0)
+    }
+}
+
+impl<R: Read> Rows for Objects<R> {
+    fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool> {
+        match self.ahead.pop_front() {
+            Some(line) => self.line = line,
+            None if !self.read()? => return Ok(false),
+            None => {}
+        }
+        self.number += 1;
+        // Lines are counted, also empty ones.
+        if self.line.trim().is_empty() {
+            text.push(b'\n');
+            return Ok(true);
+        }
+        let mut values = vec![None; self.names.len()];
+        for (name, value) in fields(&self.line, self.number).map_err(io::Error::other)? {
+            if let Some(place) = self.names.get(&name) {
+                values[*place] = Some(value);
+            }
+        }
+        for value in values {
+            if let Some(value) = value {
+                quote(&value, text);
+            }
+            text.push(b',');
+        }
+        end(text);
+        // An empty line would be passed over.
+        if text.ends_with(b"\n\n") || text.as_slice() == b"\n" {
+            text.pop();
+            text.extend(b"NA\n");
+        }
+        Ok(true)
+    }
+}
+
+/// Returns the names and values of a line, the numbers as they are written.
+fn fields(line: &str, number: u64) -> Result<Vec<(String, String)>> {
+    let mut fields = Vec::new();
+    if !line.trim().is_empty() {
+        let read = serde_json::from_str(line).and_then(|own| flatten("", own, &mut fields));
+        read.map_err(|error| odd(format!("line {number} is no JSON: {error}")))?;
+    }
+    Ok(fields)
+}
+
+fn flatten(
+    name: &str,
+    value: &RawValue,
+    fields: &mut Vec<(String, String)>,
+) -> serde_json::Result<()> {
+    let text = value.get();
+    match text.as_bytes().first() {
+        Some(b'{') => {
+            for (key, own) in serde_json::from_str::<BTreeMap<String, &RawValue>>(text)? {
+                let within = if name.is_empty() { key } else { format!("{name}.{key}") };
+                flatten(&within, own, fields)?;
+            }
+        }
+        Some(b'[') => {
+            let all: Vec<&RawValue> = serde_json::from_str(text)?;
+            for (place, own) in all.into_iter().enumerate() {
+                flatten(&format!("{name}[{place}]"), own, fields)?;
+            }
+        }
+        Some(b'"') => fields.push((name.to_owned(), serde_json::from_str(text)?)),
+        _ => {
+            let own = match text {
+                "true" => "1",
+                "false" => "0",
+                "null" => "",
+                number => number,
+            };
+            fields.push((name.to_owned(), own.to_owned()));
+        }
+    }
+    Ok(())
+}

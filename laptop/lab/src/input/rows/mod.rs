@@ -1,0 +1,129 @@
+//! Tables in other formats than CSV, as the lines of a CSV table: JSON lines, `NumPy`'s arrays, Parquet.
+//!
+//! The rules for columns, times and missing values are thus those of all tables. Numbers are passed on digit by digit, or
+//! as the shortest text that reads as the same number.
+
+mod json;
+mod numpy;
+#[cfg(feature = "datasets")]
+mod parquet;
+
+use crate::Result;
+use crate::input::TableKind;
+use std::fs::File;
+use std::io::{self, Read, Seek};
+use std::path::Path;
+
+/// First bytes of a file of `NumPy`, of an archive of them, and of Parquet.
+const NPY: &[u8] = b"\x93NUMPY";
+const NPZ: &[u8] = b"PK\x03\x04";
+#[cfg(feature = "datasets")]
+const PARQUET: &[u8] = b"PAR1";
+
+/// The rows of a table, as text of a CSV table.
+trait Rows {
+    /// Appends the next row, with its end; returns false at the end of the table.
+    fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool>;
+}
+
+/// Rows that are read as text.
+struct Lines<T> {
+    rows: T,
+    text: Vec<u8>,
+    at: usize,
+}
+
+impl<T: Rows> Lines<T> {
+    /// Starts with the line of the header.
+    fn new(names: impl IntoIterator<Item = String>, rows: T) -> Self {
+        let mut text = Vec::new();
+        for name in names {
+            quote(&name, &mut text);
+            text.push(b',');
+        }
+        end(&mut text);
+        Self { rows, text, at: 0 }
+    }
+}
+
+impl<T: Rows> Read for Lines<T> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        const MUCH: usize = 1 << 14;
+        if self.at == self.text.len() {
+            self.text.clear();
+            self.at = 0;
+            while self.text.len() < MUCH && self.rows.next(&mut self.text)? {}
+        }
+        let read = (&self.text[self.at..]).read(bytes)?;
+        self.at += read;
+        Ok(read)
+    }
+}
+
+/// Replaces the comma at the end of a row by the end of its line.
+fn end(text: &mut Vec<u8>) {
+    match text.last_mut() {
+        Some(last) => *last = b'\n',
+        None => text.push(b'\n'),
+    }
+}
+
+/// Appends a text, in quotes if it needs them.
+fn quote(own: &str, text: &mut Vec<u8>) {
+    let is_plain = !own.contains([',', '"', '\n', '\r']) && !own.starts_with('#');
+    if is_plain {
+        text.extend(own.as_bytes());
+        return;
+    }
+    text.push(b'"');
+    for byte in own.bytes() {
+        if byte == b'"' {
+            text.push(b'"');
+        }
+        text.push(byte);
+    }
+    text.push(b'"');
+}
+
+/// Returns the content of a file that needs random access, as a CSV table; `None` if its first bytes are others.
+///
+/// # Errors
+/// Returns an error if the file is damaged, or holds no table.
+pub(super) fn of_file(path: &Path, name: &str) -> Result<Option<Box<dyn Read>>> {
+    let mut file = File::open(path)?;
+    let mut start = Vec::new();
+    file.by_ref().take(NPY.len() as u64).read_to_end(&mut start)?;
+    file.rewind()?;
+    if start.starts_with(NPZ) {
+        return numpy::archive(file).map(Some).map_err(|error| error.at(name));
+    }
+    #[cfg(feature = "datasets")]
+    if start.starts_with(PARQUET) {
+        return parquet::open(file).map(Some).map_err(|error| error.at(name));
+    }
+    Ok(None)
+}
+
+/// Returns an input as a CSV table, if its first bytes are those of JSON lines or of an array; otherwise the input.
+///
+/// # Errors
+/// Returns an error if the first line or the header cannot be read, or holds no table.
+pub(super) fn of_stream(
+    head: &[u8],
+    input: impl Read + 'static,
+    name: &str,
+) -> Result<Result<Box<dyn Read>, Box<dyn Read>>> {
+    let read = if head.starts_with(NPY) {
+        numpy::array(input)
+    } else if head.trim_ascii_start().starts_with(b"{") {
+        json::lines(input)
+    } else {
+        return Ok(Err(Box::new(input)));
+    };
+    read.map(Ok).map_err(|error| error.at(name))
+}
+
+/// Makes the error of a table that cannot be read.
+fn odd(what: impl Into<String>) -> crate::Error {
+    TableKind::OddTable { what: what.into() }.into()
+}
