@@ -134,7 +134,7 @@ static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 /// # Errors
 /// Returns an error if standard input cannot be read or copied.
 pub(crate) fn as_file(input: &Path) -> Result<PathBuf> {
-    /// First bytes of files of NumPy's arrays, and of Parquet.
+    /// First bytes of files of `NumPy`'s arrays, and of Parquet.
     const TABLES: [&[u8]; 2] = [b"PK\x03\x04", b"PAR1"];
     if input != Path::new("-") {
         return Ok(input.to_owned());

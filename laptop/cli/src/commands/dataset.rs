@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lab::dataset::{self, ChannelsOf, Code, Flights, Outcome, Request};
 use lab::flight::Flight;
 use lab::watch::Progress;
+use std::fmt::Write;
 use std::fs;
 use std::io::{self, Read};
 use std::num::NonZeroUsize;
@@ -90,7 +91,7 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
             (passed_over, "files are neither logs nor tables"),
         ] {
             if count > 0 {
-                text += &format!("{count} {what}\n");
+                writeln!(text, "{count} {what}")?;
             }
         }
         answer(text)?;

@@ -41,7 +41,7 @@ pub(crate) struct Info {
 /// The content of a file.
 enum Content {
     Log(Kind, Vec<Overview>, Vec<String>),
-    Table(Summary),
+    Table(Box<Summary>),
 }
 
 /// Runs the command.
@@ -104,16 +104,13 @@ impl Info {
     fn content(&self, log: &Path) -> Result<Content> {
         let Self { gap, accept_cut, .. } = *self;
         let kind = if log == Path::new("-") { None } else { Kind::of(log)? };
-        Ok(match kind {
-            Some(kind) => {
-                let (topics, notes) = overview(log, kind, accept_cut, gap)?;
-                Content::Log(kind, topics, notes)
-            }
-            None => {
-                let channel = ChannelOptions { gap, accept_cut, ..ChannelOptions::default() };
-                Content::Table(summary(&InputOptions { input: log.to_owned(), channel })?)
-            }
-        })
+        if let Some(kind) = kind {
+            let (topics, notes) = overview(log, kind, accept_cut, gap)?;
+            return Ok(Content::Log(kind, topics, notes));
+        }
+        let channel = ChannelOptions { gap, accept_cut, ..ChannelOptions::default() };
+        let table = summary(&InputOptions { input: log.to_owned(), channel })?;
+        Ok(Content::Table(Box::new(table)))
     }
 }
 
@@ -144,7 +141,8 @@ fn json(name: &str, content: &Content) -> serde_json::Value {
                 .collect();
             json!({ "log": name, "kind": dataset::name(Some(*kind)), "notes": notes, "topics": topics })
         }
-        Content::Table(Summary { columns, rows, clock, rollover, notes }) => {
+        Content::Table(table) => {
+            let Summary { columns, rows, clock, rollover, notes } = &**table;
             let columns: Vec<_> = columns
                 .iter()
                 .map(|own| {

@@ -310,10 +310,10 @@ impl Manifest {
         let path = self.path();
         let mut rows: Vec<Row> = self.rows.into_values().collect();
         split(&mut rows, test, flights);
-        let mut text = String::new();
+        let mut lines = String::new();
         for row in &rows {
-            text += &serde_json::to_string(row)?;
-            text.push('\n');
+            lines += &serde_json::to_string(row)?;
+            lines.push('\n');
         }
         let by = match flights {
             Flights::Logs => "log",
@@ -321,7 +321,7 @@ impl Manifest {
         };
         let shares = serde_json::json!({ "test": test, "by": by });
         write(&self.directory.join(SETTINGS), &described_as(settings, &shares))?;
-        write(&path, &text)?;
+        write(&path, &lines)?;
         Ok(rows)
     }
 }

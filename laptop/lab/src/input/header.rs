@@ -108,7 +108,7 @@ fn is_aligned(header: &[u8], row: &[u8]) -> bool {
 /// Splits a line into the fields of a CSV record.
 fn split(line: &[u8], delimiter: u8) -> ByteRecord {
     if delimiter == b' ' {
-        let words = line.split(|byte| byte.is_ascii_whitespace());
+        let words = line.split(u8::is_ascii_whitespace);
         return words.filter(|word| !word.is_empty()).collect();
     }
     let mut record = ByteRecord::new();

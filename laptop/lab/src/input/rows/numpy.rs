@@ -65,10 +65,10 @@ struct Field {
     kind: Kind,
 }
 
-/// Type of a number: `kind` as `NumPy` writes it, size in bytes.
+/// Type of a number: its letter in `NumPy`, and its size in bytes.
 #[derive(Clone, Copy)]
 struct Kind {
-    kind: u8,
+    letter: u8,
     size: usize,
     is_big: bool,
 }
@@ -80,7 +80,7 @@ impl Kind {
         let size = str::from_utf8(size).ok()?.parse().ok()?;
         let is_known =
             matches!((kind, size), (b'i' | b'u', 1 | 2 | 4 | 8) | (b'f', 4 | 8) | (b'b', 1));
-        is_known.then_some(Self { kind: *kind, size, is_big: *order == b'>' })
+        is_known.then_some(Self { letter: *kind, size, is_big: *order == b'>' })
     }
 
     /// Appends a number as text.
@@ -94,7 +94,7 @@ impl Kind {
         }
         let unsigned = u64::from_le_bytes(own);
         let (mut whole, mut decimals) = (itoa::Buffer::new(), zmij::Buffer::new());
-        let digits = match (self.kind, self.size) {
+        let digits = match (self.letter, self.size) {
             (b'i', size) => {
                 let shift = 64 - 8 * size as u32;
                 whole.format((unsigned << shift) as i64 >> shift)
