@@ -118,12 +118,12 @@ pub struct Advice {
     sample: SampleType,
     #[serde(skip)]
     core: String,
-    /// Whether the bank has other channels, which must share its scheme.
+    /// Whether there are other channels, which must all use the same scheme as this one.
     #[serde(skip)]
     is_one_of_many: bool,
 }
 
-/// A filter whose corner frequency is possible at the recording's sample rate.
+/// A low-pass filter before the encoder, whose corner frequency is possible at the recording's sample rate.
 #[derive(Clone, Copy)]
 struct Filtered {
     filter: Filter,
@@ -168,7 +168,8 @@ struct Candidate {
 /// Describes each recording, tunes all schemes on it, and ranks those that suit it.
 ///
 /// # Errors
-/// Returns an error if a recording is too short to hold a part of it out, or if no settings may be scored.
+/// Returns an error if a recording is too short for a part of it to be held out, or if a field of the request is
+/// invalid.
 pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     if request.evaluations == 0 {
         return Err(RequestKind::NotAboveZero.of(Given::new("evaluations", 0)));
@@ -259,8 +260,8 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme briefly and keeps the outcome, or only the reason not to tune if the scheme flew badly in the
-    /// simulator.
+    /// Tunes a scheme briefly, and adds it to the schemes that reach or miss the allowed RMSE. A scheme that flew badly
+    /// in the simulator is not tuned, and only the reason is added.
     fn consider(
         &mut self,
         request: &AdviseRequest,

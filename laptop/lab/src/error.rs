@@ -81,7 +81,7 @@ pub enum ErrorKind {
     /// A trained network, or a request about it such as its inputs, is refused as a whole.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
-    /// A NIR file cannot be read, or its graph is not taken.
+    /// A NIR file cannot be read, or its graph is not supported.
     #[cfg(feature = "networks")]
     Nir(NirKind),
     /// The parameters of a layer of a network are invalid.
@@ -107,7 +107,8 @@ pub enum ErrorKind {
     Other(Box<dyn error::Error + Send + Sync>),
 }
 
-/// Implements the conversions from `$kinds`, the error kinds of a module, to [`Error`].
+/// Implements the conversions from `$kinds`, an enum of a module's error kinds, to [`Error`], by way of a variant of
+/// [`ErrorKind`].
 macro_rules! room {
     ($kinds:ty, $variant:ident) => {
         impl From<$kinds> for $crate::Error {
@@ -137,7 +138,7 @@ macro_rules! room {
 }
 pub(crate) use room;
 
-/// Adds a place to the error of a result.
+/// Adds the place of the fault, a file and a spot in it, to the error of a result.
 pub(crate) trait At<T> {
     /// Adds the place, unless the error already has a more precise one.
     fn at<P: Into<Place>>(self, place: impl FnOnce() -> P) -> Result<T>;
@@ -164,7 +165,7 @@ impl Error {
         self
     }
 
-    /// Sets the setting at fault.
+    /// Records `parameter` as the setting at fault.
     #[must_use]
     pub fn about(self, parameter: Given) -> Self {
         Self { parameter: Some(parameter), ..self }
@@ -257,17 +258,17 @@ impl ErrorKind {
 }
 
 impl Place {
-    /// Makes the place of a whole file.
+    /// Makes a place that is a whole file.
     pub fn of(file: impl Into<String>) -> Self {
         Self { file: Some(file.into()), spot: None }
     }
 
-    /// Makes the place of a spot in a file.
+    /// Makes a place from a file and a spot in it.
     pub fn spot(file: impl Into<String>, spot: Spot) -> Self {
         Self { file: Some(file.into()), spot: Some(spot) }
     }
 
-    /// Makes the place of a line in a file, counted from 1.
+    /// Makes a place from a file and the number of a line in it, counted from 1.
     pub fn line(file: impl Into<String>, line: u64) -> Self {
         Self::spot(file, Spot::Line(line))
     }

@@ -35,8 +35,8 @@ impl Coding {
 /// The flight sends 20 keyframes a second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, if their schemes differ or they differ in more than numbers, or if the
-/// rate's period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, if they differ in scheme or in a parameter that is not a plain number,
+/// such as a count or a filter, or if the rate's period cannot be expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
@@ -52,8 +52,8 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
 /// second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, if they differ in more than numbers, or if the rate's period cannot be
-/// expressed in whole µs.
+/// Returns an error if there are no channels, if they differ in a parameter that is not a plain number, such as a count
+/// or a filter, or if the rate's period cannot be expressed in whole µs.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,

@@ -3,20 +3,20 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Largest mean error that rounding may cause in the steps, as a share of their mean size. A sample type that causes
-/// more is said to lose the steps.
+/// Largest mean error that a sample type's rounding may cause in a column's steps from sample to sample, as a share of
+/// their mean size. A sample type that causes more is said to lose the steps.
 const PART: f64 = 0.1;
 
-/// The steps from sample to sample of a column, and their errors in a sample type.
+/// The steps of a column from sample to sample, and the errors that rounding to a sample type causes in them.
 pub struct Resolution {
     sample: SampleType,
     previous: Option<f64>,
     steps: u64,
-    /// Sum of the sizes of the steps.
+    /// Sum of the absolute sizes of the steps from sample to sample.
     moved: f64,
-    /// Sum of the errors of the steps in the sample type.
+    /// Sum of the absolute errors that rounding to the sample type causes in the steps.
     off: f64,
-    /// Sum of the errors of the steps in `f32`.
+    /// Sum of the absolute errors that rounding to `f32` causes in the steps.
     off_single: f64,
     min: f64,
     max: f64,
@@ -128,8 +128,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column's steps survive rounding to multiples of `step`. Half of `step` is taken as the error
-    /// of a rounded column's step, whose mean is only a third.
+    /// Returns whether the column's steps survive rounding to multiples of `step`. The mean error that rounding causes
+    /// in a step of the column is a third of `step`; half of `step` is allowed for.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }
@@ -166,8 +166,8 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// If a sample type loses the steps of a column, the types named in its place lose none, for columns of any size
-    /// and step.
+    /// Whatever the size and steps of a column, the sample types that are suggested in place of one that loses the
+    /// steps lose none.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {

@@ -20,9 +20,9 @@ pub struct Slope {
     part: f64,
     /// Largest slope that the code follows: threshold times rate, or the threshold if no rate is known.
     fastest: f64,
-    /// Largest slope of the signal, in the same unit.
+    /// Largest slope of the signal, in the unit of `fastest`.
     steepest: f64,
-    /// Unit of time in both slopes: `second` or `sample`.
+    /// Unit of time of `fastest` and `steepest`: `second` or `sample`.
     per: &'static str,
 }
 

@@ -24,12 +24,13 @@ impl Timeline {
         }
     }
 
-    /// Returns the number of known times of samples after the last one that [`at`](Self::at) was asked for.
+    /// Returns the number of known times that lie ahead: those of samples later than the last one passed to
+    /// [`at`](Self::at).
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }
 
-    /// Returns the time of a sample in µs; samples must be asked for in order.
+    /// Returns the time of a sample in µs. Calls must pass samples in rising order.
     pub fn at(&mut self, sample: u64) -> i64 {
         while let Some(&known) = self.ahead.front().filter(|(known, _)| *known <= sample) {
             self.before = Some(known);

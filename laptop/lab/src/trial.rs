@@ -33,7 +33,8 @@ pub struct Recording {
 impl Recording {
     /// Makes a recording of evenly spaced samples, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// Longest step that is no gap, in usual steps; without effect, because all steps are equal.
+        /// Longest step in time that is no gap, in usual steps. Any value serves, because all steps of this recording
+        /// are equal.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -147,8 +148,8 @@ fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-/// Moves the times of each later segment: its earliest time follows the latest time of the segment before by `period`.
-/// Times are in µs.
+/// Shifts the times of each segment after the first, such that its earliest time comes `period` after the latest time
+/// of the segment before. Times are in µs.
 fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     let mut all: Vec<i64> = Vec::with_capacity(times.len());
     let mut latest: Option<i64> = None;

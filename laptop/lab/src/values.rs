@@ -19,7 +19,7 @@ const FEWER: usize = 64;
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function that is called once, with the receiver.
+/// A function that is passed the receiver, as a decoder of frames to values, and is called once.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
 /// Properties of a link's sender besides its schemes.
@@ -27,8 +27,9 @@ type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 pub struct Link {
     /// Length of the sub-timesteps in µs, if the code has any.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint that the sender's frames carry. If `None`, it is computed from the schemes; if one scheme stands for
-    /// all channels, for the number of channels that matches the sender's fingerprint.
+    /// Fingerprint that the sender's frames carry. If `None`, the fingerprint is computed from the channels' schemes.
+    /// If a single scheme stands for an unknown number of channels, the number is chosen whose fingerprint matches the
+    /// received one.
     pub fingerprint: Option<Fingerprint>,
     /// Largest deviation of the sample period from its nominal length, in parts per million; the receiver's default if
     /// `None`.
@@ -231,11 +232,12 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     end: Option<Tick>,
     /// Number of keyframes received although the code uses none.
     unused_keyframes: u64,
-    /// The number that represents 1.0 in the decoders' unit.
+    /// The number by which the decoders represent 1.0; decoded numbers are divided by it.
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of values decoded for channels that do not exist, besides the events that the receiver itself counts.
+    /// Number of decoded values that were dropped because their channel does not exist. The receiver itself counts
+    /// further events of this kind.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,

@@ -28,7 +28,7 @@ const KEYFRAMES: f64 = 1.0;
 /// The advice on all channels together.
 #[derive(Debug, Serialize)]
 pub struct BankAdvice {
-    /// The possible banks, the advised one first.
+    /// The schemes that can serve all channels, with their settings; the advised one comes first.
     banks: Vec<Bank>,
     /// The schemes that cannot serve all channels, each with the reason.
     others: Vec<String>,
@@ -40,7 +40,7 @@ pub struct BankAdvice {
     frame_loss: f64,
 }
 
-/// One scheme for all channels.
+/// One scheme for all channels, with its settings and their cost on the link.
 #[derive(Debug, Serialize)]
 struct Bank {
     scheme: &'static str,
@@ -50,7 +50,7 @@ struct Bank {
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
-    /// Whether the scheme flew behind a filter that is not possible at the recordings' sample rate.
+    /// Whether the scheme's simulated flights used a filter that is not possible at the recordings' sample rate.
     lacks_filter: bool,
     /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code, if it flew.
     flown: Option<Error>,
@@ -184,7 +184,7 @@ impl BankAdvice {
     }
 }
 
-/// Makes a bank: one scheme for all channels. The inner error is the reason that no bank can be made.
+/// Makes a bank, that is one scheme for all channels. The inner error is the reason that the scheme cannot serve them.
 fn bank(
     request: &AdviseRequest,
     scheme: Scheme,
@@ -312,8 +312,8 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     shared
 }
 
-/// Returns the number of events of all channels, and of their bytes on the link. In a control loop, each sample's frame
-/// is sent at once; otherwise frames are filled first.
+/// Returns the total number of events of all channels, and the number of bytes that the link sends, including
+/// keyframes. With `in_loop`, a frame is sent for each sample; otherwise frames are filled first.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The measured figures, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`, because a source
-/// package contains only files of its own directory.
+/// The results of the simulated flights, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`,
+/// because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
 /// A code counts as flying if its error is at most this many times the error without a code.
@@ -21,7 +21,7 @@ struct Figures {
     banks: BTreeMap<String, Flown>,
 }
 
-/// Flights of a code, with the settings that were found by flying.
+/// Results of simulated flights on a code, and the settings with which the code was flown.
 #[derive(Deserialize)]
 pub(crate) struct Flown {
     /// Corner frequency of the low-pass before the code, in Hz; `None` without a low-pass.
@@ -30,7 +30,7 @@ pub(crate) struct Flown {
     keyframe_ms: Option<f64>,
     /// Flights of the reference drone and its controller, with 1 % of the frames lost.
     here: Flights,
-    /// Flights of the same drone and controller, with 10 % of the frames lost.
+    /// Flights of the reference drone and its controller, with 10 % of the frames lost.
     #[serde(rename = "every tenth frame lost")]
     tenth: Flights,
     /// Flights of several drones and controllers at several sample rates. A key names simulator, controller and rate.
@@ -117,8 +117,8 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of the errors to those of `other`, over the entries of `everywhere` in which both have an
-    /// error.
+    /// Returns the mean ratio of this code's attitude errors to those of `other`, over the entries of `everywhere` in
+    /// which both have an error.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

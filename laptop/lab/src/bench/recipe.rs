@@ -55,8 +55,8 @@ fn try_run(signal: &[f32]) -> Result<[Outcome; COLUMNS], ConfigError> {
     ])
 }
 
-/// Runs temporal contrast. The encoder is primed such that the first difference counts twice; decoding starts from 0,
-/// in steps of two thresholds.
+/// Runs temporal contrast. The encoder is primed with a sample before the signal, chosen such that the signal's first
+/// difference occurs twice. Decoding starts from 0, and each spike moves the value by two thresholds.
 fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, ConfigError> {
     let threshold = TemporalContrast::from_calibration(calibration, CONTRAST_FACTOR)?.threshold();
     let scheme = TemporalContrast::try_new(threshold)?.try_with_step(2.0 * threshold)?;

@@ -132,9 +132,9 @@ pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     names
 }
 
-/// Returns one figure of a cell, first as measured and then as printed in the paper.
+/// A function that returns one figure of a cell, such as its mean: first as measured, then as printed in the paper.
 type Figures = fn(&Cell) -> [f64; 2];
-/// Returns the measured figure of a column that the paper does not have.
+/// A function that returns one measured figure, for a column that the paper does not have.
 type Figure = fn(&Statistics) -> f64;
 
 fn write_table(

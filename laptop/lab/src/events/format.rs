@@ -171,7 +171,8 @@ impl<'a> Settings<'a> {
         Ok(Self(pairs.collect::<Result<_, _>>()?))
     }
 
-    /// Removes and returns the number of `key`, decimal or hexadecimal with `0x`; `otherwise` if the key is missing.
+    /// Removes the pair of `key`, and returns its value, a decimal number or a hexadecimal one with `0x`; returns
+    /// `otherwise` if the key is missing.
     fn number<N: TryFrom<u32>>(&mut self, key: &str, otherwise: N) -> Result<N> {
         let Some(place) = self.0.iter().position(|pair| pair.0 == key) else {
             return Ok(otherwise);
@@ -186,7 +187,8 @@ impl<'a> Settings<'a> {
         number.ok_or_else(|| EventsKind::OutOfRange { key, text }.into())
     }
 
-    /// Removes and returns the 0 or 1 of `key`; `otherwise` if the key is missing.
+    /// Removes the pair of `key`, and returns whether its value is 1 rather than 0; returns `otherwise` if the key is
+    /// missing.
     fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
         match self.number::<u32>(key, otherwise.into())? {
             bit @ 0..=1 => Ok(bit == 1),

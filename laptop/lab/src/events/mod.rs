@@ -32,8 +32,8 @@ pub enum Item {
     Event(Event),
     /// A value that the sender's encoder held, from which a decoder can resume.
     Keyframe(Keyframe),
-    /// A sign of life from a sender whose code has no keyframes: the tick of a sample, and the first address of the
-    /// sender's bank. All events before this item have been sent.
+    /// A sign of life from a sender whose code has no keyframes: the tick of a sample, and the sender's first address.
+    /// All events before this item have been sent.
     Heartbeat(Tick, u16),
     /// The value of a decoder after an event or keyframe.
     Value {

@@ -31,7 +31,7 @@ impl<R: Read> Read for Counting<R> {
     }
 }
 
-/// A reader of the header, which is in memory, and then of the frames.
+/// A reader that first yields the header, which is in memory, and then the frames.
 type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
 
 /// Reads the header and checks its numbers of columns and rows, because the decoder multiplies them unchecked. Returns

@@ -358,7 +358,7 @@ pub(super) fn is_missing(field: &[u8]) -> bool {
 /// The rows of a table, and the lines at which they begin.
 struct Rows {
     reader: Reader<Box<dyn Read>>,
-    /// Whether lines end in CR and LF. If so, the CSV reader counts the LF as part of the next line.
+    /// Whether the table's lines end in CR and LF, in which case the CSV reader counts the LF as part of the next line.
     is_of_windows: bool,
     /// Number of lines above the first of the file.
     above: u64,

@@ -7,10 +7,11 @@ use catalogue::run::Words;
 /// Ranges of 32-bit clocks, in µs: of a clock that counts µs, and of one that counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Step in µs up to which a wrap of the clock is always recognised; [`STEPS`] may allow a longer one.
+/// Time in µs between two samples up to which a wrap of the clock between them is always recognised; [`STEPS`] may
+/// allow a longer time.
 const SECOND: i64 = 1_000_000;
-/// Step up to which a wrap of the clock is recognised, in multiples of the latest step forward, if that is longer than
-/// [`SECOND`].
+/// Time between two samples up to which a wrap of the clock between them is recognised, as a multiple of the latest
+/// step forward. Applies if it allows more than [`SECOND`].
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.

@@ -35,8 +35,8 @@ enum Place {
     Memory(Vec<u8>),
 }
 
-/// Checks that a path has an ending of tables, `.csv`, `.txt` or none, because other programs go by the ending. A
-/// device may have any name. The error lists the endings of tables, followed by `others`.
+/// Checks that a path has the ending of a table, `.csv`, `.txt` or none, because other programs recognise a table by
+/// it. A device may have any name. The error lists the endings of tables, followed by `others`.
 ///
 /// # Errors
 /// Returns an error if the path has a different ending.

@@ -61,7 +61,7 @@ impl Panel {
 /// Returns the schemes that form most of the common fronts, the one with the largest share first, at most as many as
 /// there are colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// Smallest share of all fronts that gives a scheme a name and a colour.
+    /// A scheme gets a name and a colour only if it forms more than this share of the common fronts.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {
@@ -182,8 +182,8 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the middle point of that part of a panel's common front which a scheme forms at efficiencies from `left`, if
-/// it forms any.
+/// Returns the middle one of the points that `scheme` contributes to the panel's common front at efficiencies of at
+/// least `left` percent, as efficiency and error; `None` if there are no such points.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

@@ -23,7 +23,7 @@ use tiny_skia::{Color, Pixmap};
 
 use crate::output::Output;
 
-/// The content of a picture of trials.
+/// The recording and the trials of schemes on it that a picture shows.
 pub struct Picture<'a> {
     /// The recording that the trials encoded.
     pub recording: &'a Recording,
@@ -54,7 +54,7 @@ pub fn draw_fronts(path: &Path, input: &Path, panels: &[front::Panel]) -> Result
     write(path, input, layout::fronts_size(panels), Drawing::Fronts(panels))
 }
 
-/// The content of a drawing.
+/// The trials or the Pareto fronts to draw.
 #[derive(Clone, Copy)]
 enum Drawing<'a> {
     Trials(&'a Picture<'a>),

@@ -22,8 +22,8 @@ pub struct Header {
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters of a scheme that are only notes in a file of spikes, because decoding needs others that were
-/// derived from them.
+/// Lists the parameters of a scheme that a file of spikes holds only as notes: decoding uses other parameters, which
+/// were derived from them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =
@@ -41,7 +41,7 @@ const MOST_CHANNELS: usize = 1 << 16;
 const NOTES: [&str; 4] = ["column", "topic", "field", "latency"];
 
 impl Header {
-    /// Returns the keys and values that precede the parameters.
+    /// Returns the header's keys and values that precede the parameters of the scheme.
     fn common(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![
             ("spikewire", VERSION.to_owned()),

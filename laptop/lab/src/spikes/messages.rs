@@ -263,8 +263,8 @@ const MOST: usize = 1 << 16;
 mod tests {
     use super::Found;
 
-    /// The range of the toolbox's Gaussian fields is moved down by one field, because neuron 7 of the toolbox has the
-    /// centre of this crate's neuron 6. The range of GRF stays.
+    /// A log with the scheme `gaussian_fields` of the toolbox is decoded as GRF over a range moved down by one field,
+    /// because neuron 7 of the toolbox has the centre of this crate's neuron 6. With the scheme `grf`, the range stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

@@ -51,7 +51,7 @@ pub struct Reader<R> {
     columns: usize,
     /// Usual time between samples, in µs; 0 if unknown.
     period: u64,
-    /// The sample and the time in µs of the latest `# time=` line.
+    /// Sample index and time in µs in the latest `# time=` line.
     noted: Option<(u64, i64)>,
     previous: u64,
     events: u64,

@@ -57,8 +57,8 @@ pub(super) fn bounds(problem: &Problem, space: &Space, best: &Asked) -> Vec<Boun
     found
 }
 
-/// Returns the value that `options` give to the parameter of an axis; `None` if the bounds of such an axis mean nothing
-/// to a user.
+/// Returns the value that `options` give to the parameter of an axis; `None` for an axis whose bounds mean nothing to a
+/// user.
 fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     match axis.role {
         Role::Log(_) | Role::Around(..) | Role::Whole | Role::Most => options.number(axis.name),

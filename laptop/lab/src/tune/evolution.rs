@@ -94,8 +94,8 @@ impl Evolution {
     /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may
     /// leave the last ones out.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Largest gain by which a success is weighted. Settings that break a limit have values so far apart that their
-        /// gains would outweigh all others.
+        /// Largest weight of a point that improved on its parent; the weight is the difference of their values.
+        /// Settings that break a limit have values so far apart that their differences would outweigh all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);

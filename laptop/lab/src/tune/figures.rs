@@ -24,7 +24,7 @@ pub struct Figures {
     pub worst: f64,
     /// Delay of the decoded values in samples, besides the code's latency: the lag with the highest correlation.
     pub lag: i64,
-    /// RMSE after a low-pass of the errors at the band limit, if there is a limit.
+    /// RMSE of that part of the error that lies below a frequency limit, if a limit was given.
     pub below: Option<f64>,
     /// Events a second, if the rate is known.
     pub events_per_second: Option<f64>,
@@ -35,7 +35,8 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Computes the figures of settings on one or more stretches. `below` is the band limit in Hz.
+    /// Computes the figures of settings on one or more stretches. `below` is the frequency in Hz below which the error
+    /// is also measured.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.
@@ -205,7 +206,7 @@ mod tests {
         }
     }
 
-    /// A limit passes the slower of two waves, which have 5 and 40 cycles in 1000 samples.
+    /// A frequency limit passes the slower of two waves, which have 5 and 40 cycles in 1000 samples.
     #[test]
     fn a_limit_keeps_what_is_below() {
         let wave = |cycles: f64| move |i: i32| (TAU * cycles * f64::from(i) / 1000.0).sin();

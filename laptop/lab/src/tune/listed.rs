@@ -7,12 +7,12 @@ use super::space::Space;
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
-/// Smallest threshold that is listed, as a share of the signal's range.
+/// Smallest threshold whose outcome is listed, as a share of the signal's range.
 const SMALLEST: f64 = 1e-3;
 /// Maximum number of samples that are processed to list outcomes, which bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Maximum number of samples that are processed to list outcomes for each setting of the budget, which makes a search
-/// of a small budget short.
+/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. Keeps a
+/// search with a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
 /// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
 const NEIGHBOURHOODS: usize = 24;
@@ -141,7 +141,7 @@ impl Run<'_> {
     }
 }
 
-/// Converts an outcome to options: those of its combination, with the outcome's threshold and step.
+/// Converts an outcome to options: the integer parameters of `combination`, with the outcome's threshold and step.
 fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     let mut options = combination.clone();
     options.set("threshold", outcome.threshold);
@@ -151,7 +151,7 @@ fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     options
 }
 
-/// Keeps the Pareto front, that is the outcomes that no other beats in both spikes and error, sorted by spikes.
+/// Sorts outcomes by their number of spikes, and removes those that another outcome beats in both spikes and error.
 fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     all.sort_by(|(a, _), (b, _)| a.spikes.cmp(&b.spikes).then(a.squares.total_cmp(&b.squares)));
     let mut least = f64::INFINITY;
@@ -162,7 +162,7 @@ fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     });
 }
 
-/// Returns the ranges of thresholds around the best outcomes, each from the next lower to the next higher threshold in
+/// Returns a range of thresholds around each of the best outcomes: from the next lower to the next higher threshold in
 /// `list`.
 fn neighbourhoods(list: &[Outcome], in_order: &impl Fn(&Outcome) -> f64) -> Vec<(f64, f64)> {
     let mut thresholds: Vec<f64> = list.iter().map(|own| own.threshold).collect();

@@ -113,12 +113,12 @@ pub struct Scored {
     pub tally: Tally,
     /// Costs on a flight controller.
     pub costs: Costs,
-    /// The limits that the settings break, that of the goal included.
+    /// The limits that the settings break, including the one in the goal.
     pub excess: Vec<Excess>,
 }
 
 impl Scored {
-    /// Returns whether the settings keep to all limits, that of the goal included.
+    /// Returns whether the settings keep to all limits, including the one in the goal.
     pub fn is_allowed(&self) -> bool {
         self.excess.is_empty()
     }
@@ -165,7 +165,8 @@ impl<'a> Problem<'a> {
         Self { scheme, sample, fixed: fixed.clone(), train, goal, limits, core, extent, calibrated }
     }
 
-    /// Completes options to the settings that code a stretch.
+    /// Completes options to full settings for a stretch: a parameter that is missing has its default, or comes from the
+    /// calibration or the stretch's samples.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.

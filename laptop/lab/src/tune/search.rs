@@ -198,9 +198,9 @@ impl Run<'_> {
         }
     }
 
-    /// Moves each point along one axis to the best of several values, which the scheme compares in a single pass over
-    /// the signal. The values span the whole axis, or the share `width` of the axis around the point's own value.
-    /// Leaves the points as they are if the scheme cannot compare values in this way.
+    /// Moves each point along one axis to the best of several positions, which the scheme compares in a single pass
+    /// over the signal. The positions span the whole axis, or the share `width` of the axis around the point. Leaves
+    /// the points as they are if the scheme cannot compare values in this way.
     fn swept(
         &self,
         space: &Space,

@@ -22,7 +22,7 @@ impl Extent {
     }
 }
 
-/// An axis of the search: one number of the settings, with its bounds.
+/// An axis of the search: one number from which a parameter is computed, with its bounds.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub name: &'static str,
@@ -73,7 +73,8 @@ pub(crate) struct Space {
 pub(crate) struct Inner {
     /// Index of the axis.
     pub axis: usize,
-    /// Whether the axis is the filter's sum, of which the values are then factors; otherwise the axis is the threshold.
+    /// Whether the axis is the filter's sum, and the compared values are factors of that sum. If false, the axis is the
+    /// threshold, and the compared values are thresholds.
     pub is_factor: bool,
 }
 
@@ -210,7 +211,7 @@ impl Space {
         self.meant(&numbers)
     }
 
-    /// Converts a number for each axis, which may lie beyond the axis' bounds, to options.
+    /// Converts numbers, one for each axis, to options. A number may lie beyond the bounds of its axis.
     pub(super) fn meant(&self, numbers: &[f64]) -> Asked {
         let mut options = self.fixed.clone();
         let (mut filter, mut free) = (Shaped::default(), Vec::new());

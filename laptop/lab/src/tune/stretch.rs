@@ -28,7 +28,8 @@ impl Stretch {
         recording.segments.iter().map(stretch).collect()
     }
 
-    /// Makes a stretch of the samples in `own`, with scored ranges counted from its first sample.
+    /// Makes a stretch of the recording's samples in the index range `own`. The ranges in `scored` are relative to the
+    /// start of `own`.
     fn scored(recording: &Recording, own: &Range<usize>, scored: Vec<Range<usize>>) -> Self {
         Self { values: recording.values[own.clone()].to_vec(), rate: recording.rate, scored }
     }

@@ -65,7 +65,8 @@ impl Channel {
         })
     }
 
-    /// Makes the plans of topics that the log has named since the last call.
+    /// Finds the positions of the chosen fields in the messages of topics that the log has introduced since the last
+    /// call.
     fn plan(&mut self) -> Result<()> {
         for topic in self.log.topics().iter().skip(self.plans.len()) {
             // ROS accepts a topic's name with and without a leading slash.
