@@ -11,10 +11,10 @@ pub trait Chip: Sync {
     /// Returns the name by which the command line selects the chip, such as `tinyodin`.
     fn name(&self) -> &'static str;
 
-    /// Searches for the chip's parameters with which the network's spikes on the chip are nearest to those in double
-    /// precision. `inputs` are the network's input spikes by step, and `fired` the spikes of each layer in double
-    /// precision. `compare` is as in [`Request`](super::Request). Calls `progress` with the number of finished parts of
-    /// the search and the total number of parts.
+    /// Searches for the chip's parameters with which the spikes of each layer are nearest to `fired`, those that the
+    /// layer should have. `inputs` are the network's input spikes by step. `compare` is as in
+    /// [`Request`](super::Request). Calls `progress` with the number of finished parts of the search and the total
+    /// number of parts.
     ///
     /// # Errors
     /// Returns an error if the network does not fit the chip.

@@ -36,8 +36,8 @@ const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 
 
 impl Cost {
     /// Runs the network on `inputs`, in double precision except for this part of the chip's arithmetic. Returns the
-    /// spikes of the last layer. Parameters of this part, such as fixed leaks, are fitted to `fired`, the spikes in
-    /// double precision for the inputs `tuned`.
+    /// spikes of the last layer. Parameters of this part, such as fixed leaks, are fitted to `fired`, the spikes that
+    /// each layer should have for the inputs `tuned`.
     pub(super) fn alone(
         self,
         trained: &Trained,
