@@ -7,7 +7,8 @@ use crate::network::NetworkKind;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Number of time steps in a window, over which the spikes of outputs are counted for comparison.
+/// Number of time steps in a window. Comparisons count the spikes of each output within a window, and ask which outputs
+/// have the most.
 pub const WINDOW: usize = 20;
 
 /// A network to bring onto a chip, and the recordings on which it is tuned and tested.
@@ -18,42 +19,44 @@ pub struct Request<'a> {
     pub trained: &'a Trained,
     /// Input spikes of the recording on which the chip's parameters are tuned, by step.
     pub tuned: &'a Trains,
-    /// A recording on which the result is only tested.
+    /// A second recording, on which the quantised network is only tested; `None` to test it on `tuned` only.
     pub held_out: Option<HeldOut<'a>>,
-    /// The outputs' spikes as the training framework computed them, by step: for the recording tuned on, and for the
-    /// one held out.
+    /// The outputs' spikes by step, as the training framework computed them: for `tuned`, then for `held_out`. `None`
+    /// if they are not known.
     pub framework: Option<(&'a Trains, &'a Trains)>,
-    /// When neurons compare with their thresholds. `None` tries both ways and chooses the one that agrees better with
-    /// the original.
+    /// When neurons compare their potentials with their thresholds. `None` tries both possibilities and chooses the one
+    /// that agrees better with double precision. Chips that offer no choice ignore the setting.
     pub compare: Option<Compare>,
-    /// Called during the search, with the number of finished parts and the total number of parts.
+    /// Called during the search for the chip's parameters, with the number of finished parts of the search and the
+    /// total number of parts.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// A recording that is only for testing.
+/// A recording for testing a network after its parameters were tuned on another.
 #[derive(Clone, Copy)]
 pub struct HeldOut<'a> {
     /// Input spikes of all steps, including those before `from`.
     pub steps: &'a Trains,
-    /// Index of the first step that counts. The steps before it were tuned on; they are run only to reach the state
-    /// that follows them.
+    /// Index of the first step that is compared. Parameters may have been tuned on the steps before it; these run only
+    /// to bring the network into its state at `from`.
     pub from: usize,
 }
 
-/// The result of bringing a network onto a chip, and the accuracy that quantising costs.
+/// A network that was brought onto a chip or the flight controller, and comparisons that show how accurate it is.
 pub struct Brought {
     /// The quantised network.
     pub network: Box<dyn OnChip>,
-    /// Comparison with the original on the recording tuned on.
+    /// Comparison with double precision on the recording on which the parameters were tuned.
     pub tuned: Figures,
-    /// Comparison with the original on the recording held out.
+    /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
-    /// The effect of each part of the chip's arithmetic alone: the network runs in double precision except for that
-    /// part. The number is the share of active steps in which the same outputs fire as in full double precision, on the
-    /// recording held out, or on the one tuned on if none is held out.
+    /// The effect of each part of the chip's arithmetic by itself. The network runs in double precision except for this
+    /// part; the number is the share of active steps in which the same outputs fire as in full double precision.
+    /// Measured on the held-out recording or, if there is none, on the tuned one. Active steps are those in which an
+    /// output fires in either run.
     pub costs: Vec<(Cost, f64)>,
-    /// Share of active steps in which the network in double precision fires as it did in the training framework; `None`
-    /// if the framework's spikes are not given.
+    /// Share of active steps in which the same outputs fire in double precision as did in the training framework: a
+    /// test of how the network's file was read. `None` if the framework's spikes are not given, or if no output fires.
     pub reading: Option<f64>,
 }
 
@@ -63,19 +66,22 @@ pub struct Figures {
     pub layers: Vec<LayerFigures>,
     /// Number of steps compared.
     pub steps: usize,
-    /// Number of steps in which the same outputs fire in both.
+    /// Number of steps in which the same outputs fire in double precision and on the chip, including steps in which no
+    /// output fires.
     pub agreeing: usize,
     /// Number of active steps: those in which an output fires, in double precision or on the chip.
     pub active: usize,
-    /// Number of active steps in which the same outputs fire in both.
+    /// Number of active steps in which the same outputs fire in double precision and on the chip.
     pub active_agreeing: usize,
     /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
     pub windows: usize,
-    /// Number of those windows in which the same outputs fire most often in both.
+    /// Number of these windows in which the same outputs have the most spikes in double precision and on the chip.
     pub windows_agreeing: usize,
-    /// Mean number of the chip's clock cycles in a step.
+    /// Mean number of clock cycles that the chip takes for a step. For the flight controller: mean number of weights
+    /// that a step adds.
     pub mean_clocks: f64,
-    /// Number of the chip's clock cycles in the longest step.
+    /// Largest number of clock cycles that the chip takes for a step. For the flight controller: largest number of
+    /// weights that a step adds.
     pub most_clocks: u64,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
@@ -105,9 +111,9 @@ pub struct LayerFigures {
     pub neurons: usize,
     /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
-    /// Number of spikes in double precision, in all steps.
+    /// Number of spikes of the layer in double precision, in all steps.
     pub spikes: usize,
-    /// Number of spikes on the chip, in all steps.
+    /// Number of spikes of the layer on the chip, in all steps.
     pub on_chip: usize,
     /// Squared van Rossum distance between the layer's spikes in double precision and on the chip, summed over all
     /// neurons.
@@ -149,8 +155,8 @@ pub fn bring(request: &Request) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs, reading })
 }
 
-/// Returns, of the steps in which either train has a spike, the share in which both have the same. `None` if no step
-/// has a spike.
+/// Compares two spike trains step by step. Among the steps in which at least one of them has a spike, returns the share
+/// in which the same neurons fire in both; `None` if neither train has a spike.
 fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     let active = one.iter().zip(other).filter(|(one, other)| !one.is_empty() || !other.is_empty());
     let (active, same) = active.fold((0, 0), |(active, same), (one, other)| {
@@ -160,11 +166,12 @@ fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     (active > 0).then(|| f64::from(same as u32) / f64::from(active))
 }
 
-/// A network in double precision: its layers, and the spikes and potentials of one run.
+/// The reference for comparisons: the spikes and potentials of one run in double precision, and the sizes of the
+/// layers.
 pub(super) struct Original {
     /// Name and number of neurons of each layer whose neurons fire.
     pub layers: Vec<(String, usize)>,
-    /// Name and number of the outputs, if they never fire.
+    /// Name of the output layer and number of outputs, if they never fire; `None` if the outputs are spikes.
     pub readout: Option<(String, usize)>,
     pub fired: Vec<Trains>,
     /// The outputs' potentials, by step; compared only if the outputs never fire.
@@ -340,20 +347,21 @@ impl Figures {
         }
     }
 
-    /// Returns how well the network agrees with the original, from 0 to 1: the mean of the shares of agreeing steps and
-    /// windows.
+    /// Returns how well the network on the chip agrees with double precision, from 0 to 1: the mean of two shares, that
+    /// of agreeing active steps and that of agreeing windows.
     pub(super) fn holds(&self) -> f64 {
         let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
         f64::midpoint(self.agreement().unwrap_or(0.0), windows)
     }
 
-    /// Returns the share of active steps in which the same outputs fire; `None` if no output ever fires.
+    /// Returns the share of active steps in which the same outputs fire in double precision and on the chip; `None` if
+    /// no output ever fires.
     pub fn agreement(&self) -> Option<f64> {
         (self.active > 0).then(|| self.active_agreeing as f64 / self.active as f64)
     }
 }
 
-/// Returns the outputs with the most spikes in these steps; several if they are equal, none if no output fires.
+/// Returns the outputs with the most spikes in these steps: several if they are tied, none if no output fires.
 fn most(steps: &[Vec<u16>]) -> Vec<u16> {
     let mut counts = BTreeMap::new();
     for output in steps.iter().flatten() {

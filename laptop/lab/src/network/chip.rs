@@ -8,12 +8,13 @@ use std::fmt::Display;
 
 /// A chip that a trained network can be brought onto.
 pub trait Chip: Sync {
-    /// Returns the name of the chip on the command line.
+    /// Returns the name by which the command line selects the chip, such as `tinyodin`.
     fn name(&self) -> &'static str;
 
-    /// Finds the chip's parameters for the network: those with which its spikes are nearest to the original's. `inputs`
-    /// are the spikes into the network, by step; `fired` are the spikes of each layer in double precision. Calls
-    /// `progress` with the number of finished parts of the search and the total number of parts.
+    /// Searches for the chip's parameters with which the spikes of each layer are nearest to `fired`, those that the
+    /// layer should have. `inputs` are the network's input spikes by step. `compare` is as in
+    /// [`Request`](super::Request). Calls `progress` with the number of finished parts of the search and the total
+    /// number of parts.
     ///
     /// # Errors
     /// Returns an error if the network does not fit the chip.
@@ -27,12 +28,12 @@ pub trait Chip: Sync {
     ) -> Result<Box<dyn OnChip>>;
 }
 
-/// When a chip's neurons compare with their thresholds, for chips that allow either.
+/// When a chip's neurons compare their potentials with their thresholds, on a chip that can do it in both ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// After each spike, as the chip does by default.
+    /// After each spike that arrives, as the chip does by default.
     Spike,
-    /// Once a step, as in training. Extra events make the chip do so.
+    /// Once in each time step, as in training. The driver sends the chip extra events that bring this about.
     Step,
 }
 
@@ -63,8 +64,8 @@ pub trait OnChip {
         Err(FitKind::LateOutputs.into())
     }
 
-    /// Returns the number of weights that exceeded the chip's range, for each layer; then for the outputs, if they have
-    /// potentials.
+    /// Returns, for each layer, the number of its weights that exceeded the chip's range and were clipped. If the
+    /// outputs are potentials, one more entry counts the outputs' weights.
     fn clipped(&self) -> Vec<usize>;
 
     /// Returns Rust source that defines the network. It compiles without `std` if `spikewire-chips` has its feature
@@ -77,18 +78,19 @@ pub trait OnChip {
     /// Returns an error if the chip does not accept the network.
     fn bytes(&self) -> Result<Vec<u8>>;
 
-    /// Returns remarks for the user, a line each: the network's size on the chip, and what had to be changed.
+    /// Returns remarks for the user, one line each: on the network's size on the chip, and on what quantising had to
+    /// change.
     fn notes(&self) -> Vec<String>;
 
-    /// Returns the parts of the chip's arithmetic that change the network's spikes, and that can be measured one by
-    /// one.
+    /// Returns the parts of the chip's arithmetic, such as rounded weights, whose effect on the spikes can be measured
+    /// one by one.
     fn costs(&self) -> Vec<Cost>;
 
-    /// Returns the reason for which spikes may be lost on their way into the chip.
+    /// Returns a text for the user that says why spikes may be lost on their way into the chip.
     fn loss(&self) -> &'static str;
 
-    /// Describes the duration of a step for the user. `mean` and `most` are its mean and largest number of clock
-    /// cycles.
+    /// Returns a text for the user on how long a step takes. `mean` and `most` are the mean and the largest number of
+    /// clock cycles in a step.
     fn effort(&self, mean: f64, most: u64) -> String {
         format!("a step takes the chip {mean:.0} clocks, {most} at most")
     }
@@ -100,7 +102,8 @@ pub struct Ran {
     pub fired: Vec<Trains>,
     /// The outputs' potentials by step, in the units of the training; empty if the outputs are spikes.
     pub potentials: Vec<Vec<f64>>,
-    /// Number of the chip's clock cycles, for each step.
+    /// For each step, the number of clock cycles that the chip takes. For the flight controller: the number of weights
+    /// that the step adds.
     pub clocks: Vec<u64>,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
@@ -110,11 +113,12 @@ pub struct Ran {
 pub struct Stepped {
     /// The neurons that fired in the step, by layer.
     pub fired: Vec<Vec<u16>>,
-    /// Number of the chip's clock cycles in the step.
+    /// Number of clock cycles that the chip took for the step. For the flight controller: number of weights that the
+    /// step added.
     pub clocks: u64,
 }
 
-/// Remarks that the generated source contains for its readers.
+/// Facts about a network that the generated source repeats in its comments.
 pub struct Remarks {
     /// Name of the file that the network comes from.
     pub source: String,
@@ -133,7 +137,7 @@ impl Remarks {
     }
 }
 
-/// Formats the items of an array, one in each line.
+/// Formats items as the lines of an array in generated source, one item in each line.
 pub(super) fn lines(items: impl Iterator<Item = String>) -> String {
     items.fold(String::new(), |all, item| all + "        " + &item + ",\n")
 }
@@ -148,12 +152,12 @@ pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> R
     Ok(bytes)
 }
 
-/// Formats numbers, separated by commas.
+/// Formats numbers (or other items) with commas between them.
 pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Converts the error of a driver that runs on the chip's model.
+/// Converts an error that a chip's driver reports while it runs on the chip's model.
 pub(super) fn refused<B, P>(error: ChipError<B, P>) -> crate::Error
 where
     ChipError<B, P>: std::error::Error + Send + Sync + 'static,

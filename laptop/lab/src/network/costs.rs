@@ -6,10 +6,10 @@ use super::trained::{Layer, Neuron};
 use super::{Distance, Trained, Trains};
 use std::fmt::{self, Display};
 
-/// A part of a chip's arithmetic that differs from double precision.
+/// A part of a chip's arithmetic that differs from double precision and changes a network's spikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
-    /// Neurons compare with their thresholds after each spike, instead of once a step.
+    /// Neurons compare their potentials with their thresholds after each spike, instead of once in each step.
     Order,
     /// A leak subtracts a fixed amount, instead of a share of the potential.
     Leak,
@@ -30,12 +30,14 @@ impl Display for Cost {
     }
 }
 
-/// Leaks to try, as multiples of what the original neuron loses in a step at half its threshold.
+/// Fixed leaks to try, as multiples of the amount that the trained neuron loses in a step at a potential of half its
+/// threshold.
 const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
 
 impl Cost {
-    /// Runs the network in double precision except for this part of the chip's arithmetic, whose parameters are fitted
-    /// to the spikes of the recording `tuned`. Returns the spikes of the last layer.
+    /// Runs the network on `inputs`, in double precision except for this part of the chip's arithmetic. Returns the
+    /// spikes of the last layer. Parameters of this part, such as fixed leaks, are fitted to `fired`, the spikes that
+    /// each layer should have for the inputs `tuned`.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -76,7 +78,8 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
     layer
 }
 
-/// Returns the leak, as a fixed amount for each step, with which the neuron's spikes are nearest to the original's.
+/// Returns the leak, as a fixed amount for each step, with which the spikes of neuron `at` are nearest to those in
+/// `fired`. `drive` are the input spikes of the layer.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
     let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {
@@ -112,8 +115,9 @@ fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) ->
     inputs.iter().map(of_step).collect()
 }
 
-/// Runs a step of neuron `at`; returns whether it fires. A spike resets the neuron in the same step. `leak` replaces
-/// the neuron's own leak by a fixed amount; `by_spike` compares after each spike.
+/// Runs one step of neuron `at`; returns whether it fires. A spike resets the neuron in the same step. If `leak` is
+/// given, it is the amount that replaces the neuron's trained leak. If `by_spike` is true, the neuron compares its
+/// potential with its threshold after each spike that arrives, instead of once.
 fn step(
     layer: &Layer,
     at: usize,

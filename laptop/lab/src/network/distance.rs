@@ -24,7 +24,8 @@ impl Distance {
         (1.0 - KEPT * KEPT) * self.sum
     }
 
-    /// Returns the distance, including what remains of the exponentials after the last step.
+    /// Returns the whole distance: [`so_far`](Self::so_far), plus the part that the exponentials add after the last
+    /// step.
     pub fn value(self) -> f64 {
         let after = self.difference * self.difference * KEPT * KEPT / (1.0 - KEPT * KEPT);
         (1.0 - KEPT * KEPT) * (self.sum + after)

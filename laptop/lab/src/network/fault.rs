@@ -10,7 +10,8 @@ use spikewire_chips::ReckOnAnswer;
 pub(super) use crate::Result;
 
 kinds! {
-    /// The reason for which a network, or what is asked for it, is refused as a whole.
+    /// The reason for which a network, or a setting or spikes given with it, is refused as a whole, not for one of its
+    /// layers.
     pub enum NetworkKind by spell of subject {
         OpenRule { framework: Option<Framework>, open: Vec<Choice> } => (
             "the file does not say by which rule its neurons step: {}",
@@ -47,7 +48,7 @@ kinds! {
 room!(NetworkKind, Network);
 
 kinds! {
-    /// The reason for which a NIR file cannot be read, or its graph is not taken.
+    /// The reason for which a NIR file cannot be read, or for which its graph is not supported.
     pub enum NirKind by spell of subject {
         Damaged { cause: Hdf5Error } => ("damaged: {cause}"),
         NoGraphInFile { cause: Hdf5Error } => ("an HDF5 file without a NIR graph: {cause}"),
@@ -164,7 +165,8 @@ kinds! {
 room!(FitKind, Fit);
 
 kinds! {
-    /// The reason for which a chip's model fails under its driver.
+    /// The reason for which a run on a chip's model fails: the chip's driver reports an error, or the model gives an
+    /// answer that the network cannot give.
     pub enum ModelKind by spell of subject {
         Refused { error: Box<dyn std::error::Error + Send + Sync> } => ("the chip's model: {error}"),
         Answer { answer: Option<ReckOnAnswer> } => ("the chip's model answers {answer:?}"),
@@ -173,7 +175,7 @@ kinds! {
 }
 room!(ModelKind, Model);
 
-/// Returns from the calling function with an error of this kind unless the condition holds.
+/// Returns the error `$kind` from the function that contains the macro, unless `$condition` is true.
 macro_rules! ensure {
     ($condition:expr, $kind:expr) => {
         let holds: bool = $condition;

@@ -35,11 +35,11 @@ use std::path::Path;
 /// The first bytes of every HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// A network as its file contains it.
+/// A network file that was read, in one of the two supported formats.
 pub enum File {
-    /// A network in JSON, whose parameters are for a step.
+    /// A network in JSON. Its parameters, such as decay factors, apply to one time step.
     Plain(Trained),
-    /// A NIR graph, whose time constants are in seconds.
+    /// A network as a NIR graph. Its time constants are in seconds.
     Nir(Box<nir::Chain>),
 }
 
@@ -47,7 +47,7 @@ impl File {
     /// Reads a network from a file: a NIR graph, or a network in JSON.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be read, or is neither of the two.
+    /// Returns an error if the file cannot be read, or has neither of these two formats.
     pub fn read(path: &Path) -> Result<Self> {
         let unread = |error| Error::open(path.display().to_string(), error);
         let bytes = fs::read(path).map_err(unread)?;
@@ -60,10 +60,11 @@ impl File {
         Err(NetworkKind::NoNetwork.at(path))
     }
 
-    /// Converts the network for `spikewire-network` on the flight controller, by the rule that the user asked for.
+    /// Converts the network to the form that `spikewire-network` runs on the flight controller. `asked` completes what
+    /// the file leaves open about how neurons decay, fire and reset.
     ///
     /// # Errors
-    /// Returns an error if the file and `asked` leave the rule incomplete, or contradict each other.
+    /// Returns an error if the file and `asked` together leave part of the rule open, or if they contradict each other.
     pub fn on_controller(self, asked: &Asked) -> Result<Model> {
         match self {
             Self::Plain(trained) => Model::of_plain(trained, asked),
@@ -71,11 +72,13 @@ impl File {
         }
     }
 
-    /// Converts the network for the chips, by the rule that the user asked for. A step lasts `seconds`, the step of a
-    /// recording, unless `asked` contains a step.
+    /// Converts the network to the form that can be brought onto chips. `asked` completes what the file leaves open
+    /// about how neurons decay, fire and reset. If it does not settle the duration of a step, a step lasts `seconds`,
+    /// as in the recording.
     ///
     /// # Errors
-    /// Returns an error if the file and `asked` leave the rule incomplete, or if the chips have no such neurons.
+    /// Returns an error if the file and `asked` together leave part of the rule open, or if no chip supports the
+    /// network's neurons.
     pub fn on_chip(self, asked: &Asked, seconds: Option<f64>) -> Result<Trained> {
         let trained = match self {
             Self::Plain(trained) => trained.reset_by(asked),

@@ -10,8 +10,8 @@ use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
 use std::collections::BTreeMap;
 
-/// Maximum size of an array in bytes, more than 256 neurons with 256 weights each can need. It protects the reader from
-/// files that claim huge arrays.
+/// Maximum size of an array in a file, in bytes. It prevents huge allocations for damaged files; 256 neurons with 256
+/// weights each need 512 KiB at most.
 const MOST_BYTES: usize = 1 << 26;
 
 /// The layers of a NIR graph, from input to output. Time constants are in seconds.
@@ -19,15 +19,16 @@ pub struct Chain {
     pub(super) stages: Vec<Stage>,
     /// The last layer, if its neurons never fire.
     pub(super) readout: Option<Stage>,
-    /// Weights that follow the last neurons; their sums are then the outputs.
+    /// Weights after the last neurons, if the graph ends with weights. The outputs are then weighted sums of the last
+    /// neurons' spikes.
     pub(super) sum: Option<Weights>,
-    /// Remarks for the user on peculiarities of the file that are accepted.
+    /// Remarks for the user on unusual properties of the file that the reader accepts.
     pub(super) notes: Vec<String>,
 }
 
 pub(super) struct Stage {
     pub(super) weights: Weights,
-    /// Recurrent weights, from the layer's neurons to themselves; `None` if the layer is not recurrent.
+    /// Recurrent weights, from neurons of the layer to neurons of the same layer; `None` if the layer is not recurrent.
     pub(super) recurrent: Option<Weights>,
     pub(super) neurons: Neurons,
 }
@@ -47,7 +48,8 @@ pub(super) struct Neurons {
     /// Threshold of each neuron; `None` if the neurons never fire.
     pub(super) threshold: Option<Array>,
     pub(super) reset: Option<Array>,
-    /// Time constant and weight of the current that a spike adds; `None` if a spike acts in one step only.
+    /// Time constant and weight of the synaptic current; `None` for neurons without such a current, on whose potential
+    /// an input spike acts only in its own step.
     pub(super) synapse: Option<Synapse>,
 }
 
@@ -70,12 +72,13 @@ impl Array {
     }
 }
 
-/// A NIR graph with the graphs nested in it, as one graph. The name of a nested node is its path.
+/// A NIR graph in which nested graphs were replaced by their nodes. Such a node is named by its path, such as
+/// `graph.node`.
 #[derive(Default)]
 struct Graph {
     nodes: BTreeMap<String, Group>,
     edges: Vec<(String, String)>,
-    /// Names of the input and the output node of each nested graph, by the graph's path.
+    /// For each nested graph, by its path: the names of its input node and its output node.
     inner: BTreeMap<String, (String, String)>,
 }
 
@@ -86,9 +89,9 @@ struct Loops<'a> {
     weights: Vec<&'a str>,
 }
 
-/// Types of nodes whose neurons fire. Such a layer may be recurrent.
+/// Types of NIR nodes whose neurons fire. A layer of such neurons may be recurrent.
 const FIRING: [&str; 3] = ["LIF", "IF", "CubaLIF"];
-/// Types of nodes whose neurons never fire. Such a layer may only be the last.
+/// Types of NIR nodes whose neurons never fire. Only the last layer may consist of such neurons.
 const SILENT: [&str; 3] = ["LI", "I", "CubaLI"];
 
 /// Reads a NIR graph. It must be a chain in which weights (Linear or Affine) and neurons alternate. Layers that fire
@@ -145,7 +148,7 @@ fn kind(node: &Group, name: &str) -> Result<String> {
     kind.map_err(|cause| NirKind::NoType { cause }.at(node_at(name)))
 }
 
-/// Returns the place of a node in errors.
+/// Returns the location that an error reports for the node `name`.
 fn node_at(name: &str) -> Spot {
     Spot::Part(format!("node `{name}`"))
 }
@@ -154,8 +157,8 @@ fn node_at(name: &str) -> Spot {
 const DEEPEST: usize = 8;
 
 impl Graph {
-    /// Adds the nodes and edges of a group, which is a graph, and of the graphs nested in it. Puts `path` in front of
-    /// their names. Returns the names of its input and output node.
+    /// Adds the nodes and edges of the NIR graph in `group`, and of the graphs nested in it, to this graph. Their names
+    /// get the prefix `path`. Returns the names of the input node and the output node of the graph in `group`.
     ///
     /// # Errors
     /// Returns an error if the group is not a graph with one input and one output.
@@ -197,8 +200,8 @@ impl Graph {
         Ok((one("Input", inputs)?, one("Output", outputs)?))
     }
 
-    /// Returns a remark if the shape of the input node has an extra first dimension of 1, for batches, as Norse writes
-    /// it. (`nir` itself refuses such files.)
+    /// Returns a remark for the user if the shape of the input node begins with an extra dimension of 1, for batches.
+    /// Norse writes such files; the Python package `nir` refuses them.
     fn batch(&self, input: &str) -> Result<Vec<String>> {
         let node = &self.nodes[input];
         let is_told = node.datasets()?.iter().any(|dataset| dataset.name() == "shape");
@@ -212,7 +215,7 @@ impl Graph {
         })
     }
 
-    /// Redirects edges from and to nested graphs to the input and output nodes of those graphs.
+    /// Redirects edges from and to nested graphs to the output and input nodes of those graphs.
     fn join(&mut self) {
         for (from, to) in &mut self.edges {
             if let Some((_, output)) = self.inner.get(from) {
@@ -234,7 +237,8 @@ impl Graph {
         after
     }
 
-    /// Returns the names of the nodes from `first` to `last`, each with its connections back to itself.
+    /// Follows the chain of nodes from `first` to `last`. Returns the name of each node on it, with the node's
+    /// connections back to itself.
     ///
     /// # Errors
     /// Returns an error if the graph is not a chain.
@@ -283,7 +287,8 @@ impl Graph {
         Ok(path)
     }
 
-    /// Returns the sum of all recurrent weights of a layer with `count` neurons; `None` if it is not recurrent.
+    /// Returns the recurrent weights of a layer with `count` neurons: the sum of the weight matrices of all connections
+    /// in `loops`. Returns `None` if there are no connections.
     fn recurrent(&self, loops: &Loops, count: usize) -> Result<Option<Weights>> {
         if !loops.is_direct && loops.weights.is_empty() {
             return Ok(None);
@@ -364,7 +369,7 @@ fn read_neurons(node: &Group, name: &str, kind: &str, count: usize) -> Result<Ne
     })
 }
 
-/// Returns the shape and the numbers of an array, converted from its numeric type.
+/// Reads the array `name` of a node. Returns its shape, and its numbers converted to `f64`.
 fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
     let dataset = node.dataset(name).map_err(|_| NirKind::NoArray { name: name.to_owned() })?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();

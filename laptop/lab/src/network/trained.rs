@@ -6,7 +6,8 @@ use crate::network::fault::{Context, LayerKind, NetworkKind, Result, ensure};
 /// Maximum number of layers in a network.
 const LAYERS: usize = 3;
 
-/// A spike train: the neurons that fire, for each step. A neuron may occur several times in a step.
+/// Spikes of a layer or of the inputs: for each step, the numbers of the neurons or inputs that fire. A number may
+/// occur several times in a step.
 pub type Trains = Vec<Vec<u16>>;
 
 /// A trained network: layers of integrate-and-fire neurons, each fully connected to the layer before it.
@@ -14,11 +15,11 @@ pub type Trains = Vec<Vec<u16>>;
 pub struct Trained {
     /// The layers whose neurons fire, from input to output.
     pub layers: Vec<Layer>,
-    /// Neurons that never fire, after the last layer; `None` if the outputs are the spikes of the last layer.
+    /// Output neurons that never fire, after the last of `layers`; `None` if the outputs are the spikes of that layer.
     pub readout: Option<Readout>,
 }
 
-/// Leaky neurons that never fire, whose potentials are the network's outputs.
+/// Leaky neurons that never fire, and whose potentials are the network's outputs.
 #[derive(Clone, Debug)]
 pub struct Readout {
     /// Name in the network's file.
@@ -46,7 +47,7 @@ impl Readout {
         Ok(())
     }
 
-    /// Returns the potentials of the outputs after each step, if the last layer fires as in `fired`.
+    /// Returns the outputs' potentials after each step, given the spikes `fired` of the last layer.
     fn run(&self, fired: &Trains) -> Vec<Vec<f64>> {
         let mut potentials = vec![0.0; self.weights.len()];
         let step = |fired: &Vec<u16>| {
@@ -68,8 +69,8 @@ pub struct Layer {
     pub name: String,
     /// The weights: one row for each neuron, with one weight for each input.
     pub weights: Vec<Vec<f64>>,
-    /// The recurrent weights: one row for each neuron, with one weight for each neuron of this layer. They act one step
-    /// later. Empty unless the layer is recurrent.
+    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer, whose spikes
+    /// act one step later. Empty unless the layer is recurrent.
     pub recurrent: Vec<Vec<f64>>,
     /// For each neuron, the amount that every step adds to its potential.
     pub bias: Vec<f64>,
@@ -81,8 +82,8 @@ pub struct Layer {
     pub fires: Fires,
 }
 
-/// Returns the smallest whole number at which a neuron with this threshold fires; a chip's neuron fires at or above its
-/// threshold.
+/// Converts a threshold to a whole number for chips, whose neurons fire at or above their thresholds. Returns the
+/// smallest whole potential at which a neuron with this `threshold` fires.
 pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
     match fires {
         // The small term keeps rounding errors from changing the result.
@@ -96,8 +97,8 @@ pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
 pub struct Neuron {
     /// Factor by which a step multiplies the potential, 0 to 1; 1 for a perfect integrator.
     pub keep: f64,
-    /// Amount by which a step then moves the potential towards 0, for networks trained with tinyODIN's leak; 0 for
-    /// others.
+    /// Amount by which a step moves the potential towards 0 after the multiplication by `keep`. 0 unless the network
+    /// was trained with the leak of tinyODIN.
     pub leak: f64,
     /// Threshold of the potential, above 0.
     pub threshold: f64,
@@ -149,8 +150,8 @@ impl Layer {
         Ok(())
     }
 
-    /// Runs the layer on the inputs of all steps; returns the neurons that fire, by step. Calls `see` with each neuron
-    /// and its potential before the reset.
+    /// Runs the layer on the inputs of all steps; returns the neurons that fire, by step. Calls `see` in each step with
+    /// the index of each neuron and its potential before a reset.
     pub(super) fn follow(&self, inputs: &Trains, mut see: impl FnMut(usize, f64)) -> Trains {
         let mut potentials = vec![0.0; self.neurons.len()];
         let mut before: Vec<u16> = Vec::new();
@@ -174,8 +175,8 @@ impl Layer {
         inputs.iter().map(step).collect()
     }
 
-    /// Runs a step of neuron `at`, to whose potential `driven` is added; returns whether it fires. Calls `see` with the
-    /// potential before the reset.
+    /// Runs one step of neuron `at`; returns whether it fires. `driven` is the sum of the bias and the weights that the
+    /// step adds to the potential. Calls `see` with the potential that the neuron compares with its threshold.
     fn step(&self, at: usize, driven: f64, potential: &mut f64, see: impl FnOnce(f64)) -> bool {
         let Neuron { threshold, .. } = self.neurons[at];
         let fires = |potential| match self.fires {
@@ -216,17 +217,19 @@ impl Layer {
     }
 }
 
-/// Returns an error unless a layer of `inputs` inputs fits the layer before it.
+/// Returns an error unless a layer with `inputs` inputs can follow the layer named `before`, which has `neurons`
+/// neurons.
 pub(super) fn fits(inputs: usize, before: &str, neurons: usize) -> Result<()> {
     let misfit = || LayerKind::Inputs { inputs, before: before.to_owned(), neurons }.into();
     if inputs == neurons { Ok(()) } else { Err(misfit()) }
 }
 
 impl Trained {
-    /// Makes a network of these layers, whose outputs are the spikes of the last one.
+    /// Makes a network whose outputs are the spikes of the last of `layers`.
     ///
     /// # Errors
-    /// Returns an error if there are no layers or too many, if they do not fit each other, or if a number is invalid.
+    /// Returns an error if there are no layers or too many, if a layer does not fit the one before it, or if a number
+    /// is invalid.
     pub fn new(layers: Vec<Layer>) -> Result<Self> {
         ensure!(!layers.is_empty(), NetworkKind::NoLayers);
         let (count, most) = (layers.len(), LAYERS);
@@ -241,10 +244,12 @@ impl Trained {
         Ok(Self { layers, readout: None })
     }
 
-    /// Makes a network of these layers, followed by `readout`, neurons that never fire.
+    /// Makes a network whose outputs are the potentials of `readout`, which follows the last of `layers`; without a
+    /// readout, the outputs are the spikes of the last layer.
     ///
     /// # Errors
-    /// Returns the errors of [`new`](Self::new), and an error if the readout does not fit.
+    /// Returns the errors of [`new`](Self::new). Also returns an error if the readout does not fit the last layer, or
+    /// if it contains an invalid number.
     pub fn with_readout(layers: Vec<Layer>, readout: Option<Readout>) -> Result<Self> {
         let network = Self::new(layers)?;
         if let (Some(readout), Some(last)) = (&readout, network.layers.last()) {
@@ -253,10 +258,11 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
-    /// Replaces the resets of the layers by those that the user asked for: one for all layers, or one for each.
+    /// Replaces the rule by which neurons reset and fire by the one that the user asked for. `asked` contains one reset
+    /// for all layers, or one reset for each layer.
     ///
     /// # Errors
-    /// Returns an error if the number of resets is neither one nor that of the layers.
+    /// Returns an error if `asked` contains several resets, and their number is not that of the layers.
     pub(super) fn reset_by(mut self, asked: &Asked) -> Result<Self> {
         let (rule, resets, layers) = (asked.or_plain(), &asked.resets, self.layers.len());
         ensure!(
@@ -270,9 +276,9 @@ impl Trained {
         Ok(self)
     }
 
-    /// Replaces subtraction in the same step by subtraction one step late, as some chips do it. The late subtraction
-    /// comes after the step's leak, which would have reduced it; weights from each neuron to itself make up for the
-    /// difference.
+    /// Converts layers in which a spike subtracts the threshold in the same step, for chips that subtract it one step
+    /// later. There the subtraction comes after the step's leak, which would have reduced it; a weight from each neuron
+    /// to itself makes up for the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {
@@ -309,8 +315,8 @@ impl Trained {
         all
     }
 
-    /// Returns the outputs' potentials by step, if neurons fire as in `fired`; empty if the outputs are the spikes of
-    /// the last layer.
+    /// Returns the outputs' potentials by step, given the spikes `fired` of all layers; empty if the outputs are the
+    /// spikes of the last layer.
     pub fn potentials(&self, fired: &[Trains]) -> Vec<Vec<f64>> {
         let (Some(readout), Some(fired)) = (&self.readout, fired.last()) else { return vec![] };
         readout.run(fired)
@@ -333,8 +339,8 @@ mod tests {
         }
     }
 
-    /// Each reset gives the spikes of the table in `spikewire-network`'s documentation, for a factor of 1/2 and a
-    /// threshold of 4; all numbers are exact.
+    /// For a decay factor of 1/2 and a threshold of 4, each reset gives the spikes that are listed in the documentation
+    /// of `spikewire-network`. All numbers are exact.
     #[test]
     fn each_reset_has_its_spikes() {
         let drive = [3, 3, 0, 4, 1, 5, 2, 0, 0, 6, 6, -4, 2, 7, 1, 8];

@@ -8,7 +8,7 @@ use super::rule::{Current, Fires, Rule};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// A number type of the controller, with the spelling of its numbers in generated source.
+/// A number type of the controller whose numbers can be written as Rust source.
 pub(super) trait Spelled: Number {
     /// Name of the number type in generated source.
     const TYPE: &'static str;
@@ -17,8 +17,8 @@ pub(super) trait Spelled: Number {
 
     fn spell(self) -> String;
     fn spell_factor(factor: Self::Factor) -> String;
-    /// Returns the source of the constructor call for weights with these rows. `shift` is the number of low bits that a
-    /// packed weight leaves out.
+    /// Returns the Rust source that constructs a matrix of weights with these rows. `shift` is the number of low bits
+    /// that packed weights leave out.
     fn spell_weights(rows: &[&[Self]], shift: u32) -> String;
 }
 
@@ -66,9 +66,9 @@ fn spell_rows<K: Copy>(rows: &[&[K]], spell: impl Fn(K) -> String) -> String {
     text
 }
 
-/// Returns the source of a module that defines the network. `shifts` are the shifts of each layer's packed weights, and
-/// `units` the values that potentials of 1 represent; both are empty for floating point. `check` are the inputs of the
-/// steps that are run before arming.
+/// Returns the Rust source of a module that defines the network. For integers, `shifts` are the left shifts of the
+/// layers' weights, and `units` the values, in units of the training, that potentials of 1 stand for; both are empty
+/// for floating point. `check` are the input spikes of the self-test.
 pub(super) fn emit<K: Spelled>(
     net: &Net<K>,
     shifts: &[u32],
@@ -110,7 +110,7 @@ use spikewire_network::{{{used}}};
     )
 }
 
-/// Names that a generated module imports only if it uses them.
+/// Names of `spikewire-network` that a generated module imports if it uses them.
 const NAMES: [&str; 17] = [
     "Cuba",
     "Forward",
@@ -131,7 +131,7 @@ const NAMES: [&str; 17] = [
     "Values",
 ];
 
-/// Returns the source of a layer's constants: its weights, neurons and type.
+/// Returns the Rust source that defines a layer's weights, neurons and type.
 fn statics<K: Spelled>(layer: &Layer<K>, number: usize, shift: u32) -> String {
     let Layer { name, weights, own, neurons, rule } = layer;
     let (inputs, count, numbers) = (weights.len(), neurons.len(), K::TYPE);
@@ -182,7 +182,7 @@ type Layer{number} = Layer<'static, {kind}, {inputs}, {count}, Spiking, {recurre
     text
 }
 
-/// Returns the source of a neuron's type.
+/// Returns a neuron's type as Rust source, such as `Lif<f32, ToValue>`.
 fn kind<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     let (numbers, reset) = (K::TYPE, rule.reset.type_name());
     let inner = match neuron.spike {
@@ -196,7 +196,7 @@ fn kind<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     }
 }
 
-/// Returns the source of the constructor call for a neuron.
+/// Returns the Rust source that constructs a neuron.
 fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     let (numbers, new, zero) = (K::TYPE, K::NEW, K::default());
     let decay = K::spell_factor(neuron.decay);
@@ -229,7 +229,7 @@ fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
     text
 }
 
-/// Returns the source of the constructor call for the whole network.
+/// Returns the Rust source that defines the network's type, `Trained`, and the network itself, `NETWORK`.
 fn network<K: Spelled>(net: &Net<K>) -> String {
     let (mut kind, mut value) = (String::new(), String::new());
     for (number, layer) in (1..).zip(&net.layers) {
@@ -257,8 +257,8 @@ pub static NETWORK: Trained = {value};
     )
 }
 
-/// Returns the source of the check before arming: the steps to run, the spikes and potentials that must result, and a
-/// function that compares.
+/// Returns the Rust source of the self-test before arming: input spikes, the spikes and potentials that must result,
+/// and the function `is_intact`, which runs the steps and compares the results.
 fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
     let done = net.run(inputs);
     let (steps, layers) = (inputs.len(), net.layers.len());

@@ -12,11 +12,11 @@ use crate::network::fault::{Context, FitKind, LayerKind, Result, ensure};
 /// Largest absolute value of a number that `spikewire-network` accepts in `f32`.
 const LARGEST: f64 = 1e15;
 
-/// Smallest time constant that counts as one whole step, as a share of the step. The step of a recording may differ a
-/// little from that of the training.
+/// Smallest time constant of a current that is taken for exactly one step, as a share of a step. It is below 1 because
+/// the step of a recording may be a little longer than that of the training.
 const A_STEP: f64 = 0.98;
 
-/// Gains that differ from 1 by less than this are taken for exactly 1.
+/// Gains that differ from 1 by less than this are taken for exactly 1, in files of snnTorch and `SpikingJelly`.
 const ROUNDING: f64 = 1e-5;
 
 impl Model {
@@ -54,10 +54,11 @@ impl Model {
         Self::new(Net { layers }, Vec::new())
     }
 
-    /// Converts a NIR graph, by the rule that the user asked for.
+    /// Converts a network from a NIR graph. `asked` completes what the graph leaves open about how neurons decay, fire
+    /// and reset.
     ///
     /// # Errors
-    /// Returns an error if the rule is incomplete, or if it does not fit the file.
+    /// Returns an error if part of the rule remains open, or if the rule does not fit the graph.
     pub(in super::super) fn of_nir(chain: Chain, asked: &Asked) -> Result<Self> {
         let Chain { stages, readout, sum, mut notes } = chain;
         let all = || stages.iter().chain(&readout);
@@ -138,8 +139,8 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Converts recurrent weights from one row for each receiving neuron. If no weight leads from a neuron to another,
-/// keeps the diagonal only.
+/// Converts a matrix of recurrent weights, which has one row for each receiving neuron. If each neuron leads at most to
+/// itself, keeps only the diagonal.
 fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
@@ -155,7 +156,7 @@ fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     }
 }
 
-/// Converts a layer of a NIR graph, and adds remarks for the user to `notes`.
+/// Converts a layer of a NIR graph by `rule`, and adds remarks for the user to `notes`.
 fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Layer<f64>> {
     let Stage { weights: Weights { mut rows, bias }, recurrent, neurons } = stage;
     let name = neurons.name();
@@ -213,11 +214,12 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
 
 struct Stepped {
     neuron: Neuron<f64>,
-    /// Factor by which the weights must be multiplied.
+    /// Factor by which the weights that lead to the neuron must be multiplied.
     gain: f64,
 }
 
-/// Converts a neuron's parameters to those for a step. The bias stays 0; the caller adds it.
+/// Converts the parameters of neuron `at`, such as time constants, to those for one step. Leaves the bias at 0, to
+/// which the caller adds it.
 fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
     let dt = rule.dt;
     let resistance = neurons.resistance.at(at);
@@ -252,7 +254,8 @@ fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
 }
 
 impl Neurons {
-    /// Returns the potential at which the framework starts this neuron. (`spikewire-network` starts all neurons at 0.)
+    /// Returns the initial potential of neuron `at` in the training framework. (`spikewire-network` starts all neurons
+    /// at 0.)
     fn start(&self, at: usize, rule: &Rule) -> f64 {
         let of = |all: Option<&Array>| all.map_or(0.0, |all| all.at(at));
         match rule.framework {
@@ -265,7 +268,8 @@ impl Neurons {
 }
 
 impl Neuron<f64> {
-    /// Shifts all of the neuron's potentials by `start`, so that it starts at 0.
+    /// Shifts the neuron's potentials, such as its threshold, so that a neuron with the initial potential `start`
+    /// starts at 0.
     fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
         self.inner -= (1.0 - self.decay) * start;
         if let Some(spike) = &mut self.spike {
@@ -281,7 +285,8 @@ impl Neuron<f64> {
 /// Returns the factor by which a step multiplies a quantity that decays with time constant `tau`, in seconds.
 ///
 /// # Errors
-/// Returns an error if `tau` is not positive, or so short that [`Decay::Euler`] would give a negative factor.
+/// Returns an error if `tau` is not positive, or so short that [`Decay::Euler`] would give a negative factor (which
+/// becomes 0 for snnTorch).
 fn left(tau: f64, rule: &Rule) -> Result<f64> {
     let Rule { dt, framework, decay, .. } = *rule;
     ensure!(tau > 0.0 && tau.is_finite(), LayerKind::TimeConstant { tau });

@@ -22,10 +22,11 @@ use net::{Done, Net, Recurrent, State};
 use number::Number;
 use quantise::Integers;
 
-/// A network in double precision, in the form of `spikewire-network`: parameters for a step.
+/// A network in double precision, in the form that `spikewire-network` runs. Its parameters, such as decay factors,
+/// apply to one time step.
 pub struct Model {
     net: Net<f64>,
-    /// Remarks for the user on peculiarities of the network's file.
+    /// Remarks for the user on unusual properties of the network's file.
     notes: Vec<String>,
 }
 
@@ -44,18 +45,18 @@ pub struct ControllerRequest<'a> {
     pub model: &'a Model,
     /// The type of the network's numbers on the controller.
     pub numbers: Numbers,
-    /// Input spikes of the recording on which integers are tuned, by step.
+    /// Input spikes, by step, of the recording on which the conversion to integers is tuned.
     pub tuned: &'a Trains,
-    /// A recording on which the result is only tested.
+    /// A second recording, on which the converted network is only tested; `None` to test it on `tuned` only.
     pub held_out: Option<HeldOut<'a>>,
-    /// Called with the number of neurons that are done, and the number of all neurons.
+    /// Called during the conversion to integers, with the number of finished neurons and the total number of neurons.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// Number of steps that the generated check runs before arming.
+/// Number of steps in the self-test that the generated source contains. The flight controller runs it before arming.
 const CHECKED: usize = 10;
 
-/// The network, in the number type of the controller.
+/// A network in the number type of the controller.
 enum Held {
     Float(Net<f32>),
     Integer(Integers),
@@ -65,7 +66,7 @@ enum Held {
 struct OnController {
     held: Held,
     notes: Vec<String>,
-    /// Input spikes of the steps that the generated check runs before arming.
+    /// Input spikes of the steps in the generated self-test.
     check: Trains,
 }
 
@@ -75,7 +76,7 @@ impl Model {
         self.net.layers.first().map_or(0, net::Layer::inputs)
     }
 
-    /// Returns the name of the first layer in the network's file.
+    /// Returns the name that the network's file gives to the first layer.
     pub fn first(&self) -> &str {
         self.net.layers.first().map_or("", |layer| &layer.name)
     }
@@ -86,14 +87,15 @@ impl Model {
         self.net.run(inputs).fired
     }
 
-    /// Runs the network in `f32`, with the same bits as the controller. Returns the neurons that fire, by layer, then
-    /// by step; and the potentials of the last layer, by step.
+    /// Runs the network in `f32`; the results are bit for bit those of the controller. Returns the neurons that fire,
+    /// by layer, then by step; and the potentials of the last layer, by step.
     pub fn run_as_flown(&self, inputs: &Trains) -> (Vec<Trains>, Vec<Vec<f32>>) {
         let Done { fired, potentials, .. } = quantise::float(&self.net).run(inputs);
         (fired, potentials)
     }
 
-    /// Returns the network in `f32` and its initial state, to run it step by step with the same bits as the controller.
+    /// Returns the network in `f32` in its initial state, to run it step by step. Its results are bit for bit those of
+    /// the controller.
     pub fn as_flown(&self) -> Flown {
         let net = quantise::float(&self.net);
         Flown { state: net.state(), net }
@@ -114,7 +116,7 @@ impl Model {
     }
 }
 
-/// A network in `f32` and its state, which runs step by step with the same bits as the controller.
+/// A network in `f32` with its state, which runs step by step. Its results are bit for bit those of the controller.
 #[derive(Clone)]
 pub struct Flown {
     net: Net<f32>,
@@ -143,7 +145,7 @@ impl Flown {
         self.net.step(&mut self.state, inputs);
     }
 
-    /// Returns the neurons that fired in the last step, for each layer, in ascending order.
+    /// Returns, for each layer, the neurons that fired in the last step, in ascending order.
     pub fn fired(&self) -> impl Iterator<Item = &[u16]> {
         self.state.iter().map(|state| &state.fired[..])
     }
@@ -154,10 +156,11 @@ impl Flown {
     }
 }
 
-/// Brings a network onto the controller: converts its numbers, and compares its spikes with those in double precision.
+/// Brings a network onto the controller: converts its numbers, and compares the converted network's spikes with those
+/// in double precision.
 ///
 /// # Errors
-/// Returns an error if the network has too many inputs or neurons.
+/// Returns an error if the converted network cannot be run on the recordings.
 pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     let ControllerRequest { model, numbers, tuned, held_out, progress } = *request;
     let original = model.original(tuned);
@@ -192,10 +195,10 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
-/// Returns the inputs of the [`CHECKED`] consecutive steps in which most neurons fire if the network starts from rest.
-/// Windows in which an output fires come before those in which none does.
+/// Chooses the steps of the self-test. Returns the inputs of [`CHECKED`] consecutive steps in which the network,
+/// started from rest, fires the most spikes; steps in which an output fires are preferred.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
-    /// Largest number of windows that are tried.
+    /// Maximum number of series of [`CHECKED`] steps that are tried.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
     let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);
@@ -208,7 +211,7 @@ fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
 }
 
 impl OnController {
-    /// Returns the number of bytes that the network takes in flash, for weights and neurons, and in RAM, for its state.
+    /// Returns two numbers of bytes that the network takes: in flash (weights and neurons) and in RAM (state).
     fn bytes_of(&self) -> (usize, usize) {
         match &self.held {
             Held::Float(net) => bytes(net, 4),
@@ -231,8 +234,8 @@ impl OnController {
     }
 }
 
-/// Returns the number of bytes that a network takes in flash and in RAM as `spikewire-network` stores it. `weight` is
-/// the number of bytes of a weight.
+/// Returns two numbers of bytes that a network takes as `spikewire-network` stores it: in flash and in RAM. A weight
+/// takes `weight` bytes.
 fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
     let (mut flash, mut ram) = (0, 0);
     for layer in &net.layers {

@@ -1,5 +1,5 @@
-//! A network in the form of `spikewire-network`, which covers the neurons of all frameworks, and its simulation in any
-//! number type.
+//! A network in the form that `spikewire-network` runs, and its simulation in any number type. The form covers the
+//! neurons of all training frameworks that can be read.
 
 use super::super::Trains;
 use super::number::Number;
@@ -27,9 +27,9 @@ pub(super) struct Layer<K: Number> {
 #[derive(Clone, Debug)]
 pub(super) enum Recurrent<K> {
     None,
-    /// The weights: one row for each neuron that fired, with one weight for each neuron of the layer.
+    /// Weights between all neurons: one row for each sending neuron, with one weight for each receiving neuron.
     Full(Vec<Vec<K>>),
-    /// The weight of each neuron to itself; there are no others.
+    /// One weight for each neuron, from the neuron to itself. Neurons do not act on one another.
     OneToOne(Vec<K>),
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Neuron<K: Number> {
     pub bias: K,
     /// Constant that a step adds to the potential directly, not through the current.
     pub inner: K,
-    /// How the neuron fires; `None` if it never fires.
+    /// Threshold and reset; `None` for a neuron that never fires.
     pub spike: Option<Spike<K>>,
 }
 
@@ -58,8 +58,9 @@ pub(super) struct Spike<K> {
 }
 
 impl<K: Number> Neuron<K> {
-    /// Runs a step. `v` and `current` are the neuron's state, `sum` is the sum of bias and inputs. Returns whether the
-    /// neuron fires, and whether a number left its range.
+    /// Runs one step. `v` and `current` are the neuron's state; `sum` is the bias plus the weights of all spikes that
+    /// arrive. Returns whether the neuron fires, and whether its potential or current had to be limited to the range of
+    /// the number type.
     #[inline]
     pub(super) fn step(&self, rule: &Rule, v: &mut K, current: &mut K, sum: K) -> (bool, bool) {
         let mut is_outside = false;
@@ -131,8 +132,8 @@ impl<K: Number> Layer<K> {
         self.weights.len()
     }
 
-    /// Returns the number of weights that a step adds: `inputs` is the number of input spikes, `own` the number of
-    /// spikes of the layer itself in the step before.
+    /// Returns the number of weights that a step of the layer adds. `inputs` is the number of input spikes, and `own`
+    /// the number of the layer's own spikes in the step before.
     pub(super) fn operations(&self, inputs: usize, own: usize) -> usize {
         let back = match self.own {
             Recurrent::None => 0,
@@ -184,13 +185,13 @@ pub(super) struct Done<K> {
     pub potentials: Vec<Vec<K>>,
     /// Number of weights that were added, for each step.
     pub operations: Vec<u64>,
-    /// Number of times that a number left its range.
+    /// Number of times that a neuron's potential or current left its range and was limited.
     pub saturated: u32,
 }
 
 impl<K: Number> Net<K> {
-    /// Describes how neurons fire, for the user: in one line if all layers have the same rule, else in one for each
-    /// layer that fires.
+    /// Describes for the user how neurons fire and reset: in one line if all layers follow the same rule, else in one
+    /// line for each layer that fires.
     pub(super) fn rules(&self) -> Vec<String> {
         let fires = |layer: &&Layer<K>| layer.neurons.iter().any(|neuron| neuron.spike.is_some());
         let firing: Vec<_> = self.layers.iter().filter(fires).collect();
@@ -214,7 +215,8 @@ impl<K: Number> Net<K> {
         self.layers.iter().map(rest).collect()
     }
 
-    /// Runs a step of all layers. Returns the number of weights that were added, and how often a number left its range.
+    /// Runs one step of all layers. Returns the number of weights that were added, and the number of neurons whose
+    /// potential or current had to be limited to its range.
     pub(super) fn step(&self, state: &mut [State<K>], inputs: &[u16]) -> (usize, u32) {
         let (mut operations, mut saturated) = (0, 0);
         let mut drive = inputs.to_vec();

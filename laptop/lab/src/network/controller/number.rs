@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-/// A number type with the operations of a neuron, which round as in `spikewire-network`.
+/// A number type with the arithmetic of a neuron. Its operations round exactly as in `spikewire-network`.
 pub(super) trait Number: Copy + Default + PartialOrd + Debug + Send + Sync {
     /// The type of a decay factor.
     type Factor: Copy + PartialEq + Debug + Send + Sync;
@@ -11,8 +11,7 @@ pub(super) trait Number: Copy + Default + PartialOrd + Debug + Send + Sync {
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
 
-    /// Limits the number to the range of potentials and currents. Returns the result, and whether the number was
-    /// outside.
+    /// Limits a potential or current to its range. Returns the result, and whether the number was outside the range.
     fn bounded(self) -> (Self, bool) {
         (self, false)
     }

@@ -1,16 +1,17 @@
-//! Converts a network from the form of `spikewire-network` to that of the chips, whose neurons rest at 0 and have no
-//! current.
+//! Converts a network from the form that `spikewire-network` runs to the form for chips, whose neurons rest at 0 and
+//! have no synaptic current.
 
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
 use super::net::{Layer, Neuron, Recurrent, Spike};
 use crate::network::fault::{Context, FitKind, Result, ensure};
 
-/// Largest share of a current that may remain after a step.
+/// Largest share of a synaptic current that a step may leave. The chips' neurons have no such current, so it must be
+/// over after its step.
 const CURRENT: f64 = 1e-3;
 
 impl Model {
-    /// Converts the network for the chips.
+    /// Converts the network to the form that can be brought onto chips.
     ///
     /// # Errors
     /// Returns an error if a current lasts longer than a step, if neurons that never fire are not the last ones, or if

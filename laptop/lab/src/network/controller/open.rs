@@ -1,10 +1,12 @@
-//! The choices of a rule that a file and its framework leave open, and the text that asks the user for them.
+//! The choices about how neurons decay, fire and reset that a file and its framework leave open, and the text that asks
+//! the user for them.
 
 use super::Framework;
 use catalogue::run::Spell;
 use std::fmt::Write as _;
 
-/// A choice that the network needs, and that neither its file nor its framework makes.
+/// A choice about how neurons decay, fire and reset, which the user must make if neither the network's file nor its
+/// framework does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Choice {
@@ -20,8 +22,8 @@ pub enum Choice {
     Step,
 }
 
-/// Returns a text for the user: which choices are open, and how to make each, one line for each choice. `spell` gives
-/// the name of a setting.
+/// Returns a text that asks the user to make the choices in `open`, with the possible values of each in a line of its
+/// own. `spell` converts the name of a setting to the spelling that the user knows.
 pub(in super::super) fn words(
     spell: Spell,
     framework: Option<Framework>,

@@ -7,17 +7,18 @@ use super::rule::Rule;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Scales to try for the weights, as multiples of the one at which the largest weight becomes 127. Scales above 1 clip
-/// the largest weights, so that the others are rounded less.
+/// Scales to try for a neuron's weights, as multiples of the scale at which the largest weight becomes 127. Multiples
+/// above 1 clip the largest weights, so that the others are rounded less.
 const SCALES: [f64; 14] =
     [1.0, 0.97, 0.94, 0.91, 0.88, 0.85, 0.8, 0.75, 0.7, 1.05, 1.1, 1.2, 1.4, 1.8];
-/// Largest absolute value of a weight.
+/// Largest absolute value of a weight in integers.
 const LARGEST: f64 = 127.0;
-/// Number of binary places by which potentials are finer than weights, if the range of potentials allows it.
+/// Maximum left shift of a layer's weights, which gives potentials more binary digits than weights. The shift is
+/// smaller if thresholds would leave their range.
 const SHIFT: u32 = 8;
-/// Largest absolute value of a bias, threshold or reset value.
+/// Largest absolute value of a bias, threshold or reset value in integers.
 const MOST: f64 = (1 << 27) as f64;
-/// Number of steps of the recording that the search for scales uses.
+/// Maximum number of steps of the recording that the search for scales uses.
 const STEPS: usize = 4_000;
 
 /// Returns the network with each number rounded to `f32`.
@@ -57,13 +58,13 @@ pub(super) struct Integers {
     pub shifts: Vec<u32>,
     /// Number of weights that exceeded 8 bits and were clipped, for each layer.
     pub clipped: Vec<usize>,
-    /// The value in the training's units of a potential of 1, for each neuron of the last layer.
+    /// For each neuron of the last layer, the value in units of the training that a potential of 1 stands for.
     pub units: Vec<f64>,
 }
 
 /// Quantises a network to integers. Chooses for each neuron the scale of its weights at which its spikes, or its
-/// potentials if it never fires, are nearest to those in double precision. `fired` and `potentials` are the results in
-/// double precision; `progress` is called with the number of neurons that are done, and the number of all neurons.
+/// potentials if it never fires, are nearest to those in double precision, which are `fired` and `potentials`. Calls
+/// `progress` with the number of finished neurons and the total number of neurons.
 pub(super) fn integers(
     net: &Net<f64>,
     inputs: &Trains,
@@ -110,13 +111,14 @@ fn has(fired: &[u16], neuron: usize) -> bool {
 
 /// A neuron in integers, and the weights that lead to it: a column of the layer's matrices.
 struct Column {
-    /// The weight of each input, shifted left.
+    /// The weight of each input, after the layer's left shift.
     weights: Vec<i32>,
-    /// The weight of each neuron of the same layer, shifted left; a single weight if neurons lead only to themselves.
+    /// The recurrent weight of each neuron of the layer, after the left shift; only the neuron's weight to itself if
+    /// neurons do not act on one another.
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
-    /// The value in the training's units of a potential of 1.
+    /// The value in units of the training that a potential of 1 stands for.
     unit: f64,
 }
 
@@ -129,7 +131,7 @@ impl Layer<f64> {
         }
     }
 
-    /// Returns the scale at which the largest weight of neuron `at` becomes 127.
+    /// Returns the scale (the factor for weights) at which the largest weight of neuron `at` becomes 127.
     fn scale(&self, at: usize) -> f64 {
         let own = self.own_weights(at);
         let weights = self.weights.iter().map(|row| row[at]).chain(own);
@@ -143,7 +145,8 @@ impl Layer<f64> {
         }
     }
 
-    /// Returns the largest left shift at which thresholds, biases and reset values stay in their range.
+    /// Returns the largest left shift of the layer's weights at which thresholds, biases and reset values stay in their
+    /// range.
     fn shift(&self) -> u32 {
         let numbers = (0..self.neurons.len()).map(|at| self.neurons[at].largest() * self.scale(at));
         let most = numbers.fold(0.0, f64::max);
@@ -213,8 +216,8 @@ impl Column {
         Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
     }
 
-    /// Returns the distance of the neuron's spikes or potentials from the target. The other neurons of its layer fire
-    /// as in double precision.
+    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. The other
+    /// neurons of its layer fire as in `own`, their spikes in double precision.
     fn distance(
         &self,
         rule: Rule,

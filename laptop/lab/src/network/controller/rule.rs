@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 /// The training framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// The framework snnTorch, which trains with five kinds of reset; its files do not say with which one.
+    /// The framework snnTorch. It trains with several kinds of reset, and its files do not say with which one.
     SnnTorch,
     /// The framework Norse.
     Norse,
@@ -34,13 +34,13 @@ pub enum Reset {
     Subtract,
     /// Subtracts the threshold in the next step.
     SubtractLate,
-    /// snnTorch's subtraction with `reset_delay=False`.
+    /// Subtracts the threshold as snnTorch does with `reset_delay=False`.
     SubtractNoDelay,
     /// Leaves the potential as it is.
     NoReset,
 }
 
-/// Whether a neuron fires when its potential equals its threshold.
+/// Whether a neuron fires at its threshold, or only above it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fires {
     /// The neuron fires only above the threshold.
@@ -58,18 +58,19 @@ pub enum Decay {
     Exponential,
 }
 
-/// Which current drives the potential, for neurons that have a current.
+/// The value of the synaptic current that a step adds to the potential, for neurons that have such a current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Current {
-    /// The current after this step's inputs.
+    /// The current after this step's inputs were added to it.
     New,
     /// The current of the step before.
     Old,
-    /// The current after this step's inputs, to which a spike adds its whole weight, as in Norse's `LIFCell`.
+    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`, and not its
+    /// weight times `dt / tau`.
     Whole,
 }
 
-/// The parts of a rule that the user gave; all others are open.
+/// The parts of a rule that the user gave. The framework may imply further parts; the others are open.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The training framework, which implies some of the other parts.
@@ -77,11 +78,11 @@ pub struct Asked {
     /// How a spike resets its neuron: one entry for all layers, or one entry for each layer that fires; empty if not
     /// given.
     pub resets: Vec<Reset>,
-    /// Whether a neuron fires when its potential equals its threshold.
+    /// Whether a neuron fires at its threshold, or only above it.
     pub fires: Option<Fires>,
-    /// How time constants become the factors of a step.
+    /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Option<Decay>,
-    /// Which current drives the potential.
+    /// Which value of the synaptic current a step adds to the potential.
     pub current: Option<Current>,
     /// Duration of a step, in seconds.
     pub dt: Option<f64>,
@@ -94,11 +95,11 @@ pub struct Rule {
     pub framework: Option<Framework>,
     /// How a spike resets its neuron's potential.
     pub reset: Reset,
-    /// Whether a neuron fires when its potential equals its threshold.
+    /// Whether a neuron fires at its threshold, or only above it.
     pub fires: Fires,
-    /// How time constants become the factors of a step.
+    /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Decay,
-    /// Which current drives the potential.
+    /// Which value of the synaptic current a step adds to the potential.
     pub current: Current,
     /// Duration of a step, in seconds.
     pub dt: f64,
@@ -118,7 +119,7 @@ pub(super) const PLAIN: Rule = Rule {
 /// Duration of a step, in seconds, that snnTorch and `SpikingJelly` assume by default when they write a file.
 const WRITTEN: f64 = 1e-4;
 
-/// Which parts of a rule a network needs, by the neurons that it contains.
+/// Properties of a network that decide which parts of a rule must be known.
 #[derive(Clone, Copy)]
 pub(super) struct Needs {
     /// Whether the network has neurons that fire.
@@ -130,7 +131,7 @@ pub(super) struct Needs {
 }
 
 impl Framework {
-    /// Returns the name of the framework on the command line.
+    /// Returns the name by which the command line selects the framework.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SnnTorch => "snntorch",
@@ -165,10 +166,11 @@ impl Framework {
 }
 
 impl Asked {
-    /// Returns the complete rule: what the user gave, and what the framework implies.
+    /// Returns the complete rule, from the parts that the user gave and those that the framework implies.
     ///
     /// # Errors
-    /// Returns an error that lists all parts that the network needs and that are still open.
+    /// Returns an error that lists all parts of the rule that the network needs, but that neither the user nor the
+    /// framework gives.
     pub(super) fn rule(&self, needs: Needs) -> Result<Rule> {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         let (reset, fires) = (self.reset(&says), self.fires.or(says.fires));
@@ -197,8 +199,8 @@ impl Asked {
         })
     }
 
-    /// Returns the rule of a network in JSON: [`PLAIN`], with the reset and the comparison that the user or the
-    /// framework gives.
+    /// Returns the rule of a network in JSON: [`PLAIN`], except for what the user or the framework says about the
+    /// reset, and about firing at the threshold or only above it.
     pub(in super::super) fn or_plain(&self) -> Rule {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Rule {
@@ -209,8 +211,8 @@ impl Asked {
         }
     }
 
-    /// Completes the rule for a chip: comparison, decay and current get the values that all chips have, and the step
-    /// gets the duration `seconds`, unless they are given.
+    /// Fills in, for a chip, parts that neither the user nor the framework gives: neurons fire above the threshold,
+    /// decay by [`Decay::Euler`] and add [`Current::New`], and a step lasts `seconds`. Leaves the reset open.
     pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Self {
@@ -222,8 +224,8 @@ impl Asked {
         }
     }
 
-    /// Returns the reset of the first layer: the one that the user gave, or the one that `says`, the framework's rule,
-    /// implies.
+    /// Returns the reset of the first layer: the one that the user gave or, if there is none, the one in `says`, the
+    /// parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }
@@ -243,7 +245,8 @@ impl Reset {
         }
     }
 
-    /// Returns whether a spike subtracts the threshold from the potential. Otherwise it sets the potential to a value.
+    /// Returns whether a spike subtracts the threshold from the potential, instead of setting the potential to a value
+    /// or leaving it as it is.
     pub const fn subtracts(self) -> bool {
         matches!(self, Self::Subtract | Self::SubtractLate | Self::SubtractNoDelay)
     }

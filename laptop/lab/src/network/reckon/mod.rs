@@ -1,4 +1,5 @@
-//! Brings networks onto `ReckOn`: 256 neurons with recurrent connections, 16 leaky outputs, weights of 8 bits.
+//! Brings networks onto the chip `ReckOn`, which has 256 neurons with recurrent connections, 16 leaky outputs, and
+//! weights of 8 bits.
 
 mod emit;
 mod place;

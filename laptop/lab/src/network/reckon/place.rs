@@ -8,14 +8,15 @@ const NEURONS: usize = 256;
 const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
 
-/// Which neuron of the network each of the chip's neurons is. Two adjacent neurons of the chip form a pair with a
-/// common leak and threshold, so both belong to the same layer, and their trained leaks are as similar as possible.
+/// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair with a
+/// common leak and threshold; therefore both hold neurons of the same layer, with trained leaks that are as similar as
+/// possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// For each of the chip's neurons, its layer and its index in the layer; `None` for a neuron that is left free
-    /// because a layer has an odd number of neurons.
+    /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
+    /// that stays free because a layer has an odd number of neurons.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
-    /// The number of the chip's neuron, by layer and index in the layer.
+    /// For each layer and each of its neurons, the number of the chip's neuron that holds it.
     by_layer: Vec<Vec<usize>>,
 }
 
@@ -61,12 +62,13 @@ impl Places {
         Ok(Self { neurons, by_layer })
     }
 
-    /// Returns the number of the chip's neuron for neuron `neuron` of layer `layer`.
+    /// Returns the number of the chip's neuron that holds neuron `neuron` of layer `layer`.
     pub(super) fn of(&self, layer: usize, neuron: usize) -> usize {
         self.by_layer[layer][neuron]
     }
 
-    /// Returns, for each pair of the chip's neurons, their layers and indices.
+    /// Returns, for each pair of the chip's neurons, the layer and index of each neuron that the pair holds: two
+    /// neurons, or one if the other stays free.
     pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
     }

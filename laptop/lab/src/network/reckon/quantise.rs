@@ -10,23 +10,26 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The integers that stand for a factor of 1: `KEEP` for neurons, `OUTPUT_KEEP` for outputs.
+/// The integer that stands for a factor of 1, by which a step multiplies a neuron's potential.
 const KEEP: f64 = 32_768.0;
+/// The integer that stands for a factor of 1, by which a step multiplies an output's potential.
 const OUTPUT_KEEP: f64 = 128.0;
-/// Smallest factor by which a step can multiply a neuron's potential on the chip.
+/// Smallest factor by which a step can multiply the potential of the chip's neurons.
 const LEAST_KEEP: f64 = 0.875;
 const LARGEST: f64 = 127.0;
-/// Largest potential that a neuron may reach in the recording. The rest of the 16-bit range is left for other
-/// recordings.
+/// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
+/// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Scales to try for a pair of neurons, as multiples of the largest one at which its weights and potentials fit.
+/// Scales to try for a pair of neurons, as multiples of the largest scale at which its weights and potentials fit the
+/// chip.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
-/// Number of left shifts (0 to 7) from which weights can choose.
+/// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
-/// Weight, shift and factor of an output that reports the spikes of one neuron. Each step halves the output's
-/// potential, so that the bits of the potential are the neuron's last steps.
+/// Weight, left shift and decay factor of an output that reports the spikes of one neuron. Each step halves the
+/// output's potential, so that the potential's bits say in which of the last steps the neuron fired.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// Bit of such an output's potential that is 1 if its neuron fired in the latest step.
+/// For an output that reports the spikes of one neuron: the bit of its potential that is 1 if the neuron fired in the
+/// latest step.
 pub(super) const FIRED: u32 = 12;
 
 /// A network in the integers of `ReckOn`.
@@ -34,28 +37,30 @@ pub(super) const FIRED: u32 = 12;
 pub(super) struct Quantised {
     pub(super) places: Places,
     pub(super) pairs: Vec<ReckOnPair>,
-    /// The weights: one row for each input, with one weight for each neuron of the chip. The bias is the last input, if
-    /// the network has a bias.
+    /// The weights of inputs: one row for each input, with one weight for each neuron of the chip. The bias is the last
+    /// input, if the network has a bias.
     pub(super) inputs: Vec<Vec<i8>>,
-    /// The weights: one row for each sending neuron, with one weight for each receiving neuron.
+    /// The weights between neurons: one row for each sending neuron, with one weight for each receiving neuron.
     pub(super) recurrent: Vec<Vec<i8>>,
-    /// The weights: one row for each neuron, with one weight for each output.
+    /// The weights of outputs: one row for each neuron, with one weight for each output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
     /// Number of the input that carries the bias and must fire in every step; `None` if the network has no bias.
     pub(super) bias: Option<usize>,
     /// Name and number of neurons of each layer.
     pub(super) layers: Vec<(String, usize)>,
-    /// The value in the training's units of an output's potential of 1; `None` if the outputs report the spikes of
-    /// neurons.
+    /// The value in units of the training that an output's potential of 1 stands for; `None` if the outputs report the
+    /// spikes of neurons.
     pub(super) unit: Option<f64>,
-    /// How rounding changed the weights of each layer; then those of the outputs, if they were trained.
+    /// For each layer, how rounding changed its weights. One more entry is for the weights of outputs, if they were
+    /// trained.
     pub(super) changes: Vec<Change>,
-    /// Number of neurons and outputs whose leak on the chip differs from the trained one, and the largest difference.
+    /// Number of neurons and outputs whose leak on the chip differs from the trained one because several share a leak,
+    /// and the largest difference of the factors.
     pub(super) shared_keeps: (usize, f64),
 }
 
-/// How rounding changed a set of weights.
+/// How rounding changed the weights of a layer, or those of the outputs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Change {
     pub(super) name: String,
@@ -64,18 +69,19 @@ pub(super) struct Change {
     pub(super) clipped: usize,
     /// Number of weights other than 0 that were rounded to 0.
     pub(super) vanished: usize,
-    /// Sum of the squares of the weights, and sum of the squares of their changes.
+    /// Two sums: of the squares of the weights, and of the squares of the amounts by which rounding changed them.
     sums: [f64; 2],
 }
 
 impl Change {
-    /// Returns the root mean square of the changes, relative to that of the weights.
+    /// Returns the root mean square of the amounts by which rounding changed the weights, divided by the root mean
+    /// square of the weights.
     pub(super) fn relative(&self) -> f64 {
         let [weights, changes] = self.sums;
         if weights > 0.0 { (changes / weights).sqrt() } else { 0.0 }
     }
 
-    /// Rounds `weight * scale` to a weight of the chip, and adds its change to the sums.
+    /// Rounds `weight * scale` to a weight of the chip, and counts the weight in these statistics.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let rounded = (weight * scale).round();
         let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
@@ -89,17 +95,18 @@ impl Change {
     }
 }
 
-/// A neuron and the weights that lead to it, all divided by its threshold.
+/// A neuron of the trained network, and the weights that lead to it. Weights and potentials are in units of its
+/// threshold.
 struct Source {
     layer: usize,
     neuron: usize,
     keep: f64,
     /// The weight of each input; then the bias, if the network has a bias.
     inputs: Vec<f64>,
-    /// The chip's neurons that lead to this one, each with its weight.
+    /// For each neuron that leads to this one: the number of the chip's neuron that holds it, and its weight.
     recurrent: Vec<(usize, f64)>,
     has_bias: bool,
-    /// Largest absolute potential of the neuron in double precision, divided by its threshold.
+    /// Largest absolute potential that the neuron reaches in double precision.
     peak: f64,
 }
 
@@ -116,7 +123,8 @@ impl Source {
     }
 }
 
-/// Returns the largest scale at which the weights and potentials of a pair of neurons fit the chip.
+/// Returns the largest scale at which the weights and potentials of a pair of neurons fit the chip. `shifts` are the
+/// left shifts of input weights and of weights between neurons.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -126,8 +134,8 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     (ROOM / room).min(of_kind(0)).min(of_kind(1))
 }
 
-/// Returns how much rounding changes a pair of neurons: the sum of the squared changes of its weights, and of its
-/// leaks.
+/// Returns how much rounding changes a pair of neurons, as a sum of squares: of the changes of its weights, and of the
+/// amounts that its potentials lose because the chip rounds each leak.
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -142,9 +150,9 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
 }
 
 /// Quantises a network for the chip. First chooses the shifts at which rounding changes the weights least. Then
-/// chooses, for each pair of neurons, the scale at which its spikes are nearest to those in double precision, with the
-/// other neurons firing as in double precision. Calls `progress` with the number of neurons that are done, and the
-/// number of all neurons.
+/// chooses, for each pair of neurons, the scale at which its spikes are nearest to those in double precision, if the
+/// other neurons fire as in double precision. Calls `progress` with the number of finished neurons and the total number
+/// of neurons.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip.
@@ -325,14 +333,14 @@ fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive
     trained.layers.iter().enumerate().map(of_layer).collect()
 }
 
-/// How all neurons of the chip fire and reset.
+/// The rule by which all neurons of the chip fire and reset.
 #[derive(Clone, Copy)]
 struct Firing {
     resets_to_zero: bool,
     fires: Fires,
 }
 
-/// A neuron in the chip's integers, to be simulated alone.
+/// A neuron in the chip's integers, which is simulated without the rest of its network.
 struct Held<'a> {
     keep: i32,
     threshold: i32,
@@ -374,7 +382,8 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the distance of the neuron's spikes from those that it should have.
+    /// Runs the neuron on the spikes `drives`, and returns the distance of its spikes from those that neuron `neuron`
+    /// has in `fired`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let mut is_over = false;
@@ -397,7 +406,7 @@ impl<'a> Held<'a> {
 }
 
 impl Quantised {
-    /// Returns the number of ticks by which an answer is late: the effect of a step's inputs shows so many ticks later.
+    /// Returns the number of ticks from a step's inputs to the answer that shows their effect.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
     }
@@ -460,7 +469,7 @@ impl Quantised {
         Ok(())
     }
 
-    /// Adds an output for each neuron of layer `last`, which reports the neuron's spikes.
+    /// Adds, for each neuron of layer `last`, an output that reports the neuron's spikes.
     fn follow(&mut self, last: usize) {
         let (weight, shift, keep) = FOLLOWS;
         let outputs = self.layers[last].1;

@@ -13,10 +13,10 @@ type Chip = ReckOn<Spi, Port>;
 /// Number of the chip's clock cycles in one SPI clock cycle.
 const RATIO: u32 = 10;
 
-/// Loads the network into the model, and runs it as one sample. A step consists of its inputs, the bias and a tick.
-/// Neurons of the first layer fire at the next tick, those of each further layer one tick later, and the outputs show
-/// the last layer's spikes one tick after that. The result lists all spikes under the step in which they occur in
-/// double precision.
+/// Loads the network into the chip's model, and runs it on all inputs as one sample. A step sends its inputs, the bias
+/// and a tick. Neurons of the first layer fire at the next tick, those of each further layer one tick later, and the
+/// outputs show the last layer's spikes one tick after that. The result lists each spike under the step in which it
+/// occurs in double precision.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.

@@ -1,8 +1,9 @@
 //! Hill climbing, which searches for the parameters of a neuron on the chip.
 
-/// Finds a choice with a small distance from the original; returns the distance and the choice. Starts from the
-/// `climbs` best of the choices in `first`, and moves each to its best neighbour until none is nearer. `distance` also
-/// gets the smallest distance so far; it may stop computing when a choice exceeds it, as almost all do.
+/// Searches for a choice of parameters with a small `distance`; returns the distance and the choice. Starts from the
+/// `climbs` best of the choices in `first`, and moves each to its best neighbour until no neighbour is nearer. Each
+/// call of `distance` also gets the smallest distance that is still useful: it may stop computing as soon as a choice
+/// exceeds it, as almost all do.
 pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
     first: impl IntoIterator<Item = C>,
     neighbours: impl Fn(C) -> N,

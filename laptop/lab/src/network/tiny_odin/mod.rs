@@ -1,4 +1,5 @@
-//! Brings networks onto tinyODIN: 256 neurons, weights of 4 bits, thresholds compared after every spike.
+//! Brings networks onto the chip tinyODIN, which has 256 neurons and weights of 4 bits, and which compares potentials
+//! with thresholds after every spike.
 
 mod climb;
 mod emit;
@@ -66,7 +67,8 @@ impl Chip for TinyOdin {
     }
 }
 
-/// Share of the recording on which parameters are searched, as numerator and denominator.
+/// Share of the recording, from its beginning, on which parameters are searched, as numerator and denominator. The rest
+/// of the recording judges the results.
 const FOUND: (usize, usize) = (3, 4);
 
 impl OnChip for Quantised {

@@ -1,4 +1,5 @@
-//! Quantises a network from double precision to tinyODIN's integers, with neurons that compare after every spike.
+//! Quantises a network from double precision to tinyODIN's integers. Its neurons compare potentials with thresholds
+//! after every spike.
 
 use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
@@ -14,20 +15,23 @@ const NEURONS: usize = 256;
 const ROWS: usize = 256;
 const MAX_THRESHOLD: f64 = 2047.0;
 const MAX_LEAK: f64 = 127.0;
-/// Largest weights to try. Values above 7 clip the largest weights, so that the others are rounded less.
+/// Values to try for a neuron's largest weight on the chip. Values above 7 are clipped to the chip's range; the smaller
+/// weights are then rounded less.
 const LARGEST: [f64; 20] = [
     7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 10.0, 3.0, 12.0, 2.0, 14.0, 1.0, 16.0, 6.5, 5.5, 4.5, 3.5, 7.5,
     8.5, 20.0,
 ];
-/// Number of choices from which the search climbs.
+/// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 const CLIMBS: usize = 2;
-/// Leaks to try, as multiples of what the original neuron loses at half its threshold.
+/// Leaks to try, as multiples of the amount that the trained neuron loses, at a potential of half its threshold,
+/// between two leaks of the chip.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
-/// Number of neurons of each layer on which the interval between leaks is rated.
+/// Maximum number of neurons of each layer on which the search compares intervals between leaks.
 const SURVEYED: usize = 32;
-/// The value that stands for a leak in a sequence of weights.
+/// The value that stands for a leak where a function takes a weight.
 const LEAK: i8 = i8::MIN;
-/// Number of spikes in a step at which a layer counts as driving itself without end.
+/// Number of a layer's spikes in a step above which the simulation of the step stops: the layer's recurrent spikes then
+/// drive it without end.
 const MOST_SPIKES: usize = 10_000;
 /// Numbers of steps to try between two leaks of all neurons.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
@@ -62,7 +66,8 @@ pub(super) struct ChipLayer {
 /// A neuron, and the weights that lead to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ChipNeuron {
-    /// The weight of each input; then, in a recurrent layer, that of each of its neurons.
+    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
+    /// inputs.
     pub weights: Vec<i8>,
     /// Weight that acts in every step.
     pub bias: i8,
@@ -75,9 +80,9 @@ pub(super) struct ChipNeuron {
 }
 
 /// Quantises a network for the chip, layer by layer. Finds for each neuron the scale of its weights, the threshold and
-/// the leak with which its spikes are nearest to the original's. The inputs of a layer are the spikes of the chip's
-/// quantised layer before it, in the chip's order. Calls `progress` with the number of neurons that are done, and the
-/// number of all neurons.
+/// the leak with which its spikes are nearest to those in double precision. The inputs of each further layer are the
+/// spikes of the quantised layer before it, in the chip's order. Calls `progress` with the number of finished searches
+/// (one or more for each neuron) and their total number.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip.
@@ -165,16 +170,16 @@ fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
     Ok(())
 }
 
-/// The spikes that act on a layer, step by step: first its inputs, then, in a recurrent layer, its own spikes. The
-/// layer's own neurons are numbered after the inputs.
+/// The spikes that act on a layer. Each step lists the spikes of the inputs; in a recurrent layer, the layer's own
+/// spikes of the step follow. Neurons of the layer are numbered after the inputs.
 struct Drive {
-    /// For each step, the index in `spikes` at which its spikes end.
+    /// For each step, the index in `spikes` just after the step's last spike.
     ends: Vec<usize>,
     spikes: Vec<u16>,
 }
 
 impl Drive {
-    /// Lists the spikes in the order in which the chip applies them: the layer's own spikes, `fired`, come in the step
+    /// Lists the spikes in the order in which the chip applies them. The layer's own spikes, `fired`, act in the step
     /// in which they occur, after the inputs.
     fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
         let (mut ends, mut spikes) = (Vec::new(), Vec::new());
@@ -190,7 +195,7 @@ impl Drive {
     }
 }
 
-/// Returns the number of spikes of each neuron, by neuron, then by step.
+/// Returns, for each neuron, the number of its spikes in each step.
 fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
     let mut counts = vec![vec![0; fired.len()]; neurons];
     for (step, fired) in fired.iter().enumerate() {
@@ -202,9 +207,9 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
 }
 
 impl ChipLayer {
-    /// Returns the neurons that fire in each step, in the chip's order: all neurons compare with their thresholds after
-    /// each spike, and the layer's own spikes wait behind earlier ones. `own` is the number of the layer's first neuron
-    /// among its inputs, if it is recurrent.
+    /// Runs the layer as the chip does: all neurons compare their potentials with their thresholds after each spike,
+    /// and the layer's own spikes wait behind earlier spikes. Returns the neurons that fire in each step. In a
+    /// recurrent layer, `own` is the number of its first neuron among the inputs.
     fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
         let mut potentials = vec![0_i32; self.neurons.len()];
         let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {
@@ -246,25 +251,25 @@ impl ChipLayer {
     }
 }
 
-/// The settings of a neuron that the search varies.
+/// The parameters of a neuron that the search varies.
 #[derive(Clone, Copy)]
 struct Choice {
-    /// The value in the training's units of a weight of 1 on the chip.
+    /// The value in units of the training that a weight of 1 on the chip stands for.
     unit: f64,
     threshold: u16,
     leak: u8,
 }
 
-/// The spikes that a neuron should have, and the spikes that act on it.
+/// The aim of a search: the spikes that a neuron should have in answer to the spikes that act on it.
 struct Aim<'a> {
     drive: &'a Drive,
-    /// Number of spikes that the neuron should have, for each step.
+    /// For each step, the number of spikes that the neuron should have.
     target: &'a [u16],
     steps_a_leak: usize,
 }
 
-/// Searches for the parameters with which neuron `at` is nearest to the original. Returns the distance of its spikes,
-/// and the neuron. Climbs from the `climbs` best of the first choices.
+/// Searches for the parameters with which neuron `at` has the spikes in `aim`, or nearly so. Returns the distance of
+/// its spikes from these, and the neuron. The search climbs from the `climbs` best of its initial choices.
 fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuron) {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();
@@ -276,8 +281,8 @@ fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuro
     (least, neuron(best))
 }
 
-/// Returns the choices with which the search starts: scales of the weights with the thresholds that fit them, each with
-/// several leaks.
+/// Returns the initial choices of parameters for neuron `at`: several scales of its weights, each with the threshold
+/// that fits the scale, and each with several leaks.
 fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -331,7 +336,7 @@ impl ChipNeuron {
         Self { weights, bias, threshold, leak, clipped }
     }
 
-    /// Returns the potential after a weight has acted on it, or after a leak if `weight` is [`LEAK`].
+    /// Returns the potential after `weight` was added to it, or after a leak if `weight` is [`LEAK`].
     fn driven(&self, potential: i32, weight: i8) -> i32 {
         if weight == LEAK {
             potential.signum() * (potential.abs() - i32::from(self.leak)).max(0)
@@ -340,8 +345,8 @@ impl ChipNeuron {
         }
     }
 
-    /// Returns the distance of the neuron's spikes from those that it should have, or infinity as soon as the distance
-    /// reaches `most`.
+    /// Runs the neuron on the spikes in `aim`, and returns the distance of its spikes from those that it should have.
+    /// Returns infinity as soon as the distance reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let threshold = i32::from(self.threshold);
@@ -377,7 +382,8 @@ impl ChipNeuron {
 }
 
 impl Quantised {
-    /// Returns the layer of one of the chip's neurons, and its index in the layer; `None` if the neuron is not in use.
+    /// Returns the layer that the chip's neuron `neuron` belongs to, and its index in the layer; `None` if the neuron
+    /// is not in use.
     pub(super) fn place(&self, neuron: usize) -> Option<(usize, usize)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
@@ -462,8 +468,8 @@ mod tests {
     use super::*;
     use crate::network::{Fires, Reset};
 
-    /// Makes random inputs with at most one spike in a step. With several, the chip's neuron might fire at the first,
-    /// and keep what the others add.
+    /// Makes random inputs with at most one spike in a step. With several, the chip's neuron might fire at the first
+    /// spike, and keep the weights of the others for the next step.
     fn some(inputs: u16, steps: u32) -> Trains {
         let fires = |step: u32, input: u16| {
             let mixed = (step * 257 + u32::from(input) * 7919).wrapping_mul(0x9E37_79B9);
@@ -486,7 +492,8 @@ mod tests {
         }
     }
 
-    /// If the weights fit the chip exactly, its neurons fire at the same steps as the original's.
+    /// If the trained weights are whole numbers in the chip's range, and neurons do not leak, the chip's neurons fire
+    /// in the same steps as the trained ones.
     #[test]
     fn whole_weights_without_a_leak_lose_nothing() {
         let weights = vec![vec![3.0, 7.0, 1.0], vec![2.0, 0.0, 5.0]];

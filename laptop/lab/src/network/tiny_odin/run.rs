@@ -10,15 +10,15 @@ use spikewire_chips::{Describe, Input, TinyOdin, TinyOdinInput};
 /// Number of the chip's clock cycles in one SPI clock cycle.
 pub(super) const RATIO: u32 = 4;
 
-/// The inputs that fire, for one step after the other.
+/// An iterator over the steps: each item lists the inputs that fire in a step.
 pub(super) type Steps<'a> = dyn Iterator<Item = Result<Vec<u16>>> + 'a;
 
-/// A function that takes the result of each step.
+/// A function that is called with the result of each step.
 pub(super) type See<'a> = dyn FnMut(Stepped) -> Result<()> + 'a;
 
-/// Loads the network into the model, and runs it step by step. A step begins with the leak, if it is due, then comes
-/// the bias, then the inputs in order. Passes the result of each step to `see` before it reads the inputs of the next
-/// one. Returns the number of spikes that were lost.
+/// Loads the network into the chip's model, and runs it step by step. A step sends the leak if it is due, then the
+/// bias, then the inputs in order. Passes the result of each step to `see` before it reads the inputs of the next step.
+/// Returns the number of spikes that were lost on their way into the chip.
 ///
 /// # Errors
 /// Returns an error if the chip or `see` refuses a step.
@@ -56,7 +56,8 @@ pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'
     Ok(board.pins().chip.overflows)
 }
 
-/// Runs a network of `layers` layers on the inputs of a recording; `follow` runs it step by step.
+/// Runs a network of `layers` layers on the inputs of all steps, and returns the results of all steps together.
+/// `follow` runs the network step by step.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.

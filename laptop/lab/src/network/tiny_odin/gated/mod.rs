@@ -1,6 +1,7 @@
-//! Networks for tinyODIN whose neurons compare with their thresholds once a step. During a step, potentials are offset
-//! downwards so far that no neuron fires. Then events called rungs raise the neurons until the offset is gone and they
-//! compare. Further events lower the neurons again.
+//! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. While a step's
+//! inputs arrive, all potentials are offset downwards so far that no neuron fires. Then a series of events, each called
+//! a *rung*, raises the neurons until the offset is gone and they compare. Further events lower the neurons again.
+//! `spikewire_chips::Steps` documents the whole sequence.
 
 mod emit;
 mod neuron;
@@ -23,12 +24,12 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Number of neurons of each layer on which a shape is rated.
+/// Maximum number of neurons of each layer on which the search compares shapes (see [`Shape`]).
 const SURVEYED: usize = 8;
-/// Number of shapes, the best rated, with which the whole network is quantised.
+/// Number of the best shapes for which the whole network is quantised.
 const CHOSEN: usize = 2;
 
-/// A network in tinyODIN's integers, whose neurons compare once a step.
+/// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
 #[derive(Clone, Debug)]
 pub(super) struct Gated {
     shape: Shape,
@@ -47,8 +48,9 @@ struct GatedLayer {
     neurons: Vec<GatedNeuron>,
 }
 
-/// Quantises the network with each of the best rated shapes, and calls `progress` with the number of finished parts and
-/// of all parts. Returns an empty list if the chip has no room for any shape.
+/// Rates all shapes of the network on some of its neurons, and quantises the network with each of the best shapes.
+/// Calls `progress` with the number of finished parts of this work and the total number of parts. Returns an empty list
+/// if the chip has no room for any shape.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -108,8 +110,8 @@ pub(super) fn quantise(
     found.collect()
 }
 
-/// Returns two sizes of the network, in units of a neuron's largest weight: the largest sum of positive weights that a
-/// step adds to a neuron, and the median threshold.
+/// Returns two properties of the network: the largest sum of positive weights that a step adds to a neuron, and the
+/// median threshold. Both are in units of the largest weight of the respective neuron.
 fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     let (mut most, mut thresholds) = (0.0_f64, Vec::new());
     for ((layer, own), before) in
@@ -147,7 +149,7 @@ fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     (most, thresholds.get(thresholds.len() / 2).copied().unwrap_or(1.0))
 }
 
-/// Returns whether a neuron fires, for each neuron, then for each step.
+/// Returns, for each neuron, whether it fires in each step.
 fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
     let mut all = vec![vec![false; fired.len()]; neurons];
     for (step, fired) in fired.iter().enumerate() {
@@ -159,8 +161,8 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
 }
 
 impl Gated {
-    /// Quantises the network with this shape, layer by layer. The inputs of a layer are the spikes of the chip's
-    /// quantised layer before it.
+    /// Quantises the network with the shape `shape`, layer by layer. The inputs of each further layer are the spikes of
+    /// the quantised layer before it.
     fn find(
         trained: &Trained,
         inputs: &Trains,
@@ -190,7 +192,8 @@ impl Gated {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
 
-    /// Returns the layer of one of the chip's neurons, its index in the layer, and its parameters.
+    /// Returns the layer that the chip's neuron `neuron` belongs to, its index in the layer, and its parameters; `None`
+    /// if the neuron is not in use.
     fn at(&self, neuron: usize) -> Option<(usize, usize, &GatedNeuron)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
@@ -202,13 +205,14 @@ impl Gated {
         None
     }
 
-    /// Returns the number of rows of synapses for inputs and neurons, and the number of all rows.
+    /// Returns two numbers of rows of synapses: of those for inputs and neurons, and of all rows, which include those
+    /// that raise or lower neurons.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
 
-    /// Returns the weight of row `row` onto neuron `post` of the chip. `spikewire_chips::Steps` documents the order of
-    /// the rows.
+    /// Returns the weight that row `row` of the chip's synapses has for neuron `post`. `spikewire_chips::Steps`
+    /// documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };
         let rows = usize::from(self.shape.rows);

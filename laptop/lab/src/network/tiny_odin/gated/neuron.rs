@@ -1,21 +1,21 @@
-//! A neuron that compares with its threshold once a step, in tinyODIN's integers.
+//! A neuron that compares its potential with its threshold once a step, in tinyODIN's integers.
 
 use super::shape::Shape;
 
-/// A neuron that compares once a step, and the weights that lead to it. Its potential is the one that it compares with
-/// its threshold. The offset that the chip's potential has during a step is left out.
+/// A neuron that compares its potential with its threshold once a step, and the weights that lead to it. Its potential
+/// is meant without the offset that it has on the chip during a step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
-    /// The weight of each input; then, in a recurrent layer, that of each of its neurons. On the chip a weight is the
-    /// sum of several rows.
+    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
+    /// inputs. On the chip, a weight is the sum over several rows of synapses.
     pub weights: Vec<i16>,
     /// Weight that acts in every step.
     pub bias: i16,
     /// Potential at which the neuron fires.
     pub threshold: u16,
-    /// Amount by which a leak moves the potential.
+    /// Amount by which a leak moves the chip's potential towards 0.
     pub leak: u8,
-    /// Amount by which a rung raises the potential.
+    /// Amount by which a rung (one event of the series that raises neurons) raises the potential.
     pub rung: u8,
     /// Number of leaks that only this neuron receives after a spike.
     pub own_leaks: u16,
@@ -28,8 +28,8 @@ pub(super) struct GatedNeuron {
 pub(super) struct Added {
     /// Sum of all weights.
     pub all: i32,
-    /// Sum of the positive weights only. They may arrive before the negative ones, so the potential may rise by this
-    /// much.
+    /// Sum of the positive weights only. The potential may rise by this much in between, because positive weights may
+    /// arrive before negative ones.
     pub raised: i32,
 }
 
@@ -46,7 +46,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Runs a step, which changes `potential`; returns whether the neuron fires.
+    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the step's leaks: for
+    /// each, the number of lowering events before it.
     #[inline]
     pub(super) fn step(
         &self,
@@ -78,15 +79,15 @@ impl GatedNeuron {
         fires
     }
 
-    /// Returns the part of `weight` that row `row` of its `rows` rows carries.
+    /// Returns the part of `weight` that row `row` holds if the weight is split into `rows` rows of synapses.
     pub(super) fn part(weight: i16, row: usize, rows: u16) -> i8 {
         let rows = rows as i16;
         let rest = i16::from((row as i16) < weight.abs() % rows);
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// Returns the initial potential and the threshold of the chip's neuron. The rungs below 0 are subtracted from the
-    /// potential, the rungs above 0 are added to the threshold.
+    /// Returns the initial potential and the threshold of the chip's neuron. The initial potential is the offset, which
+    /// [`below`](Shape::below) rungs make up for; the threshold is raised by [`above`](Shape::above) rungs.
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

@@ -1,5 +1,5 @@
-//! Runs a network that compares once a step on tinyODIN's model, which is exact to the clock cycle, through the driver
-//! of `spikewire-chips`.
+//! Runs a network whose neurons compare once a step on tinyODIN's model, which is exact to the clock cycle, through the
+//! driver of `spikewire-chips`.
 
 use super::super::super::chip::{Stepped, refused};
 use super::super::run::{self, RATIO};
@@ -9,7 +9,8 @@ use silicon::Board;
 use spikewire_chips::{Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput};
 
 impl Gated {
-    /// Calls `see` with the network's steps in the form of the driver; returns its result.
+    /// Converts the sequence of events in the network's steps to the driver's form, and calls `see` with it. Returns
+    /// the result of `see`.
     pub(super) fn with_steps<T>(&self, see: impl FnOnce(&Steps) -> T) -> T {
         let layers = self.layers.iter();
         let layers: Vec<StepsLayer> = layers
@@ -31,8 +32,8 @@ impl Gated {
     }
 }
 
-/// Loads the network into the model, and runs it step by step. Passes the result of each step to `see`; returns the
-/// number of spikes that were lost.
+/// Loads the network into the chip's model, and runs it step by step. Passes the result of each step to `see`. Returns
+/// the number of spikes that were lost on their way into the chip.
 ///
 /// # Errors
 /// Returns an error if the chip or `see` refuses a step.

@@ -1,4 +1,4 @@
-//! The search for the parameters of a network that compares once a step, neuron by neuron.
+//! The search for the parameters of neurons that compare their potentials with their thresholds once a step.
 
 use super::super::super::trained::{Layer, Neuron, fires_at};
 use super::super::super::{Distance, Trains};
@@ -8,16 +8,17 @@ use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
-/// Largest weights to try, for weights of one row. Values above 7 clip the largest weights, so that the others are
-/// rounded less. At the last value all weights become 0, so that the neuron stays silent.
+/// Values to try for a neuron's largest weight on the chip, for each row of synapses that a weight takes. Values above
+/// 7 are clipped to the chip's range; the smaller weights are then rounded less. The last value rounds weights of up to
+/// 4 rows to 0, so that the neuron stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
-/// Rungs with which the search starts.
+/// Amounts by which a rung raises the potential in the initial choices of the search.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
-/// Number of choices from which the search climbs.
+/// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
 
-/// The spikes that act on a layer, step by step: first its inputs, then its own spikes of the step before. The layer's
-/// own neurons are numbered after the inputs.
+/// The spikes that act on a layer. Each step lists the spikes of the inputs; in a recurrent layer, the layer's own
+/// spikes of the step before follow. Neurons of the layer are numbered after the inputs.
 pub(super) struct Drive {
     ends: Vec<usize>,
     spikes: Vec<u16>,
@@ -38,28 +39,29 @@ impl Drive {
     }
 }
 
-/// The spikes that a neuron should have, and the spikes that act on it.
+/// The aim of a search: the spikes that a neuron should have in answer to the spikes that act on it.
 pub(super) struct Aim<'a> {
     pub drive: &'a Drive,
-    /// Whether the neuron should fire, for each step.
+    /// For each step, whether the neuron should fire.
     pub target: &'a [bool],
     pub shape: &'a Shape,
 }
 
-/// The settings of a neuron that the search varies.
+/// The parameters of a neuron that the search varies.
 #[derive(Clone, Copy, PartialEq)]
 struct Choice {
-    /// The value in the training's units of a weight of 1 on the chip.
+    /// The value in units of the training that a weight of 1 on the chip stands for.
     unit: f64,
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Number of leaks after a spike, in addition to those that the reset needs.
+    /// Number of leaks that the neuron receives after a spike, in addition to those that its reset needs; negative for
+    /// fewer leaks.
     more: i16,
 }
 
-/// Searches for the parameters with which neuron `at` is nearest to the original. Returns the distance of its spikes,
-/// and the neuron. Climbs from the `climbs` best of the first choices.
+/// Searches for the parameters with which neuron `at` has the spikes in `aim`, or nearly so. Returns the distance of
+/// its spikes from these, and the neuron. The search climbs from the `climbs` best of its initial choices.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
@@ -68,8 +70,9 @@ pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64
     (least, made(layer, at, aim.shape, best))
 }
 
-/// Returns the choices with which the search starts, in the order of how much they change the neuron. Of choices with
-/// the same spikes the search takes the first, and the smallest change is the most likely to hold for other recordings.
+/// Returns the initial choices of parameters for neuron `at`, beginning with those that change the neuron least. If
+/// several choices give the same spikes, the search takes the first one, because the smallest change is the most likely
+/// to suit other recordings.
 fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -156,7 +159,7 @@ impl Choice {
     }
 }
 
-/// Returns neuron `at` in the chip's integers, with these settings.
+/// Returns neuron `at` in the chip's integers, with the parameters in `choice`.
 fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron {
     let Choice { unit, threshold, leak, rung, more } = choice;
     let rows = f64::from(shape.rows);
@@ -174,8 +177,9 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns the number of leaks that a neuron needs after a spike. If spikes reset it to 0, they lead it there from
-/// wherever rungs and leaks may have left it. If spikes subtract, they make up the difference from plain subtraction.
+/// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, these
+/// leaks move it there from wherever rungs and other leaks may have left it. If spikes subtract the threshold, these
+/// leaks make up the difference between the chip's reset and the subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {
@@ -202,8 +206,8 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Returns the distance of the neuron's spikes from those that it should have, or infinity as soon as the distance
-    /// reaches `most`.
+    /// Runs the neuron on the spikes in `aim`, and returns the distance of its spikes from those that it should have.
+    /// Returns infinity as soon as the distance reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let (mut potential, mut first) = (0_i32, 0);

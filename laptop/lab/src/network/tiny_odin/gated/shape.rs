@@ -1,34 +1,39 @@
-//! The shape of a network that compares once a step: the events of a step that all neurons share, namely rows, rungs
-//! and leaks.
+//! The shape of a network whose neurons compare once a step: the numbers of rows of synapses, rungs and leaks, which
+//! all of its neurons share.
 
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, NEURONS, ROWS};
 
-/// Maximum number of heights above a potential of 0 at which leaks come, and maximum number below.
+/// Maximum number of heights above 0 at which neurons at rest stand when a step sends leaks to all neurons. As many
+/// heights may be below 0.
 const LEVELS: u16 = 6;
-/// Numbers of rows for each weight to try.
+/// Numbers of rows of synapses to try for each weight.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
-/// Factor by which there are more rungs than this recording needs, because other recordings may add more in a step.
+/// Factor by which the number of rungs exceeds what the recording needs: in other recordings, a step may add more to a
+/// potential.
 const SPARE: f64 = 1.5;
 /// Maximum number of rungs between two leaks.
 const WIDEST: f64 = 12.0;
 
-/// The events of a step that all neurons share.
+/// The sequence of events in each step, which is the same for all neurons. A *rung* is an event that raises neurons by
+/// a fixed amount; an offset downwards keeps them from firing before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Number of rows of synapses for each input or sending neuron. A weight is the sum of its rows.
+    /// Number of rows of synapses for each input or sending neuron. A weight is the sum over its rows.
     pub rows: u16,
-    /// Number of rungs that raise a neuron beyond 0 before it compares. `below` is the number of rungs that raise it up
-    /// to 0 before.
+    /// Number of rungs that follow those of `below`. They raise a neuron at rest from 0 to the potential at which it
+    /// compares with its threshold.
     pub above: u16,
+    /// Number of rungs that raise a neuron at rest from its offset to 0.
     pub below: u16,
-    /// The leaks of all neurons in each step: the number of lowering events that come before each leak. Steps take the
-    /// lists in turn.
+    /// The leaks that all neurons receive in a step: for each leak, the number of lowering events that come before it.
+    /// The lists are for successive steps, in turn.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of rungs that raise all neurons again, after they were lowered, before the leaks that only neurons that
-    /// fired receive. 0 if spikes subtract the threshold.
+    /// Number of rungs that raise all neurons again at the end of a step, before the neurons that fired receive leaks
+    /// of their own. 0 if spikes subtract the threshold.
     pub lift: u16,
-    /// Number of rungs between two leaks; 0 if leaks do not imitate a share of the potential.
+    /// Number of rungs between two leaks of a step, which together take a share of the potential. 0 if a step has fewer
+    /// than two leaks.
     pub spacing: u16,
 }
 
@@ -41,8 +46,8 @@ impl Shape {
         if self.leaks.is_empty() { &[] } else { &self.leaks[step % self.leaks.len()] }
     }
 
-    /// Returns the number of events in a step of a network with `layers` layers, apart from spikes and from leaks of
-    /// neurons that fired.
+    /// Returns the number of events in a step of a network with `layers` layers. Not included are spikes, and the leaks
+    /// that only neurons that fired receive.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         usize::from(self.rungs()) * (layers + 1) + leaks / self.leaks.len().max(1)
@@ -60,8 +65,8 @@ pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     sources * rows + trained.layers.len() + 2
 }
 
-/// Returns all shapes to try. `drive` is the largest sum that a step adds to a neuron, and `threshold` the median
-/// threshold, both in units of the largest weight.
+/// Returns all shapes to try. `drive` is the largest sum of weights that a step adds to a neuron, and `threshold` the
+/// median threshold, both in units of a neuron's largest weight.
 pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f64) -> Vec<Shape> {
     let neurons = || trained.layers.iter().flat_map(|layer| &layer.neurons);
     if neurons().count() >= NEURONS - 1 {
