@@ -31,7 +31,7 @@ mod op {
 /// Reader of a ROS 1 bag, from start to end.
 pub(crate) struct Bag {
     walk: Walk,
-    /// Index in `walk.topics` of the topic of each connection, by the connection's number.
+    /// Index in `walk.topics` for each connection. The key is the connection's number.
     connections: HashMap<u32, usize>,
     header: Vec<u8>,
     data: Vec<u8>,
@@ -115,10 +115,11 @@ impl Bag {
     }
 }
 
-/// Reads the header or the data of a record into `part`: a length of four bytes, then as many bytes.
+/// Reads the header or the data of a record into `part`. Each is stored as its length, in four bytes, and that number
+/// of bytes.
 ///
 /// # Errors
-/// Returns the reason if the file ends before, or cannot be read.
+/// Returns the reason if the file ends within the part, or cannot be read.
 fn part(bytes: &mut Bytes, part: &mut Vec<u8>) -> Result<(), String> {
     const CUT: &str = "the bag ends within the record";
     let mut take = |count| match bytes.take(count, part) {

@@ -37,8 +37,9 @@ impl Bytes {
         self.at
     }
 
-    /// Replaces `bytes` by the next `count` bytes of content, or by fewer at the end; returns whether there were as
-    /// many. Memory grows only with the bytes that arrive, so a wrong length in a damaged file takes none.
+    /// Replaces the content of `bytes` by the next `count` bytes of the file's content. Returns false if the content
+    /// ends before. Memory is allocated only for bytes that have been read, so a huge `count` from a damaged file
+    /// does no harm.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read or decompressed.
@@ -49,7 +50,7 @@ impl Bytes {
         Ok(taken as u64 == count)
     }
 
-    /// Skips `count` bytes; returns whether there were as many.
+    /// Skips `count` bytes; returns false if the file ends before.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read or decompressed.
@@ -93,8 +94,8 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     })
 }
 
-/// Decompresses `packed`, which should give `size` bytes; `how` is the name of the compression. Returns the bytes that
-/// could be decompressed, and a description of the fault if these are not all.
+/// Decompresses `packed`, whose decompressed size should be `size` bytes. `how` is the name of the compression. Returns
+/// the decompressed bytes and, if they are not complete or too many, a description of the fault.
 pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
     let mut bytes = Vec::new();
     let mut limited =

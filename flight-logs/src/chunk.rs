@@ -20,8 +20,8 @@ pub(crate) struct Chunk {
 }
 
 impl Chunk {
-    /// Makes `bytes` the current chunk, and counts `fault`, if there is one. With `is_last` the file ends within the
-    /// chunk, which the caller has counted already.
+    /// Makes `bytes` the current chunk. Counts `fault` as damage, unless `is_last` is set. Set `is_last` if the file
+    /// ends within the chunk: the caller has counted this fault already.
     ///
     /// # Errors
     /// Returns an error if there is a fault and damage is refused.
@@ -61,8 +61,8 @@ impl Chunk {
         self.taken = end;
     }
 
-    /// Discards the rest of the chunk, because its bytes form no record, and counts it as damage unless the chunk is
-    /// known to be incomplete.
+    /// Discards the rest of the chunk, whose bytes form no record. Counts the discarded bytes as damage, unless the
+    /// chunk is known to be incomplete.
     ///
     /// # Errors
     /// Returns an error if damage is refused.

@@ -111,8 +111,8 @@ impl Error {
 }
 
 impl ErrorKind {
-    /// Returns the part of the log that [`Damage::Skip`](crate::Damage::Skip) would still read; `None` if it would not
-    /// help.
+    /// Returns the part of the log that [`Damage::Skip`](crate::Damage::Skip) would read in spite of the error; `None`
+    /// if it would not read more.
     pub fn rest(&self) -> Option<Rest> {
         match *self {
             Self::Fault { rest, .. } => Some(rest),

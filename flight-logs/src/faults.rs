@@ -49,8 +49,8 @@ impl Faults {
         }
     }
 
-    /// Counts damage after which reading continues. `at` is its offset in the file, in bytes; `what` describes it. Only
-    /// the first is described in the notes.
+    /// Counts damage after which reading continues. `at` is the offset of the damage in the file, in bytes; `what`
+    /// describes it. The notes describe only the first damage of a log.
     ///
     /// # Errors
     /// Returns an error if damage is refused.
@@ -91,8 +91,8 @@ impl Faults {
         self.notes.push(note);
     }
 
-    /// Returns notes on the log, one sentence each: what its reader noticed, the first damage, and the number of
-    /// damaged places and of messages that are too long.
+    /// Returns notes on the log, one sentence each. They contain the remarks of the log's reader, a description of the
+    /// first damage, the number of damaged places, and the number of messages that are too long.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = self.notes.clone();
         if self.skipped > 1 {

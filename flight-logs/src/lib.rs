@@ -95,7 +95,8 @@ pub trait Log {
     /// Returns the bytes of the message that [`next`](Self::next) read last.
     fn message(&self) -> &[u8];
 
-    /// Returns the faults found so far, to be reported or added to. They are complete at the end of the log.
+    /// Returns the faults found so far. Callers may report them, or add further faults. The faults are complete at the
+    /// end of the log.
     fn faults(&mut self) -> &mut Faults;
 }
 
@@ -137,8 +138,8 @@ impl Kind {
     /// Recognises the format of a log by its first bytes, compressed or not; returns `None` if the file is not a log.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be opened or read, or if its name promises a log that it is not: a directory
-    /// without `metadata.yaml`, or a file `.ulg` with other first bytes.
+    /// Returns an error if the file cannot be opened or read, if the path is a directory without `metadata.yaml`, or if
+    /// a file `.ulg` is no `ULog` file.
     pub fn of(path: &Path) -> Result<Option<Self>> {
         if path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
             return Ok(Some(Self::Directory));
@@ -195,7 +196,7 @@ impl Kind {
 /// Error text for a directory that is not a ROS 2 bag.
 const NO_BAG: &str = "a directory, and no bag of ROS 2, which has a file metadata.yaml";
 
-/// Recognises the format of a log by its first bytes, decompressed; returns `None` if they are of another kind of file.
+/// Recognises the format of a log by its first bytes, which must be decompressed; returns `None` if the file is no log.
 fn of_start(start: &[u8]) -> Option<Kind> {
     let kinds = [
         (bag::START, Kind::Bag),

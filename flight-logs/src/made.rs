@@ -26,7 +26,7 @@ const ROS2: &str = "std_msgs/Header header\nfloat64 rate\nfloat32[] few\n\
     ====\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n\
     ====\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
 
-/// Returns `rate` in message number `sample`: a sine wave of amplitude 1. Messages are 5 ms apart.
+/// Returns the field `rate` of message number `sample`: a sine wave of amplitude 1. Messages are 5 ms apart.
 pub fn wave(sample: u32) -> f64 {
     (f64::from(sample) * 0.1).sin()
 }
@@ -54,8 +54,8 @@ impl Kind {
         }
     }
 
-    /// Returns the bytes of message number `sample`. Its time stamp is one second before the time of recording. The
-    /// array has one item in odd messages, and none in even ones.
+    /// Returns the bytes of message number `sample`. The time stamp in the message is one second before the time of
+    /// recording. The array `few` has one item if `sample` is odd, and none if it is even.
     pub fn message(self, sample: u32) -> Vec<u8> {
         let stamp = seconds(time(sample) - 1_000_000_000).concat();
         let few: Vec<u8> = (0..sample % 2).flat_map(|_| (sample as f32).to_le_bytes()).collect();
@@ -70,7 +70,7 @@ impl Kind {
         }
     }
 
-    /// Returns a log of the messages with these numbers, in one uncompressed chunk.
+    /// Returns a log whose only chunk, which is not compressed, holds the messages with the numbers `samples`.
     pub fn of(self, samples: impl Iterator<Item = u32>) -> Vec<u8> {
         let records: Vec<u8> = samples.flat_map(|sample| self.record(sample)).collect();
         [self.start(), self.chunk("none", &records), self.end()].concat()
@@ -171,8 +171,8 @@ impl Kind {
         }
     }
 
-    /// Returns a log of 100 messages, in chunks of ten compressed by the method `how`. A database is compressed as a
-    /// whole.
+    /// Returns a log of 100 messages, compressed by the method `how`: each chunk of ten messages on its own, or a
+    /// database as a whole.
     pub fn log(self, how: &str) -> Vec<u8> {
         if self == Self::Db3 {
             let bag = database(&(0..100).map(|sample| self.record(sample)).collect::<Vec<_>>());
@@ -259,8 +259,8 @@ pub fn row(cells: &[Cell<'_>]) -> Vec<u8> {
     [varint(kinds.len() as u64 + 1), kinds, content].concat()
 }
 
-/// Returns a database page of kind `kind`, with these cells. `right` is the rightmost child of an inner page; `head` is
-/// the file's header on the first page, and empty on others.
+/// Returns a database page of kind `kind` that holds `cells`. `right` is the number of the rightmost child page, for
+/// inner pages only. `head` is the file's header for the first page, and empty for other pages.
 pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     let mut page = head.to_vec();
     page.extend([kind, 0, 0]);
@@ -280,8 +280,8 @@ pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Encodes a row as a cell. Returns the cell, and the overflow pages with the part of the row that does not fit; `next`
-/// is the number of the first of these.
+/// Encodes a row as a cell. Returns the cell, and overflow pages with the bytes of the row for which the cell has no
+/// room. `next` is the number that the first overflow page will have.
 pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
     let head = [varint(row.len() as u64), varint(number)].concat();
     let (most, least) = (PAGE - 35, (PAGE - 12) * 32 / 255 - 23);

@@ -30,16 +30,16 @@ mod op {
     pub(crate) const DATA_END: u8 = 15;
 }
 
-/// Maximum size of a message that ROS 2 compressed on its own, in bytes after decompression. Beyond it the message is
-/// cut.
+/// Maximum decompressed size, in bytes, of a message that ROS 2 compressed individually. A longer message is cut to
+/// this size.
 pub(crate) const LARGEST_MESSAGE: u64 = 1 << 30;
 
 /// Reader of an MCAP file, from start to end.
 pub(crate) struct Mcap {
     walk: Walk,
-    /// Name, encoding and text of each schema, by the schema's number.
+    /// Name, encoding and text of each schema. The key is the schema's number.
     schemas: HashMap<u16, (String, String, String)>,
-    /// Index in `walk.topics` of the topic of each channel, by the channel's number.
+    /// Index in `walk.topics` for each channel. The key is the channel's number.
     channels: HashMap<u16, usize>,
     data: Vec<u8>,
 }
@@ -238,8 +238,8 @@ impl Chunked for Mcap {
     }
 }
 
-/// Stores a message's content in `message`, decompressed if it starts as Zstandard does. No uncompressed message of ROS
-/// 2 starts like this.
+/// Stores a message's content in `message`. Decompresses the content if it starts with the first bytes of Zstandard,
+/// with which no uncompressed message of ROS 2 starts.
 fn take_content(content: &[u8], message: &mut Vec<u8>) {
     if content.starts_with(&ZSTD) {
         *message = unpack("zstd", content, LARGEST_MESSAGE).0;
@@ -248,7 +248,7 @@ fn take_content(content: &[u8], message: &mut Vec<u8>) {
     }
 }
 
-/// Removes a text from the front of `left`: its length in four bytes, then as many bytes.
+/// Removes a text from the front of `left`. A text is stored as its length, in four bytes, and that number of bytes.
 fn text(left: &mut &[u8]) -> Option<String> {
     let length = u32_from(left)?;
     Some(String::from_utf8_lossy(take(left, length.into())?).into_owned())

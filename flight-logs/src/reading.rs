@@ -89,7 +89,7 @@ impl Reading {
         Ok(microseconds(stamped.unwrap_or(entry.time)))
     }
 
-    /// Returns file, byte and topic of the current message as a text, to begin an error message.
+    /// Returns a text to begin an error message about the current message: its file, byte offset and topic.
     pub fn place(&self) -> String {
         let at = self.entry.map_or(0, |entry| entry.at);
         format!("{}: byte {at}, a message of topic {}", self.file, self.topic())

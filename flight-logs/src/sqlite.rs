@@ -308,8 +308,8 @@ impl Row {
     }
 }
 
-/// Parses the values in a row's content. The first column is NULL if it is an alias of the row's number, and becomes
-/// `id`.
+/// Parses the values in a row's content. `id` is the number of the row. If the first column is the table's primary key,
+/// `SQLite` stores NULL in place of the row's number; the column's value is then `id`.
 fn values(content: &[u8], id: i64) -> Option<Vec<Value>> {
     let mut head = content;
     let length = usize::try_from(varint(&mut head)?).ok()?;

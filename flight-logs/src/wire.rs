@@ -6,8 +6,8 @@ use std::fmt;
 /// Encoding of a message's bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
-    /// ROS 1's serialization: the fields one after the other, little-endian, without gaps. The readers of other formats
-    /// convert to it.
+    /// ROS 1's serialization: the fields one after the other, little-endian, without gaps. Readers of other formats
+    /// convert their messages to this encoding.
     Ros1,
     /// CDR of ROS 2: four bytes that give the byte order, then the fields, each aligned to its size.
     Cdr,
@@ -18,7 +18,8 @@ pub enum Wire {
 pub enum Fault {
     /// The message ends before the field, or within it.
     Short,
-    /// The first two bytes of a CDR message, given here, stand for an encoding other than plain CDR.
+    /// A CDR message begins with two bytes that stand for its encoding. These bytes, given here, do not stand for plain
+    /// CDR.
     Encapsulation(u16),
     /// A field before this one is a wide text, whose length depends on the writer.
     WideText,
@@ -242,7 +243,7 @@ mod tests {
     const TEXT: &str = "uint8 a\nfloat64 b\nstring word\nint16[] list\nInner[2] two\n\
         ====\nMSG: t/Inner\nint8 small\nint32 large\n";
 
-    /// One message in both encodings gives the same numbers: 7, 1.5, "ab", [1, -2], (3, 4), (5, 6).
+    /// A message that is serialized for ROS 1 and as CDR gives the same numbers: 7, 1.5, "ab", [1, -2], (3, 4), (5, 6).
     #[test]
     fn both_ways_give_the_same_numbers() {
         let one = Definition::parse("t/T", TEXT, Dialect::Ros1).unwrap();

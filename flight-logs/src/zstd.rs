@@ -41,7 +41,7 @@ impl<R: Read> Frames<R> {
         Ok(false)
     }
 
-    /// Checks the content of the frame against its checksum, if it has one.
+    /// Checks the content of a frame against the frame's checksum, if the frame has one.
     fn check(&self) -> io::Result<()> {
         let calculated = self.decoder.get_calculated_checksum();
         match self.decoder.get_checksum_from_data() {

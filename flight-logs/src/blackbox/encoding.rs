@@ -23,18 +23,17 @@ pub(crate) enum Encoding {
     Signed,
     /// Variable length, seven bits in each byte, unsigned.
     Unsigned,
-    /// Variable length, seven bits in each byte, of a 14-bit two's complement number that is then negated.
+    /// A 14-bit two's complement number of variable length, seven bits in each byte. The decoded number is negated.
     Negative14,
-    /// Up to eight numbers. A first byte marks those that are not 0, and only these follow.
+    /// Up to eight numbers. The bits of the first byte tell which of the numbers are not 0. Only these numbers follow.
     UpToEight,
-    /// Three numbers of 2, 4 or 6 bits each, or each with its own length of 1 to 4 bytes.
+    /// Three numbers. Their lengths are 2, 4 or 6 bits, the same for all three, or 1 to 4 bytes each.
     Three,
     /// Four numbers, each of 0, 4, 8 or 16 bits.
     Four,
     /// No bytes: the number is 0.
     Null,
-    /// Three numbers of 2 bits each, of 5, 5 and 4 bits, of 8, 7 and 7 bits, or each with its own length of 1 to 4
-    /// bytes.
+    /// Three numbers. Their lengths are 2, 2 and 2 bits, or 5, 5 and 4 bits, or 8, 7 and 7 bits, or 1 to 4 bytes each.
     ThreeVariable,
 }
 
@@ -54,8 +53,8 @@ impl Encoding {
         })
     }
 
-    /// Returns the number of fields that one group of this encoding packs, if `in_a_row` neighbouring fields have the
-    /// encoding.
+    /// Returns the number of fields whose numbers are packed together in one group. `in_a_row` is the number of
+    /// neighbouring fields with this encoding.
     pub(crate) fn group(self, in_a_row: usize) -> usize {
         match self {
             Self::UpToEight => in_a_row.min(8),
@@ -92,8 +91,8 @@ impl Input<'_> {
         Ok((number >> 1) as i32 ^ -((number & 1) as i32))
     }
 
-    /// Reads one group of `count` numbers with this encoding. `version` is the log's data version. Unused items of the
-    /// result are 0.
+    /// Reads one group of `count` numbers with this encoding. `version` is the log's data version. The result has eight
+    /// items, of which those after the group are 0.
     pub(crate) fn numbers(
         &mut self,
         encoding: Encoding,

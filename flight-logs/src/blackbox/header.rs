@@ -22,7 +22,8 @@ pub(crate) struct Header {
     pub home: Fields,
 }
 
-/// The fields of one kind of frame, a column of values each: the items with one index describe one field.
+/// The fields of one kind of frame. Each vector holds one property of all fields. The items with the same index
+/// describe the same field.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fields {
     pub names: Vec<String>,
@@ -31,7 +32,7 @@ pub(crate) struct Fields {
     pub encodings: Vec<Encoding>,
 }
 
-/// Upper bound of `I interval` and of both parts of `P interval`, in iterations.
+/// Upper bound of the header's `I interval`, and of numerator and denominator of its `P interval`.
 const MOST: i64 = 1 << 12;
 
 impl Header {
@@ -79,7 +80,8 @@ impl Header {
         })
     }
 
-    /// Returns the number of iterations after `after` for which, by the header, no frame is logged.
+    /// Returns the number of loop iterations without a frame between iteration `after` and the next logged iteration,
+    /// calculated from the header's intervals.
     pub(crate) fn skipped(&self, after: i64) -> i64 {
         let (some, of) = self.logged;
         let is_logged =

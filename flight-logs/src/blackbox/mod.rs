@@ -188,7 +188,8 @@ impl Blackbox {
     }
 }
 
-/// First bytes of the kinds of frames: full, differences, slow, GPS, GPS home, event.
+/// First byte of a frame of each kind: full (`I`), differences (`P`), slow values (`S`), GPS (`G`), GPS home position
+/// (`H`) and event (`E`).
 const KINDS: &[u8] = b"IPSGHE";
 
 impl Session {
@@ -254,7 +255,8 @@ impl Session {
         Ok(Frame::Message { topic: self.main, time, numbers })
     }
 
-    /// Decodes the values of a frame: for each field the packed difference plus the prediction.
+    /// Decodes the values of a frame. The frame holds for each field the difference between the value and its
+    /// prediction.
     fn numbers(
         &self,
         fields: &Fields,
@@ -344,7 +346,8 @@ impl Session {
 }
 
 impl Fields {
-    /// Converts the values of a frame to 64 bits: values of unsigned fields are not negative.
+    /// Converts the values of a frame to 64 bits. The value of an unsigned field is converted by way of `u32`, and is
+    /// therefore never negative.
     fn widened(&self, frame: &[i32]) -> Vec<i64> {
         let numbers = frame.iter().zip(&self.signed);
         numbers

@@ -49,8 +49,8 @@ impl Binary {
         })
     }
 
-    /// Classifies the next bytes. A message counts only if another message or the end follows it, because bytes may be
-    /// missing from it.
+    /// Classifies the next bytes. Bytes count as a message only if another message or the end of the file follows them,
+    /// because a message with missing bytes would otherwise be accepted.
     fn look(&self) -> Ahead {
         let left = self.window.left();
         let begins = |bytes: &[u8]| bytes.iter().zip(HEAD).all(|(byte, head)| byte == head);
@@ -66,8 +66,8 @@ impl Binary {
         }
     }
 
-    /// Processes a message of type `kind`. A definition is stored; the columns of other messages are converted to the
-    /// definition of their topic. Returns the message's entry.
+    /// Processes the next message, which has type `kind`, and returns its entry. Stores the definition if the message
+    /// contains one. Converts the message's columns to the layout that its topic's definition describes.
     fn take(&mut self, kind: u8, length: usize) -> Result<Option<Entry>> {
         let at = self.window.offset();
         let content = &self.window.left()[CONTENT..length];
@@ -141,8 +141,8 @@ impl Defined {
         is_good.then(|| Self::Format(kind, format()))
     }
 
-    /// Parses the content of an `FMTU` message, which assigns units to a type's columns; `columns` are those of `FMTU`
-    /// itself. Returns `None` if it is no such message.
+    /// Parses the content of an `FMTU` message, which assigns units to the columns of a message type. `columns` are the
+    /// columns of the message itself. Returns `None` if the message is of another type, or invalid.
     fn of_units(columns: &[Column], content: &[u8]) -> Option<Self> {
         let column = |name: &str| {
             let index = columns.iter().position(|column| column.name == name)?;

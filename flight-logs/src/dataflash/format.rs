@@ -39,7 +39,7 @@ pub(crate) struct Column {
     pub letter: Letter,
 }
 
-/// Type of a column, for which a letter stands in the format.
+/// Type of a column. `FMT` messages write the type as a letter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Letter {
     /// A number, logged as it is.
@@ -185,7 +185,8 @@ impl Formats {
         self.by_name.get(name).copied()
     }
 
-    /// Defines the format of a type, or replaces it. If the name stays the same, so does the instance column.
+    /// Defines or replaces the format of the message type `kind`. If the old format has the same name, its instance
+    /// column is kept.
     pub(crate) fn define(&mut self, kind: u8, mut format: Format) {
         let before = self.of_type.get(&kind).filter(|before| before.name == format.name);
         format.instance = before.and_then(|before| before.instance);
@@ -193,7 +194,8 @@ impl Formats {
         self.of_type.insert(kind, format);
     }
 
-    /// Sets the units of a type's columns, a letter for each column. The letter `#` marks the instance column.
+    /// Sets the units of a message type's columns. `units` has a letter for each column. The letter `#` marks the
+    /// instance column.
     pub(crate) fn units(&mut self, kind: u8, units: &str) {
         let Some(format) = self.of_type.get_mut(&kind) else { return };
         let count = format.columns.as_ref().map_or(0, Vec::len);

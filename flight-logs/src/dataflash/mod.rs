@@ -14,7 +14,8 @@ pub(crate) use text::Text;
 /// First bytes of the `FMT` message that defines `FMT` itself, and begins every log.
 pub(crate) const START: &[u8] = b"\xa3\x95\x80\x80\x59FMT\0BBnNZ";
 
-/// Number of bytes at the start of a file in which a log must begin. Some loggers write text before it.
+/// A log must begin within this number of bytes from the start of its file, because some loggers write other text
+/// first.
 pub(crate) const LOOKED_AT: u64 = 8192;
 
 /// Returns whether these are the first bytes of a text log: one of the lines must define `FMT` itself.

@@ -100,8 +100,8 @@ pub fn dataflash_text() -> String {
     log
 }
 
-/// Returns a `MAVLink` 1 packet after its time of arrival in µs, as in a `.tlog`. `extra` is the last byte of the
-/// checksum's input.
+/// Returns a `MAVLink` 1 packet, preceded by its time of arrival in µs, as in a `.tlog`. `extra` is the last byte of
+/// the checksum's input.
 pub fn packet(time: u64, system: u8, number: u8, payload: &[u8], extra: u8) -> Vec<u8> {
     let checked = [&[payload.len() as u8, 0, system, 1, number], payload].concat();
     let mut sum = 0xffff_u16;

@@ -16,7 +16,7 @@ use messages::{Checksum, Message};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Number of bytes of the time before a packet: µs since 1970, big-endian.
+/// Length in bytes of the time stamp before each packet: µs since 1970, big-endian.
 const TIME: usize = 8;
 
 /// Reader of a telemetry log.
@@ -24,7 +24,7 @@ pub(crate) struct Mavlink {
     window: Window,
     faults: Faults,
     topics: Vec<Topic>,
-    /// Index in `topics` for each message number, with system and component of its sender.
+    /// Index in `topics` by message number and sender. The sender is given by its system and its component.
     senders: HashMap<(u32, [u8; 2]), usize>,
     message: Vec<u8>,
     /// Number of packets skipped because their messages are unknown.
@@ -43,7 +43,7 @@ struct Packet<'a> {
     /// Bytes that the checksum covers, without the byte `CRC_EXTRA`.
     checked: &'a [u8],
     checksum: u16,
-    /// Length of time, packet and signature, in bytes.
+    /// Total length in bytes of the time stamp, the packet and the packet's signature.
     length: usize,
 }
 
@@ -87,8 +87,8 @@ fn look(left: &[u8]) -> Ahead<'_> {
 }
 
 impl Packet<'_> {
-    /// Returns whether the packet is valid, where `left` starts with the packet. If its message is known, the checksum
-    /// decides, otherwise whether another packet follows.
+    /// Returns whether the packet, which is at the start of `left`, is valid. A known message needs the right checksum.
+    /// After an unknown message another packet must follow.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
             Some(message) => {
@@ -102,7 +102,7 @@ impl Packet<'_> {
     }
 }
 
-/// Returns whether these bytes begin like a packet, or are too few to tell.
+/// Returns whether these bytes begin like a packet with its time stamp, or are too few to tell.
 fn is_followed(next: &[u8]) -> bool {
     next.get(TIME).is_none_or(|start| matches!(start, 0xfd | 0xfe))
 }

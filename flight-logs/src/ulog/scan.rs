@@ -26,14 +26,14 @@ pub(crate) struct Findings {
     pub(crate) damage: Option<Range<usize>>,
 }
 
-/// Number of messages skipped for one reason, and the offset of the first.
+/// Number of messages that were skipped for one reason, and the offset of the first of these messages.
 #[derive(Debug, Default)]
 struct Found {
     count: u64,
     first: usize,
 }
 
-/// Number and length of the logger's dropouts, times in which it could not write.
+/// Number, total length and greatest length of the dropouts, during which the logger could not write.
 #[derive(Debug, Default)]
 struct Dropouts {
     count: u64,
@@ -87,7 +87,8 @@ pub(crate) struct Scan<'a> {
     bytes: &'a [u8],
     /// Format definitions by name, with a line for each field.
     formats: HashMap<String, String>,
-    /// Index in `topics` of each registered id. A log may register an id again.
+    /// Index in `topics` for each topic id that the log has registered. A later registration of an id replaces the
+    /// earlier one.
     registered: HashMap<u16, usize>,
     /// Topics in the order in which they were registered.
     pub topics: Vec<Topic>,
@@ -167,8 +168,8 @@ impl<'a> Scan<'a> {
         (content.end <= end).then_some(Message { at, kind, content })
     }
 
-    /// Returns the message at this offset, if it is valid, or if another message or the end follows it, so that it can
-    /// be skipped.
+    /// Returns the message at offset `at` if it is valid. Also returns an invalid message that can be skipped, because
+    /// another message or the end of the log follows it.
     fn accepted(&self, at: usize, end: usize) -> Option<Message> {
         let message = self.header(at, end)?;
         if self.is_good(&message) {
@@ -180,7 +181,7 @@ impl<'a> Scan<'a> {
         (is_one && is_led).then_some(message)
     }
 
-    /// Returns whether three valid messages follow one another from this offset on.
+    /// Returns whether the bytes from offset `at` on are three valid messages in a row.
     fn goes_on(&self, at: usize, end: usize) -> bool {
         const ENOUGH: usize = 3;
         let mut next = at;
@@ -252,8 +253,8 @@ impl<'a> Scan<'a> {
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
-        /// Zeros in place of a message, to measure how long its definition says it is. A message has at most 65 535
-        /// bytes.
+        /// Zeros that are decoded in place of a message, to find the length of the message by its definition. No
+        /// message is longer than 65 535 bytes.
         const NOTHING: &[u8] = &[0; 1 << 16];
         let registered = || {
             let (&[instance, low, high], name) = content.split_first_chunk()?;

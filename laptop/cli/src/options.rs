@@ -47,8 +47,8 @@ pub(crate) fn read(path: &str) -> Result<File, String> {
 pub(crate) type Chosen = (Option<Scheme>, SampleType, Asked);
 
 impl Coding {
-    /// Returns the scheme if one is named, the sample type and the parameters, from the command line and the file of
-    /// `--params`.
+    /// Returns the scheme, if one is named, with the sample type and the parameters. They come from the command line
+    /// and from the file of `--params`.
     ///
     /// # Errors
     /// Returns an error if `--scheme` and the file name different schemes.
@@ -156,8 +156,8 @@ option_group!(
 const PARAMETERS: &str = "Parameters";
 const CALIBRATION: &str = "Instead of calibration";
 
-/// Adds an option to `command` for each parameter of any scheme that `is_taken` accepts. Schemes with a parameter of
-/// the same name share one option.
+/// Adds options to `command`, one for each parameter that `is_taken` accepts, of any scheme. Schemes with a parameter
+/// of the same name share one option.
 pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) -> Command {
     for (name, owners) in parameters(is_taken) {
         let Some(&(_, parameter)) = owners.first() else { continue };
@@ -212,7 +212,8 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
 /// The value of `--filter` with which `tune` searches the taps themselves.
 pub(crate) const FREE: &str = "free";
 
-/// An option's name, and the schemes with a parameter of this name, each with its parameter.
+/// The name of an option, and a list of the schemes that share the option. Each scheme is paired with its parameter of
+/// this name.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
 
 fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
@@ -228,8 +229,8 @@ fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
     all
 }
 
-/// Returns the help of the option that these schemes share; schemes with the same meaning are listed together: `sf, mw:
-/// MEANING, in the signal's unit, such as 0.1. tbr: OTHER MEANING`.
+/// Returns the help of the option that these schemes share. Schemes for which the option has the same meaning are
+/// listed together: `sf, mw: MEANING, in the signal's unit, such as 0.1. tbr: OTHER MEANING`.
 fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
     let mut meanings: Vec<(Vec<&str>, String)> = Vec::new();
     for (info, parameter) in owners {

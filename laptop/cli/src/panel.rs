@@ -20,11 +20,12 @@ use std::time::{Duration, Instant};
 
 /// Duration that the raster of spikes shows, in µs.
 const WINDOW: u32 = 2_000_000;
-/// Time between two pictures.
+/// Minimum time between two drawings of the panel.
 const PERIOD: Duration = Duration::from_millis(50);
-/// Maximum pause while a recording is played, in µs: after a restart of the sender its ticks jump.
+/// Maximum time, in µs, by which the panel's clock advances at a received tick. After a restart of the sender, ticks
+/// may jump farther.
 const MOST_STEP: u32 = 1_000_000;
-/// Number of lines for counts and reasons.
+/// Number of lines below the channels. They show the counts of the link, and the reasons that values are not exact.
 const FOOTER: u16 = 3;
 /// Maximum number of channels that are drawn.
 const MOST_CHANNELS: usize = 24;
@@ -70,7 +71,7 @@ impl Panel {
         panel
     }
 
-    /// Wraps a decoder: the panel follows its frames and values.
+    /// Wraps a decoder so that the panel shows the frames that the decoder receives, and the values that it returns.
     pub(crate) fn noting<'a>(
         panel: &Rc<RefCell<Self>>,
         values: Box<dyn Values + 'a>,
@@ -114,7 +115,8 @@ impl Panel {
         }
     }
 
-    /// Draws a line for each channel, and counts and reasons below.
+    /// Draws a line for each channel. Below them, draws the counts of the link and the reasons that values are not
+    /// exact.
     fn draw(&self, frame: &mut Frame<'_>, tally: &LinkTally) {
         let [table, footer] =
             Layout::vertical([Constraint::Fill(1), Constraint::Length(FOOTER)]).areas(frame.area());
@@ -134,7 +136,7 @@ impl Panel {
         frame.render_widget(text, footer);
     }
 
-    /// Formats a channel: name, value, unit, whether the value is exact, and spikes.
+    /// Returns the table row of a channel: name, value, unit, whether the value is exact, and spikes.
     fn row(&self, channel: &Channel, width: u16) -> Row<'_> {
         let is_exact = channel.value.is_some() && channel.withheld.is_none();
         let (mark, style) = match channel.value {
@@ -153,7 +155,8 @@ impl Panel {
         Row::new(cells).style(style)
     }
 
-    /// Formats the spikes of a channel, the latest at the right; up is the upper half of a line, down the lower half.
+    /// Formats the spikes of a channel as a line of text, the latest at the right. The upper half of a character shows
+    /// spikes up, the lower half spikes down.
     fn raster(&self, channel: &Channel, width: u16) -> String {
         const GLYPHS: [char; 4] = ['·', '▀', '▄', '█'];
         let mut cells = vec![0; usize::from(width)];
@@ -168,7 +171,7 @@ impl Panel {
         cells.into_iter().map(|cell| GLYPHS[cell]).collect()
     }
 
-    /// Formats the counts of the link, and the reason of each channel whose value is not exact.
+    /// Formats the counts of the link and, for each channel whose value is not exact, the reason.
     fn counts(&self, tally: &LinkTally) -> String {
         let LinkTally { frames, lost, gaps, .. } = tally;
         let (seconds, spikes) = (self.elapsed as f64 / 1e6, self.spikes);
@@ -194,19 +197,19 @@ impl Panel {
 
 const GREY: Style = Style::new().fg(Color::DarkGray);
 
-/// Returns the time from a tick to a later one, in µs.
+/// Returns the time in µs from `tick` to `later`.
 fn since(later: Tick, tick: Tick) -> u32 {
     later.micros().wrapping_sub(tick.micros())
 }
 
-/// A decoder whose frames and values a panel follows.
+/// A decoder that also passes its frames and values on to a panel.
 struct Noting<'a> {
     panel: Rc<RefCell<Panel>>,
     values: Box<dyn Values + 'a>,
 }
 
 impl Noting<'_> {
-    /// Copies the last values, and the reasons that values are not exact, to the panel.
+    /// Copies to the panel the values in `items`, and for each channel the reason that its value is not exact.
     fn note(&self, items: &[Item]) {
         let mut panel = self.panel.borrow_mut();
         for item in items {
@@ -256,7 +259,8 @@ impl Screen {
     /// Reserves as many lines of the terminal as the panel needs.
     ///
     /// # Errors
-    /// Returns an error if standard output is no terminal, or one that does not tell where its cursor is.
+    /// Returns an error if standard output is no terminal, or if the terminal does not report the position of its
+    /// cursor.
     pub(crate) fn new(panel: &Rc<RefCell<Panel>>) -> Result<Self> {
         if !io::stdout().is_terminal() {
             bail!("--live draws in a terminal, and standard output is none");
@@ -270,8 +274,8 @@ impl Screen {
         Ok(Self { terminal, panel: Rc::clone(panel), drawn: None })
     }
 
-    /// Draws the panel if the last picture is old enough. With `wait` it returns when as much time has passed as on the
-    /// sender's clock.
+    /// Draws the panel if at least [`PERIOD`] has passed since it was last drawn. With `wait`, keeps drawing until as
+    /// much time has passed as on the sender's clock, or until `stop` ends the command.
     ///
     /// # Errors
     /// Returns an error if the terminal cannot be written.

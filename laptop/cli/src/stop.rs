@@ -31,15 +31,15 @@ pub(crate) fn handle() -> Result<()> {
     Ok(())
 }
 
-/// End condition of a command that has no end of its own: a time limit or Ctrl-C.
+/// Condition that ends a command which would otherwise run forever: a time limit or Ctrl-C.
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,
 }
 
 impl Stop {
-    /// Creates the end condition: Ctrl-C or, if `seconds` is given, the time in that many seconds. A second Ctrl-C ends
-    /// the program at once.
+    /// Creates a condition that is met after Ctrl-C and, if `seconds` is given, when this number of seconds has passed.
+    /// A second Ctrl-C ends the program at once.
     ///
     /// # Errors
     /// Returns an error if `seconds` is not above 0.

@@ -35,8 +35,9 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg "));
 }
 
-/// With a loop bandwidth of 5 Hz at 100 samples a second, no code is advised whose latency exceeds one sample, about
-/// 20° of phase. Nor is step forward, which cannot follow this signal's jumps when it is tuned for few spikes.
+/// In a control loop of 5 Hz bandwidth, at 100 samples a second, a code whose latency exceeds one sample is not
+/// advised: the latency takes about 20° of phase. Step forward is not advised either. When it is tuned for few spikes,
+/// it cannot follow this signal's jumps.
 #[test]
 fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     let sample = |sample: u32| {

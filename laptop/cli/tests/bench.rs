@@ -27,8 +27,9 @@ fn the_last_line_says_how_many_means_agree() {
     assert_eq!(report.lines().last(), Some("24 of 24 means within sampling error"));
 }
 
-/// Recorded means: table, seconds of signal, and one mean for each of [`SCHEMES`]. A single changed spike changes them,
-/// so they reveal a slightly wrong rule, which a comparison with the paper's statistics would not.
+/// Mean figures of an earlier version. Each item has the name of the table, the length of the signals in seconds, and
+/// the mean of each of [`SCHEMES`]. A single changed spike changes these means. They therefore reveal a slightly wrong
+/// rule, which a comparison with the paper's statistics would not.
 #[rustfmt::skip]
 const BEFORE: [(&str, u64, [f64; 8]); 6] = [
     ("efficiency", 1, [37.900000, 29.975000, 75.100000, 45.800000, 73.675000, 62.275000, 0.000000, -223.700000]),
@@ -57,7 +58,7 @@ fn every_spike_is_where_it_was() {
     }
 }
 
-/// With only two signals a case, some seeds give means too far from the paper's, for which `bench` fails.
+/// With only two signals in each case, and an unlucky seed, means differ too much from the paper's, and `bench` fails.
 #[test]
 fn a_benchmark_that_differs_is_an_error() {
     let differing = (1..200).find_map(|seed| {

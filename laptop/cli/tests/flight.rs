@@ -27,8 +27,8 @@ fn count(channel: usize, sample: usize) -> i16 {
     (value * flight::COUNTS[channel]).round() as i16
 }
 
-/// Runs sender and receiver of a flight; returns the frames sent, and the value of each channel that the receiver holds
-/// at the end.
+/// Runs the sender and the receiver of a flight. Returns the frames sent, and the last value of each channel at the
+/// receiver.
 fn flown() -> (Vec<u8>, Vec<f64>) {
     let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(3)));
     let (mut bytes, mut items, mut buffer) = (Vec::new(), Vec::new(), [0; MAX_FRAME]);

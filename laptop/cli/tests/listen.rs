@@ -47,7 +47,7 @@ fn waves<S: Sample>(sample: u32) -> [S; CHANNELS] {
     [0.05, 0.07, 0.11].map(|pace: f64| S::from_f64((f64::from(sample) * pace).sin() * 100.0))
 }
 
-/// Collects the items that a bank puts.
+/// The items that a bank has output.
 #[derive(Default)]
 struct Items(Vec<Item>);
 
@@ -97,8 +97,8 @@ fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
     board_since_boot(scheme, slot_ticks, 0, if slot_ticks > 0 { 20 } else { 100 })
 }
 
-/// Simulates a board with a rate or population code that booted `uptime` µs ago and sends a heartbeat every `beat`
-/// samples.
+/// Simulates a board with a rate or population code. The board booted `uptime` µs ago, and sends a heartbeat every
+/// `beat` samples.
 fn board_since_boot<P: Start>(
     scheme: &P,
     slot_ticks: u32,
@@ -385,7 +385,8 @@ fn keyframes_of_step_forward_tell_wrong_parameters() {
     assert!(!report.contains("contradict"), "{report}");
 }
 
-/// Events with sub-timesteps are decoded whatever the board's uptime; if they cannot be, the output gives the reason.
+/// Events with sub-timesteps are decoded for any uptime of the board. If events cannot be decoded, the output gives the
+/// reason.
 #[test]
 fn slots_are_decoded_after_any_uptime() {
     let scheme = Slots::<f32, 15, 10>::new(-100.0..=100.0, 1.5);

@@ -1,5 +1,5 @@
-//! `listen` with a different flight file than the sender's marks no value as exact, whatever the difference between the
-//! two files.
+//! `listen` must not call a value exact if it decodes with another flight file than the sender's. The test tries
+//! pairs of flight files that differ in one field.
 
 use catalogue::run::Known;
 use lab::flight::Flight;
@@ -93,7 +93,7 @@ fn bits(flight: &Flight, value: f64) -> u32 {
     }
 }
 
-/// Returns the number of values that `listen` would mark as exact, for these bytes and the receiver of this flight.
+/// Decodes `bytes` with the receiver of `flight`; returns the number of values that `listen` would mark as exact.
 fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     use lab::events::{LinkReader, Stream, values_writer};
     let mut heard = Vec::new();
@@ -107,7 +107,8 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
-/// A sender: its flight file, the kinds of mistake for which the file serves, and the sender's frames.
+/// A sender. `text` is its flight file, and `frames` are the bytes that it sends. `kinds` names the fields that the
+/// test varies in this file.
 struct Sender {
     text: String,
     kinds: BTreeSet<&'static str>,

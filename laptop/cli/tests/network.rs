@@ -1,4 +1,4 @@
-//! `network` for chips: the constants written for networks in NIR and JSON, the reported costs, and the networks
+//! `network` for chips: the constants written for networks in NIR and JSON, the reported costs, and networks that are
 //! refused.
 
 mod common;
@@ -20,7 +20,8 @@ fn network(file: &str) -> String {
     format!("network {file} {CODE} {AS_THE_CHIP} --reset zero {}", flight("hexarotor.csv"))
 }
 
-/// Options with which neurons compare after each spike, the chip's own way, and the whole recording is used for tuning.
+/// Options for tests with the chip's own rule: neurons compare after each spike. The whole recording is used for
+/// tuning.
 const AS_THE_CHIP: &str = "--compare spike --no-held-out";
 
 /// Returns the numbers in the line of a report that begins with `start`.
@@ -208,8 +209,9 @@ fn a_file_of_spikes_drives_a_network_that_answers_step_by_step() {
     refused(&reckon, "0\n", &["only tinyODIN"]);
 }
 
-/// A rise and a fall in the same step cancel out in the trained network, but not on a chip that compares after each
-/// spike. Comparing once a step takes more events, but loses nothing here, and is therefore chosen.
+/// A rise and a fall in the same step cancel out in the trained network. They do not cancel out on a chip whose neurons
+/// compare after each spike. To compare once a step takes more events, but loses nothing here.
+/// The command therefore chooses it.
 #[test]
 fn neurons_compare_once_a_step_if_that_agrees_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},
@@ -269,8 +271,8 @@ fn reset_modes_are_required_and_compared_with_the_frameworks_spikes() {
     refused(&short, "", &["1 steps", "200"]);
 }
 
-/// A network whose neurons subtract the threshold before the leak is compensated on `ReckOn`, which subtracts it after the
-/// leak: each neuron gets a weight to itself for the difference.
+/// In the trained network, neurons subtract the threshold before the leak. `ReckOn` subtracts the threshold after the
+/// leak. The converted network makes up for the difference by a weight from each neuron to itself.
 #[test]
 fn a_reset_by_subtraction_is_corrected_for_reckon() {
     let json = r#"{"layers": [{"name": "one", "weights": [[127, -20], [60, 50]], "keep": 0.9,
@@ -287,8 +289,8 @@ fn a_reset_by_subtraction_is_corrected_for_reckon() {
     }
 }
 
-/// A network that the Python example `on_chip.py` trained in tinyODIN's arithmetic agrees with the chip in 99 % of the
-/// active steps, although its double-precision run has no lower bound at -2048.
+/// The Python example `on_chip.py` trained this network in tinyODIN's arithmetic. In 99 % of the active steps, the chip
+/// agrees with a run in double precision, although only the chip's potentials have a lower bound, -2048.
 #[test]
 fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let network = peers("on_chip.json").display().to_string();
@@ -302,8 +304,8 @@ fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     assert!(share >= 99.0 && active > 50.0, "{}", ran.stderr);
 }
 
-/// Returns a CSV table of the roll rates on which `turns.py` trained its network or, with `is_held_out`, of every third
-/// stretch of 250 samples, which it held out.
+/// Returns a CSV table of roll rates. The script `turns.py` divided the flight into stretches of 250 samples, and held
+/// out every third. The table has the held-out stretches if `is_held_out`, otherwise those used for training.
 fn stretches(is_held_out: bool) -> String {
     let flight = fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let rows: Vec<&str> = flight.lines().skip(1).collect();
@@ -316,8 +318,8 @@ fn stretches(is_held_out: bool) -> String {
     table
 }
 
-/// A recurrent network that `turns.py` trained fires as often as that script reports, in double precision exactly and
-/// on the chip within 3 %. The constant equals the one in the firmware `examples/rate-loop`.
+/// The script `turns.py` trained this recurrent network, and reports how often it fires. In double precision it fires
+/// exactly as often, on the chip as often within 3 %. The constant equals the one in the firmware `examples/rate-loop`.
 #[test]
 fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     let (_trained, trained) = file("trained.csv", stretches(false));

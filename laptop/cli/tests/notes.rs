@@ -23,7 +23,8 @@ fn scores_say_what_they_ran_with() {
     assert_eq!(hsa["parameters"]["taps"].as_array().unwrap().len(), 15);
 }
 
-/// A column that `f32` cannot represent is reported, be it integers beyond 24 bits, or a small wave on a large offset.
+/// A column that `f32` cannot represent is reported. Examples are integers of more than 24 bits, and a small wave on a
+/// large offset.
 #[test]
 fn columns_that_a_sample_type_cannot_hold_are_reported() {
     let latitude: Vec<f64> =

@@ -7,7 +7,7 @@
 //!
 //! ` |> ` pipes the output of one command into the next. `\n`, `\r`, `\t` and `\\` are escapes. `NAME := text` defines
 //! a name for a text; `@NAME := text` writes the text to a file, and the name stands for the file's path; `{NAME}`
-//! inserts it.
+//! inserts the text or the path.
 
 mod common;
 

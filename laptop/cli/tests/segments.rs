@@ -50,7 +50,7 @@ fn a_reboot_starts_a_segment_of_its_own() {
     assert!((rate * seconds - spikes).abs() < 1e-6 && spikes > 100.0, "{rate}");
 }
 
-/// The samples after a restart of the clock are encoded from their own first value, as if they stood alone.
+/// If the clock restarts, the samples after the restart are encoded like a recording of their own.
 #[test]
 fn no_code_joins_two_segments() {
     let values = |offset: f64| (0..200).map(move |sample| offset + f64::from(sample).sin() * 0.05);

@@ -1,4 +1,4 @@
-//! Times: how `encode` reports their steps, and how `decode` restores them.
+//! `encode` reports irregular steps between times, and `decode` restores the times of samples.
 
 mod common;
 

@@ -97,8 +97,8 @@ fn a_search_that_ran_out_of_time_is_reported() {
     assert!(whole.contains("all of") && !whole.contains("cut short"), "{whole}");
 }
 
-/// The tuned blocks hold square waves, the held-out blocks sine waves. Settings with a few large steps fit only the
-/// square waves, and the report says so, although the paper's settings, with more spikes, fit both.
+/// The tuned blocks hold square waves, and the held-out blocks hold sine waves. Settings with a few large steps fit
+/// only the square waves. The report says so, although the paper's settings, which give more spikes, fit both.
 #[test]
 fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
     let before = |block: usize| (block as f64 * 0.3 + 0.35).floor();
@@ -140,8 +140,8 @@ fn held_out_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     }
 }
 
-/// In a flight with an impact, an RMSE of 0.06 needs more than 16 spikes a sample. The search finds a maximum number
-/// of spikes a sample that suffices, and that is at most twice as large as any sample needs.
+/// In a flight with an impact, some sample needs more than 16 spikes to reach an RMSE of 0.06. The search chooses the
+/// maximum number of spikes in a sample. This number suffices, and is at most twice the number needed.
 #[test]
 fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     let flight = flight("hexarotor.csv");

@@ -51,7 +51,7 @@ pub(crate) struct Advise {
     /// simulated drone flew badly with it at this loss
     #[arg(long, value_name = "PERCENT", default_value_t = AdviseRequest::FRAME_LOSS)]
     frame_loss: f64,
-    /// Core whose measured costs count: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
+    /// Core on which instructions were counted, for the costs in the report: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
     /// Stop after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too

@@ -16,7 +16,7 @@ Examples:
   spikewire bench
   spikewire bench --tests 100 --cases 3 --json")]
 pub(crate) struct Bench {
-    /// Signals per case; the paper has 1000, and a smaller number detects only larger differences
+    /// Number of signals in each case. The paper has 1000; with fewer signals, only larger differences are detected
     #[arg(long, default_value_t = paper::TESTS)]
     tests: usize,
     /// Number of cases to run, 1 to 5, starting with the shortest signals

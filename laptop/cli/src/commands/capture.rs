@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 /// Read an RTT channel through a debug probe; the board needs no other cable.
 ///
-/// Needs a build with `--features capture`. Usually piped on: `spikewire capture --chip STM32F405RG | spikewire
-/// listen`.
+/// Needs a build with `--features capture`. The output is usually piped to `listen`: `spikewire capture --chip
+/// STM32F405RG | spikewire listen`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Capture {
     /// The chip's name in probe-rs, such as STM32F405RG or RP2040

@@ -97,7 +97,7 @@ fn decode(
     file: &str,
     open: impl FnOnce() -> lab::Result<Output>,
 ) -> Result<()> {
-    /// Number of events or sample times collected before they are decoded.
+    /// Events are decoded in batches. A batch is decoded after this number of events, or this number of sample times.
     const BATCH: usize = 4096;
     let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;

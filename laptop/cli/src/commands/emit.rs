@@ -22,8 +22,8 @@ enum Language {
     C(C),
 }
 
-/// Write sender and receiver of a flight in Rust: the module `flight`, for `include!`, the same as a firmware's build
-/// script makes.
+/// Write the sender and the receiver of a flight in Rust: a module `flight` to include with `include!`. A firmware's
+/// build script can make the same module.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -38,8 +38,8 @@ struct Rust {
     output: Option<PathBuf>,
 }
 
-/// Write a crate that builds a C library: either of the codecs in the given files, with their parameters in flash, or
-/// of the senders and receivers of flights.
+/// Write a crate that builds a C library. From files of parameters, the library contains the codecs, with their
+/// parameters in flash. From flight files, it contains the senders and receivers of the flights.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -54,8 +54,8 @@ struct C {
     /// Files of parameters (TOML), as `tune --emit toml` writes them
     #[arg(required_unless_present = "flight", value_name = "FILE")]
     params: Vec<PathBuf>,
-    /// Flight files (`flight.toml`), in place of files of parameters: makes the bank, writer and receiver of each
-    /// flight
+    /// Flight files (`flight.toml`), in place of files of parameters. The library then contains the bank of encoders,
+    /// the frame writer and the receiver of each flight
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "params")]
     flight: Vec<PathBuf>,
     /// Directory to create for the crate; must not exist yet

@@ -26,10 +26,12 @@ use std::rc::Rc;
 /// Listen to a board: write the events that it sends, or with `--scheme` the values that they encode.
 ///
 /// Formats have the names that `convert` uses. Values need the format `link`, and are decoded by the same receiver that
-/// runs on boards. A value marked `exact` equals, bit for bit, the value that a decoder on the sender has. Values of a
-/// temporal code are exact from a keyframe until data is lost; those of a rate code, once a filter's length of samples
-/// has arrived without loss; those of a population code, from the first spike after a loss. A temporal code gives one
-/// value for each event. The other codes give one for each sample and channel, from the channel's first event on.
+/// runs on boards. A temporal code gives a value for each event. The other codes give a value for each sample and
+/// channel, from the channel's first event on.
+///
+/// A value marked `exact` equals, bit for bit, the value that a decoder on the sender has. Values of a temporal code are
+/// exact from a keyframe until data is lost. Values of a rate code are exact once a filter's length of samples has
+/// arrived without loss. Values of a population code are exact again from the first spike after a loss.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -76,8 +78,8 @@ pub(crate) struct Listen {
     /// Length in µs of the sender's sub-timesteps; only for schemes that have them
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
-    /// Draw values, spikes and losses in the terminal while they arrive, a recording at the pace of its clock; values are
-    /// written only to a file
+    /// Draw values, spikes and losses in the terminal while they arrive. A recording is drawn at the pace of its clock.
+    /// Values are written only if a file is given by -o
     #[arg(long)]
     live: bool,
     #[command(flatten)]
@@ -254,8 +256,8 @@ impl Listen {
         }
     }
 
-    /// Checks that the input format can carry values (`link`) and the output format can express them (`csv`). `option`
-    /// is the option that asks for values, for the message.
+    /// Checks that the input format is `link`, which can carry values, and that the output format is `csv`, which can
+    /// express them. `option` is named in the error messages.
     fn check_formats(&self, option: &str) -> Result<()> {
         if !matches!(self.from, Format::Link(_)) {
             bail!(
@@ -268,7 +270,7 @@ impl Listen {
         Ok(())
     }
 
-    /// Returns either one set of settings that all channels share, or one set for each channel.
+    /// Returns the decoder's settings: one item that all channels share, or one item for each channel.
     fn settings(&self, scheme: Scheme, sample: SampleType) -> Result<Vec<Settings>> {
         self.check_formats("--scheme")?;
         let mut asked = match &self.params {

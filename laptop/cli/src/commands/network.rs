@@ -63,8 +63,8 @@ pub(crate) struct Network {
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
     #[arg(long, default_value_t)]
     sample: SampleType,
-    /// Length of a step in seconds, by which the network's time constants are converted, such as 1e-4 for snnTorch;
-    /// default for a chip: one sample or sub-timestep of the recording
+    /// Length of a step in seconds, such as 1e-4 for snnTorch. The network's time constants are converted for steps of
+    /// this length; default for a chip: one sample or sub-timestep of the recording
     #[arg(long, value_name = "SECONDS", value_parser = above_zero)]
     dt: Option<f64>,
     #[command(flatten)]
@@ -73,20 +73,20 @@ pub(crate) struct Network {
     parameters: SchemeOptions,
     #[command(flatten)]
     rule: RuleOptions,
-    /// Recording to test the network on, after it was tuned on INPUT; default: the last third of INPUT, on which the
-    /// network is then not tuned
+    /// Recording to test the network on. The network is then tuned on the whole of INPUT; default: the last third of
+    /// INPUT is for the test, and the network is tuned on the other two thirds
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
     /// Tune on the whole of INPUT, without a test on held-out data
     #[arg(long, conflicts_with = "held_out")]
     no_held_out: bool,
-    /// Spikes of the network's outputs in the training framework, one line for each step of INPUT. The outputs of the
-    /// chip, and those of the network in double precision, are compared with these spikes
+    /// Output spikes of the network in the training framework, one line for each step of INPUT. The chip's output
+    /// spikes are compared with them, and so are those of the network in double precision
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
-    /// When tinyODIN's neurons compare their potentials with their thresholds: after each spike (`spike`), as the chip
-    /// does by itself, or once a step (`step`), as in training, which takes more events; default: the one that keeps
-    /// more accuracy
+    /// Time at which tinyODIN's neurons compare their potentials with their thresholds. With `spike` they compare after
+    /// each spike, which the chip does by itself. With `step` they compare once a step, as in training. This takes more
+    /// events; default: the one that keeps more accuracy
     #[arg(long, value_parser = compares())]
     compare: Option<Compare>,
     /// Rust file to write; default: standard output
@@ -95,9 +95,9 @@ pub(crate) struct Network {
     /// Also write the network as a binary file, which the driver loads at run time
     #[arg(long, value_name = "FILE")]
     bytes: Option<PathBuf>,
-    /// Then run the network on the chip's model, step by step. Each line of standard input is a step: the numbers of
-    /// the inputs that fire. The answer to each is a line with the number of clock cycles that the chip took, and the
-    /// numbers of the outputs that fired. The Rust file is not written unless -o is given
+    /// After the conversion, run the network on the chip's model, step by step. Each line of standard input is a step:
+    /// the numbers of the inputs that fire. Each line of output answers a step: the number of clock cycles that the
+    /// chip took, and the numbers of the outputs that fired. The Rust file is not written unless -o is given
     #[arg(long)]
     live: bool,
 }
@@ -274,7 +274,8 @@ fn spikes(line: &str) -> lab::Result<Vec<u16>> {
 struct Driven {
     /// The inputs that fire, for each step.
     steps: Trains,
-    /// Number of inputs. If the spikes come from a file, a lower bound: the highest input that fires, plus one.
+    /// Number of inputs that the network must have. If the spikes come from a file, the network may have more: this is
+    /// the highest input that fires, plus one.
     inputs: usize,
     /// Description of the inputs, for error messages.
     words: String,
@@ -286,8 +287,9 @@ struct Driven {
 }
 
 impl Driven {
-    /// Checks that the network has as many inputs as the recording gives, or at least as many if the spikes come from a
-    /// file. `inputs` and `layer` are the network's number of inputs and the name of its first layer.
+    /// Checks that the network has exactly the number of inputs that an encoded recording gives. If the spikes come from
+    /// a file, the network may have more inputs. `inputs` is the network's number of inputs, and `layer` is the name of
+    /// its first layer.
     fn check(&self, (inputs, layer): (usize, &str), scheme: Option<Scheme>) -> Result<()> {
         let given = &self.words;
         match scheme {
@@ -385,14 +387,14 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// Share of steps in which chip and trained network agree, below which the report warns.
+/// Lower bound of the share of steps in which chip and trained network agree. The report warns if the share is lower.
 const LOW: f64 = 0.5;
-/// Share of steps in which the outputs fire as they did in training, below which the report suggests that the network
-/// was trained by a different rule than `--as`, `--reset` and `--dt` say.
+/// Lower bound of the share of steps in which the outputs fire as they did in training. If the share is lower, the
+/// report suggests that `--as`, `--reset` or `--dt` differ from the training.
 const READ: f64 = 0.95;
 
-/// Prints on standard error how the converted network differs from the trained one, on the tuned and on the held-out
-/// recording.
+/// Prints on standard error how the converted network differs from the trained one, for the recording on which it was
+/// tuned and for the held-out recording.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out, costs, reading } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));

@@ -12,17 +12,17 @@ pub(crate) struct RuleOptions {
     /// all of the options below
     #[arg(long = "as", value_name = "FRAMEWORK", value_parser = of(&FRAMEWORKS))]
     framework: Option<Framework>,
-    /// Reset mode: the effect of a spike on its neuron's potential. One word for all layers, or one for each layer that
-    /// fires, comma-separated
+    /// Reset mode: the effect of a spike on its neuron's potential. Give one mode for all layers, or a comma-separated
+    /// list with a mode for each layer that fires
     #[arg(long = "reset", value_delimiter = ',', value_parser = of(&RESETS))]
     resets: Vec<Reset>,
-    /// Comparison of a neuron's potential with its threshold: the neuron fires only above the threshold, or also at it
+    /// Whether a neuron fires only if its potential is above its threshold, or also if it is equal to it
     #[arg(long, value_parser = of(&FIRES))]
     fires: Option<Fires>,
     /// Formula by which a time constant becomes the decay of potentials and currents in a step
     #[arg(long, value_parser = of(&DECAYS))]
     decay: Option<Decay>,
-    /// Synaptic current that drives the potential of a neuron, if the neuron has currents
+    /// Synaptic current that changes a neuron's potential in a step; only for neurons with synaptic currents
     #[arg(long, value_parser = of(&CURRENTS))]
     current: Option<Current>,
     /// Number type of the network on the controller
@@ -43,7 +43,7 @@ const ZERO: &str = "to-value";
 
 type Choices<T> = [(&'static str, T, &'static str)];
 
-/// Returns a parser that maps each name in `choices` to its value; the third field of a choice is its help.
+/// Returns a parser that maps each name in `choices` to its value. The third item of each choice is its help text.
 fn of<T: Copy + Send + Sync + 'static>(
     choices: &'static Choices<T>,
 ) -> impl TypedValueParser<Value = T> {

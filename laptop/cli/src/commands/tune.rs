@@ -65,7 +65,7 @@ pub(crate) struct Tune {
     /// Maximum RAM of a channel's encoder, in bytes
     #[arg(long, value_name = "BYTES", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_ram: Option<f64>,
-    /// Maximum of the mean number of instructions to encode a sample, as measured on --core
+    /// Maximum of the mean number of instructions that a sample takes to encode on --core
     #[arg(long, value_name = "COUNT", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_instructions: Option<f64>,
     /// Maximum delay of the code, in samples
@@ -74,7 +74,7 @@ pub(crate) struct Tune {
     /// Maximum number of events a second
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
-    /// Core whose measured costs count: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
+    /// Core on which instructions were counted, for costs and limits: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
     /// Share of the blocks that is held out, 0 for none
@@ -336,8 +336,9 @@ impl Tune {
 /// Length of the progress bar in steps.
 const BAR: u64 = 1000;
 
-/// Returns the position of the progress bar, 0 to [`BAR`]. `settings` and `time` are the shares of the search's budgets
-/// that are used up; the larger counts, because either budget ends the search.
+/// Returns the position of the progress bar, 0 to [`BAR`]. The search has a budget of settings and a budget of time.
+/// `settings` and `time` are the used shares of the two. The bar shows the larger share, because either budget ends the
+/// search.
 fn position(settings: f64, time: f64) -> u64 {
     (settings.max(time).clamp(0.0, 1.0) * BAR as f64) as u64
 }

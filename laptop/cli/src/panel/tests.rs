@@ -38,7 +38,7 @@ fn flight(first: f32) -> Flight {
     Flight::parse(&text).unwrap()
 }
 
-/// Encodes the first `samples` samples of the recorded flight; returns the frame that is sent after each.
+/// Encodes the first `samples` samples of the recorded flight; returns the bytes of the frame after each sample.
 fn frames(samples: usize) -> Vec<Vec<u8>> {
     let schemes = THRESHOLDS.map(SendOnDelta::<f32, 8>::new);
     let mut bank = Bank::<_, 6>::per_channel(schemes.each_ref());
@@ -65,8 +65,8 @@ fn frames(samples: usize) -> Vec<Vec<u8>> {
     sent.collect()
 }
 
-/// Returns the lines that the panel draws after `samples` samples of this flight; the frames of the samples for which
-/// `is_lost` returns true do not arrive.
+/// Returns the lines that the panel draws after `samples` samples of this flight. `is_lost` returns whether the frame
+/// of a sample is lost on the link.
 fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> Vec<String> {
     let panel = Rc::new(RefCell::new(Panel::of_flight(flight)));
     let mut drawn = Vec::new();
