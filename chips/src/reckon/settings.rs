@@ -25,7 +25,7 @@ impl ReckOnAnswers {
     }
 }
 
-/// What the targets are, from which the chip learns.
+/// The kind of target from which the chip learns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -71,7 +71,7 @@ pub struct ReckOnLearning {
 pub struct ReckOnSettings {
     /// What the chip answers, and when the driver returns the answers.
     pub answers: ReckOnAnswers,
-    /// What the targets are. [`Label`](ReckOnAnswers::Label) answers need
+    /// The kind of target from which the chip learns. [`Label`](ReckOnAnswers::Label) answers need
     /// [`Classification`](ReckOnTask::Classification).
     pub task: ReckOnTask,
     /// How the chip learns; `None` switches learning off. (After a reset it is on.)

@@ -1,5 +1,5 @@
-//! Faults that tinyODIN and ODIN show if a driver makes calls in the wrong order: tests that this driver causes none of
-//! them, even with lost and doubled clock pulses.
+//! Tests that the driver of tinyODIN and ODIN causes none of the faults that calls in the wrong order cause in these
+//! chips, even if clock pulses are lost or doubled.
 
 use std::num::NonZeroU32;
 

@@ -9,7 +9,7 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// Which part of a chip's content to compare, and the calls that the driver makes before the comparison.
+/// The part of a chip's content that a test compares, and the calls of the driver before that comparison.
 type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 

@@ -1,5 +1,5 @@
-//! Tests of `ReckOn` with a driver that reads its pins rarely and late: for networks of any size its answers are those
-//! of a driver with fast pins.
+//! Tests of the driver of `ReckOn` with slow pins: the driver reads them rarely and late, and must return the same
+//! answers as with fast pins, for networks of any size.
 
 use std::cell::Cell;
 
@@ -130,7 +130,8 @@ const SETTINGS: [ReckOnSettings; 3] = [
     ReckOnSettings::POTENTIALS,
 ];
 
-/// Makes a board, and a driver whose port calls last as long as `pace` says at the time.
+/// Makes a board, and a driver for its chip. Each call of the driver's port lasts as long as `pace` says at that
+/// moment.
 fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     let board = Board::new(10, 0);
     let port = Slow { port: board.port(), board: board.clone(), pace };

@@ -7,8 +7,8 @@ use spikewire_chips::{
     Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
 };
 
-/// A neuron in plain arithmetic. Its potential is the one that it compares with its threshold. The offset that the
-/// chip's potential has during a step is left out.
+/// A neuron of the reference, in plain arithmetic. Its potential does not contain the offset by which the chip lowers
+/// all potentials during a step.
 #[derive(Clone, Debug)]
 struct Neuron {
     threshold: i32,
@@ -17,8 +17,8 @@ struct Neuron {
     rung: i32,
     /// Number of leaks that only this neuron receives after a spike.
     own: u16,
-    /// Weights from the layer before, grouped by sending neuron, then by row. The bias and the weights from the
-    /// neuron's own layer are separate.
+    /// Weights from the previous layer: first those of its first neuron, one for each row of synapses of that neuron.
+    /// The bias and the weights from the neuron's own layer are separate.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -108,7 +108,7 @@ impl Net {
         None
     }
 
-    /// Returns the weight of row `row` of the chip's synapses onto neuron `post`.
+    /// Returns the weight from row `row` of tinyODIN's synapses to neuron `post`.
     fn row(&self, row: usize, post: usize) -> i8 {
         let (layer, _, neuron) = self.neuron(post).unwrap();
         let rows = self.rows;

@@ -53,7 +53,7 @@ pub enum EventState {
     Wait,
     /// Searches for the next input or neuron that has an event.
     Count,
-    /// Applies an event to all neurons: two neurons in two clock cycles.
+    /// Applies an event to all neurons, one pair of neurons in every two clock cycles.
     Event,
     /// Updates the trace of an input whose number is higher than that of any neuron.
     Trace,

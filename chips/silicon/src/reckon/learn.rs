@@ -20,7 +20,7 @@ pub(super) struct Learning {
     regularised: u16,
 }
 
-/// A word of weights that may change, and the random numbers that decide which do.
+/// A word of weights, and the random numbers that decide which of its weights change.
 struct Move<'a> {
     weights: u128,
     random: &'a Bits,
