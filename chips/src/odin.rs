@@ -32,7 +32,7 @@ pub struct OdinNeuron {
     pub leak: u8,
     /// The potential, which saturates at 0 and 255. Bits 70 to 77.
     pub potential: u8,
-    /// How the synapses onto the neuron learn; `None` if they do not learn. Bits 17 to 39.
+    /// The parameters with which the synapses onto the neuron learn; `None` if they do not learn. Bits 17 to 39.
     pub learning: Option<OdinLearning>,
     /// Whether the neuron is disabled, so that it never fires. Its potential still changes. Bit 127.
     pub is_disabled: bool,
@@ -46,9 +46,10 @@ impl OdinNeuron {
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
-/// How the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A presynaptic spike strengthens a
-/// synapse if the neuron's potential is high and its calcium lies between the outer two thresholds; it weakens the
-/// synapse if the potential is low and the calcium lies between the lower two.
+/// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A
+/// presynaptic spike strengthens a synapse if the neuron's potential is high and its calcium lies between the outer
+/// two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower two
+/// thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

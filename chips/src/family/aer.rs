@@ -1,4 +1,4 @@
-//! Sends and receives address events over parallel wires, with the 4-phase handshake.
+//! Sends and receives the words of the chip's event buses over parallel wires, with the 4-phase handshake.
 
 use core::num::NonZeroU32;
 
@@ -111,7 +111,7 @@ impl<P: AerPort> Aer<P> {
     /// chip takes the pending word after the reset has risen, it waits for REQ to fall, and the reset drops the word
     /// before it has an effect.
     ///
-    /// Returns the pending word if no ACK was seen for it, and whether an output was lost.
+    /// Returns the pending word if the driver saw no ACK for it. Also returns whether an output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
         if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
             self.phase = Phase::Release;

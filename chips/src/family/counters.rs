@@ -1,7 +1,7 @@
 //! The counters of a chip's driver.
 
-/// Counts of resets, and of time steps, events and words that were lost or late. Each count saturates at its largest
-/// value.
+/// Numbers of resets, and of time steps, events, words and outputs that were lost or late. Each number saturates at
+/// its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

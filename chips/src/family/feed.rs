@@ -19,7 +19,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// # Errors
     /// Returns the errors of [`send`](Self::send). After an error, call `feed` again with the remaining events. No
     /// event is lost or sent twice, except those that a reset [counts](super::Counters::repeated_events), and those
-    /// whose input is invalid, which are dropped.
+    /// whose input is invalid. Such an event is dropped.
     pub fn feed<A: Into<Option<I>>>(
         &mut self,
         mut events: impl Source,

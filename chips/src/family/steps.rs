@@ -273,7 +273,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     }
 }
 
-/// A step that is being run, and the neurons that fired in it so far.
+/// A time step in progress, and the neurons that fired in it so far.
 struct Step<'r, 'c, I: Input, D, P, F> {
     running: &'r mut Running<'c, I, D, P>,
     rows: u16,

@@ -188,8 +188,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Remembers a byte of memory if it can serve as a beacon, that is, if bits that the chip does not change are not
-    /// all 0.
+    /// Stores a byte of memory as the beacon if a bit of it that the chip does not change is 1.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

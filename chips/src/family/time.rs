@@ -48,8 +48,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// may not bring a potential of 12 bits to 0.)
     ///
     /// # Errors
-    /// Returns the errors of [`send`](Self::send). After an error, the next call sends the leak events that are left over from
-    /// this call.
+    /// Returns the errors of [`send`](Self::send). After an error, the next call sends the leak events that this call
+    /// still had to send.
     pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.advance_with(now, &mut on_output)
     }

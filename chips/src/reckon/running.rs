@@ -204,8 +204,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
     }
 
-    /// Ticks, and waits until the chip has taken the tick. The chip must be set to send an answer after it: the ready
-    /// pin then stays low until the answer is taken.
+    /// Sends a tick, and waits until the chip has taken it. The chip must be set to send an answer after the tick: the
+    /// ready pin then stays low until the driver takes the answer.
     fn tick(&mut self) -> Outcome<(), D, P> {
         self.port.set_tick(true).map_err(ChipError::Port)?;
         let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;

@@ -38,7 +38,7 @@ impl Address {
         Self::output(0x1AA)
     }
 
-    /// Returns the address that is `words` words further on.
+    /// Returns the address that is `words` 32-bit words after this address.
     pub(super) const fn next(self, words: u16) -> Self {
         Self(self.0.wrapping_add(words as u32))
     }

@@ -36,8 +36,8 @@ fn on(board: &Board) -> Chip {
     ReckOn::new(board.spi(), board.port(), Chip::MAX_CLOCKS)
 }
 
-/// The network in plain arithmetic. At a tick, neurons fire and outputs are read; then spikes and inputs act on the
-/// potentials.
+/// The reference: the network in plain arithmetic. At a tick, neurons fire and outputs are read. After that, spikes
+/// and inputs act on the potentials.
 #[derive(Clone)]
 struct Plain {
     potentials: [i32; 4],

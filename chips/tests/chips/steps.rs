@@ -31,7 +31,8 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Number of rungs that raise a neuron up to 0; `above` is the number of further rungs before it compares.
+    /// Number of rungs that bring a neuron from the offset up to 0. `above` is the number of further rungs until the
+    /// neuron compares with its threshold.
     below: u16,
     above: u16,
     leaks: Vec<Vec<u16>>,
@@ -44,7 +45,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl Net {
-    /// Runs a step; returns the neurons of each layer that fire. `before` are those that fired in the step before.
+    /// Runs a step and returns the neurons of each layer that fire. `before` holds the neurons of each layer that
+    /// fired in the previous step.
     fn step(&mut self, step: usize, inputs: &[u16], before: &[Vec<u16>]) -> Vec<Vec<u16>> {
         let [below, above, lift] = [self.below, self.above, self.lift].map(i32::from);
         let rows = self.rows;
@@ -153,8 +155,8 @@ impl Net {
     }
 }
 
-/// The network as `load` takes it: all rows of synapses are inputs, in open loop. The second field is the number of
-/// rows.
+/// The network as the driver's `load` takes it. All rows of synapses are inputs, in open loop. The second field is the
+/// number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

@@ -59,8 +59,8 @@ pub enum EventState {
     Trace,
 }
 
-/// The state of two neurons, as one word of memory stores it. A neuron that was not updated since the sample began
-/// counts as 0, whatever the memory holds.
+/// The state of two neurons, as one word of memory stores it. If a neuron was not updated since the sample began, its
+/// state counts as 0, whatever the memory holds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
@@ -457,7 +457,7 @@ impl ReckOn {
         }
     }
 
-    /// Returns the highest number that a step counts to: the largest of the highest neuron, input and output.
+    /// Returns the number at which a time step ends its count: the highest number of a neuron, an input or an output.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }

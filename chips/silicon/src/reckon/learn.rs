@@ -30,8 +30,8 @@ struct Move<'a> {
 }
 
 impl Move<'_> {
-    /// Returns the new word of weights and its mask. `likely` returns, for a weight, a signed measure of how likely it
-    /// moves up or down, and whether it may move.
+    /// Returns the new word of weights and its mask. For the index of a weight, `likely` returns a signed measure of
+    /// how likely the weight moves up or down, and whether the weight may move.
     fn apply(&self, likely: impl Fn(usize) -> (i32, bool)) -> (u128, u128) {
         let (mut data, mut mask) = (0, 0);
         for n in 0..16 {
