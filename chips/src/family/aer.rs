@@ -32,7 +32,7 @@ impl<E> From<E> for AerError<E> {
     }
 }
 
-/// The kind of the word whose handshake has not ended.
+/// The origin of the input word whose handshake has not ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Carries {
     /// A word from [`Running::send`](super::Running::send).
@@ -220,7 +220,8 @@ impl<P: AerPort> Aer<P> {
         Err(AerError::Timeout(self.phase))
     }
 
-    /// Advances the output bus's handshake by one edge of ACK, if REQ asks for it.
+    /// Advances the output bus's handshake by at most one edge of ACK: raises ACK after REQ rose, or lowers ACK after REQ
+    /// fell. Also counts a queue that became full.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());

@@ -241,7 +241,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Passes the result on; after an error the chip must be reset before the next call.
+    /// Returns `result` unchanged. If it is an error, the driver refuses all calls until the next reset.
     fn heed<T>(&mut self, result: Outcome<T, D, P>) -> Outcome<T, D, P> {
         if result.is_err() {
             self.state = State::NotReset;

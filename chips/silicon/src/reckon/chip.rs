@@ -224,8 +224,8 @@ pub struct Outputs {
     pub data: u8,
     /// Level of `SPI_RDY`, which is high while SPI may access the memories.
     pub spi_ready: bool,
-    /// Level of `TIMING_ERROR_RDY`: high while the chip is ready for a tick; with register 23 set, high after a tick that
-    /// came too early.
+    /// Level of `TIMING_ERROR_RDY`, which is high while the chip is ready for a tick. If register 23 is set, the level
+    /// is high after a tick that came too early.
     pub error_or_ready: bool,
 }
 
@@ -297,8 +297,8 @@ fn part(address: u16, data: u32) -> (u128, u128) {
     (u128::from(data) << shift, 0xFFFF_FFFF << shift)
 }
 
-/// Adds three 16-bit numbers as the chip does: the sum saturates if its sign differs from that of both `one` and `other`,
-/// even if only `noise` causes this.
+/// Adds three 16-bit numbers as the chip does. If `one` and `other` have the same sign and the sum has the opposite
+/// sign, the sum saturates, even if only `noise` changed the sign.
 fn add(one: i16, other: i16, noise: i16) -> i16 {
     let sum = one.wrapping_add(other).wrapping_add(noise);
     match (one < 0, other < 0, sum < 0) {
