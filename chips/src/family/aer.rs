@@ -220,8 +220,8 @@ impl<P: AerPort> Aer<P> {
         Err(AerError::Timeout(self.phase))
     }
 
-    /// Advances the output bus's handshake by at most one edge of ACK: raises ACK after REQ rose, or lowers ACK after REQ
-    /// fell. Also counts a queue that became full.
+    /// Advances the output bus's handshake by at most one edge of ACK: raises ACK after REQ rose, or lowers ACK after
+    /// REQ fell. Also counts a queue that became full.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());
