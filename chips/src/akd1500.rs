@@ -44,8 +44,8 @@ const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
 /// Block sizes in 32-bit words, longest first, each with its code in the header.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
-/// First address of the chip's memory. The bus carries only the low 26 bits of an address; the chip adds the high 6
-/// bits, which are those of this one.
+/// First address of the chip's memory. The bus carries only the low 26 bits of an address; the high 6 bits are the
+/// same for all addresses.
 const BASE: u32 = 0xFC00_0000;
 /// First address beyond the chip's memory.
 const END: u32 = 0xFD00_0000;

@@ -32,7 +32,7 @@ pub struct OdinNeuron {
     pub leak: u8,
     /// The potential, which saturates at 0 and 255. Bits 70 to 77.
     pub potential: u8,
-    /// How the synapses onto the neuron learn; `None` if they do not learn. Bits 17 to 39.
+    /// The parameters with which the synapses onto the neuron learn; `None` if they do not learn. Bits 17 to 39.
     pub learning: Option<OdinLearning>,
     /// Whether the neuron is disabled, so that it never fires. Its potential still changes. Bit 127.
     pub is_disabled: bool,
@@ -46,9 +46,10 @@ impl OdinNeuron {
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
-/// How the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A presynaptic spike strengthens a
-/// synapse if the neuron's potential is high and its calcium lies between the outer two thresholds; it weakens the
-/// synapse if the potential is low and the calcium lies between the lower two.
+/// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A
+/// presynaptic spike strengthens a synapse if the neuron's potential is high and its calcium lies between the outer
+/// two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower two
+/// thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -61,7 +62,7 @@ pub struct OdinLearning {
     pub calcium_leak: u8,
 }
 
-/// A synapse of ODIN. Its sign is not stored here: it is that of the presynaptic neuron.
+/// A synapse of ODIN. The synapse stores no sign: its weight has the sign of the presynaptic neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -153,14 +154,14 @@ pub enum OdinInput {
     },
     /// A time step for all neurons.
     LeakAll,
-    /// Moves each synapse *from* one neuron a step towards its nearer stable state, 0 or 7. (The chip's manual says the
-    /// synapses onto the neuron; its RTL differs.) Synapses without the mapping bit do not move, unless
-    /// [`updates_unmapped`](OdinRegisters::updates_unmapped) is set.
+    /// A bistability event for the synapses *from* one neuron: a weight of 4 or more rises by 1, up to 7; a lower
+    /// weight falls by 1, down to 0. (The chip's manual says the synapses onto the neuron; its RTL differs.) Synapses
+    /// without the mapping bit do not change, unless [`updates_unmapped`](OdinRegisters::updates_unmapped) is set.
     Bistability {
         /// The presynaptic neuron.
         neuron: u8,
     },
-    /// Moves all synapses a step towards their nearer stable states, 0 or 7.
+    /// A bistability event for all synapses. Each synapse changes as in [`Bistability`](Self::Bistability).
     BistabilityAll,
 }
 

@@ -2,7 +2,7 @@
 
 use super::ChipError;
 
-/// Access to the chip's registers. The driver's user implements it, because the protocol of the chip's bus is not
+/// Access to the chip's registers. You implement this trait, because the protocol of the chip's bus is not
 /// public.
 pub trait Registers {
     /// Error type of the bus that accesses the registers.
@@ -69,8 +69,8 @@ pub struct XyloMap {
     pub outputs: u16,
     /// Mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
-    /// Address of the register that shows which input bank the next time step reads, and the mask of its bit, which is
-    /// 1 for the second bank. `None` if the public sources do not give them.
+    /// The bit that shows which input bank the next time step reads: the address of its register, and its mask. The bit
+    /// is 1 for the second bank. `None` if the public sources do not give them.
     pub next_bank: Option<(u16, u32)>,
 }
 

@@ -161,8 +161,8 @@ pub struct Chip<K> {
 }
 
 impl<K: Kind> Default for Chip<K> {
-    /// Makes a chip in the state after power-up that is hardest for a driver: not gated, in closed loop, with memories
-    /// that are all 0.
+    /// Makes a chip just after power-up, in the state that is the hardest for a driver: not gated, in closed loop,
+    /// with memories that are all 0.
     fn default() -> Self {
         Self {
             reset: false,

@@ -1,4 +1,4 @@
-//! Sends and receives address events over parallel wires, with the 4-phase handshake.
+//! Sends and receives the words of the chip's event buses over parallel wires, with the 4-phase handshake.
 
 use core::num::NonZeroU32;
 
@@ -32,7 +32,7 @@ impl<E> From<E> for AerError<E> {
     }
 }
 
-/// The kind of the word whose handshake has not ended.
+/// The origin of the input word whose handshake has not ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Carries {
     /// A word from [`Running::send`](super::Running::send).
@@ -111,7 +111,7 @@ impl<P: AerPort> Aer<P> {
     /// chip takes the pending word after the reset has risen, it waits for REQ to fall, and the reset drops the word
     /// before it has an effect.
     ///
-    /// Returns the pending word if no ACK was seen for it, and whether an output was lost.
+    /// Returns the pending word if the driver saw no ACK for it. Also returns whether an output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
         if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
             self.phase = Phase::Release;
@@ -220,7 +220,8 @@ impl<P: AerPort> Aer<P> {
         Err(AerError::Timeout(self.phase))
     }
 
-    /// Advances the output bus's handshake by one edge of ACK, if REQ asks for it.
+    /// Advances the output bus's handshake by at most one edge of ACK: raises ACK after REQ rose, or lowers ACK after
+    /// REQ fell. Also counts a queue that became full.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());

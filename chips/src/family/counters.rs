@@ -1,15 +1,15 @@
 //! The counters of a chip's driver.
 
-/// Counts of resets, and of time steps, events and words that were lost or late. Each count saturates at its largest
-/// value.
+/// Numbers of resets, and of time steps, events, words and outputs that were lost or late. Each number saturates at
+/// its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
     /// Number of resets, including the first one.
     pub resets: u32,
-    /// Number of time steps that were not sent to the chip: those in excess of 255 in one call, and those pending at a
-    /// reset.
+    /// Number of time steps that were never sent to the chip. A call skips those beyond the latest 255, and a reset
+    /// drops a step that the chip has not acknowledged.
     pub skipped_steps: u32,
     /// Number of events that were fed after their time step was over.
     pub late_events: u32,
@@ -21,7 +21,7 @@ pub struct Counters {
     /// Number of words passed to [`send`](super::Running::send) that were lost at a reset, because no ACK had been seen
     /// for them.
     pub dropped_words: u32,
-    /// Number of outputs that the chip offered when it was reset, and that were lost.
+    /// Number of outputs lost at resets: the chip had raised REQ for the output, but the driver had not read it yet.
     pub lost_outputs: u32,
     /// Number of times that the chip's queue was seen to become full; each time, any number of spikes between neurons
     /// may be lost. Always 0 without the [pin](super::AerPort::queue_full).

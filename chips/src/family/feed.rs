@@ -19,7 +19,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// # Errors
     /// Returns the errors of [`send`](Self::send). After an error, call `feed` again with the remaining events. No
     /// event is lost or sent twice, except those that a reset [counts](super::Counters::repeated_events), and those
-    /// whose input is invalid, which are dropped.
+    /// whose input is invalid. Such an event is dropped.
     pub fn feed<A: Into<Option<I>>>(
         &mut self,
         mut events: impl Source,
@@ -41,8 +41,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         Ok(sent)
     }
 
-    /// Sends the time steps up to `event`, then `word`, which stands for it. Keeps `event` for the next call until the
-    /// word is on the bus.
+    /// Sends the time steps up to the tick of `event`, then `word`, the input word for `event`. If an error occurs
+    /// before the word is on the bus, stores `event` for the next call.
     fn feed_word(
         &mut self,
         word: u32,

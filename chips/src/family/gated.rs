@@ -134,8 +134,8 @@ fn bytes_of<I: Input>(neuron: u8) -> impl Iterator<Item = Address> + Clone {
     (0..I::NEURON_BYTES).map(move |byte| Address::neuron(neuron, byte))
 }
 
-/// Returns the number of a neuron that the probe, a time step of one neuron, leaves as it was. If the neuron leaks,
-/// raises its potential by the leak beforehand.
+/// Prepares the probe, which is a time step of one neuron. Returns the number of a neuron whose state is unchanged
+/// after that step. If the neuron leaks, raises its potential by the leak beforehand.
 fn prepare_probe<I: Input, D: SpiDevice, P: AerPort>(
     chip: &mut OdinChip<I, D, P>,
 ) -> Outcome<u8, D, P> {

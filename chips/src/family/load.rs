@@ -7,7 +7,7 @@ use super::sync::DISABLE;
 use super::wire::Address;
 use super::{AerPort, ChipError, Describe, Gated, Input, Outcome};
 
-/// How far loading or comparing a network has come.
+/// The progress of loading or comparing a network, in frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Progress {
@@ -17,7 +17,7 @@ pub struct Progress {
     pub total: u32,
 }
 
-/// Number of neurons that a chip of the family has.
+/// Number of neurons in a chip of the ODIN family.
 const NEURONS: u16 = 256;
 
 impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {

@@ -46,14 +46,14 @@ pub use steps::{Steps, StepsLayer, StepsState};
 /// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select. Therefore no other device
 ///   may share its SPI bus, and the chip-select pin of the SPI device stays unconnected.
 /// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed; [`Gated::run`] gives a
-///   [`Running`] one, which takes events; [`Running::gate`] gives a gated one again. Each type has only the calls that
-///   are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give access to a chip that was left
-///   in that state.
+///   [`Running`] chip, which takes events; [`Running::gate`] gives a [`Gated`] chip again. Each type has only the calls
+///   that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give access to a chip that was
+///   left in that state.
 /// - **Synchronisation:** a lost or doubled clock pulse puts chip and bus out of sync. Calls on a gated chip detect
-///   this; if it happens in the last frame of a call, the next call detects it. They also detect a lost and a doubled
-///   pulse within one access to memory. (Such a pair within the frame of a register and its check goes unnoticed,
-///   because registers cannot be read back.) After an error of the bus, or a byte that reads back differently, the
-///   driver refuses all calls until the next reset, and all memory is in doubt: load it again.
+///   such a fault; after a fault in the last frame of a call, the next call detects it. Calls also detect a lost and a
+///   doubled pulse within one access to memory. (Such a pair within the frame of a register and its check goes
+///   unnoticed, because registers cannot be read back.) After an error of the bus, or a byte that reads back
+///   differently, the driver refuses all calls until the next reset, and all memory is in doubt: load it again.
 /// - **Waits:** the driver reads the pins a given number of times, then returns an error.
 /// - **Words** that the chip has not acknowledged when a wait ends stay pending. Every call that sends a word finishes
 ///   the pending one first; [`Running::poll`] continues with it; a reset drops it.

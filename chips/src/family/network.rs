@@ -34,7 +34,7 @@ pub trait Describe<I: Input> {
     /// Returns the weight from neuron `pre` to neuron `post`.
     fn weight(&self, pre: u8, post: u8) -> i8;
 
-    /// Returns the number of the output that a neuron is; `None` if the neuron is not an output.
+    /// Returns the number of the output that carries the spikes of `neuron`; `None` if the neuron is not an output.
     fn output(&self, neuron: u8) -> Option<u16>;
 
     /// Returns the chip's input for an event that a bank of encoders of this scheme sends, or `None` if the network has

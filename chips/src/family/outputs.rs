@@ -1,4 +1,4 @@
-//! A list that collects a chip's outputs in one time step, as events.
+//! A list of the outputs that a chip sends in one time step, as events.
 
 use spikewire::Polarity;
 use spikewire::{Event, Tick};

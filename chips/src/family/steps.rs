@@ -1,5 +1,5 @@
-//! Time steps in which each neuron compares its potential with its threshold once, as in training. (By themselves the
-//! chip's neurons compare after every event.)
+//! Time steps in which each neuron of tinyODIN compares its potential with its threshold once, as networks do in
+//! training. (Otherwise the chip compares after every event.)
 
 use embedded_hal::spi::SpiDevice;
 
@@ -94,10 +94,10 @@ pub struct Steps<'a> {
     pub rows: u16,
     /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
     pub layers: &'a [StepsLayer],
-    /// Number of events that raise a layer in a step, and number of events that later lower all neurons again.
+    /// Number of events that raise each layer in a step. The same number of events later lowers all neurons again.
     pub rungs: u16,
-    /// The leaks of all neurons in each step: the number of lowering events that come before each leak, in ascending
-    /// order. Steps take the lists in turn.
+    /// When leaks are sent in a step: each leak is given as the number of lowering events that come before it, in
+    /// ascending order. Successive steps take successive lists, and begin again after the last list.
     pub leaks: &'a [&'a [u16]],
     /// Number of events that raise all neurons again after they were lowered, before the leaks of neurons that fired;
     /// as many events lower them afterwards. 0 if these leaks need no raising.
@@ -134,7 +134,7 @@ impl StepsState {
 struct Fired([u32; 8]);
 
 impl Fired {
-    /// Adds a neuron; returns false if the set already contained it.
+    /// Adds a neuron to the set. Returns false if the set already contained the neuron.
     fn insert(&mut self, neuron: u8) -> bool {
         let Some(word) = self.0.get_mut(usize::from(neuron >> 5)) else { return false };
         let bit = 1 << (neuron & 31);
@@ -273,7 +273,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     }
 }
 
-/// A step that is being run, and the neurons that fired in it so far.
+/// A time step in progress, and the neurons that fired in it so far.
 struct Step<'r, 'c, I: Input, D, P, F> {
     running: &'r mut Running<'c, I, D, P>,
     rows: u16,
@@ -291,7 +291,7 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         })
     }
 
-    /// Sends `times` spikes on a row.
+    /// Sends `times` spikes on row `row` of the chip's synapses.
     fn row(&mut self, row: u16, times: u16) -> Outcome<(), D, P> {
         for _ in 0..times {
             let Ok(pre) = u8::try_from(row) else {
@@ -303,8 +303,8 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends one spike on each row of an input or a neuron. `first` is the first row of its group, `number` its index
-    /// in the group.
+    /// Sends one spike on each row of synapses of one input or neuron. `first` is the first row of all inputs, or of
+    /// all neurons of the layer. `number` is the index of the input or neuron among them.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let first = first.saturating_add(number.saturating_mul(self.rows));
         for at in 0..self.rows {

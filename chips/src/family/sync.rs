@@ -11,7 +11,8 @@ const GATE_ACTIVITY: u16 = 0;
 /// Mask of the bit that disables a neuron, in the neuron's last byte.
 pub(super) const DISABLE: u8 = 0x80;
 
-/// A byte of a neuron's parameters that is known not to be 0. A bus out of sync reads 0 at its address.
+/// A byte of a neuron's parameters that is known not to be 0. If the bus is out of sync, a read of this byte returns
+/// 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beacon {
     address: Address,
@@ -19,7 +20,7 @@ pub(super) struct Beacon {
     value: u8,
 }
 
-/// The byte that the sync check writes. A bus that is out of sync by one bit reads a different byte.
+/// The byte that the sync check writes. A bus that is out of sync by one bit does not read this byte.
 const SIGN: u8 = 0xA5;
 
 /// Returns the address that the sync check writes to.
@@ -136,8 +137,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Reads the byte that the sync check wrote once more: two faults in the last frames of the check may cancel out
-    /// and leave the byte wrong.
+    /// Reads once more the byte that the sync check wrote. Two faults in the last frames of the check may cancel out,
+    /// so that the check succeeds although this byte is wrong.
     fn expect_anchor(&mut self) -> Outcome<(), D, P> {
         match self.anchor {
             Some(value) => self.expect_byte(anchor(), 0, value),
@@ -158,7 +159,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes the bits of a byte that are 0 in `keep`; the others keep their value.
+    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -187,8 +188,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Remembers a byte of memory if it can serve as a beacon, that is, if bits that the chip does not change are not
-    /// all 0.
+    /// Stores a byte of memory as the beacon if a bit of it that the chip does not change is 1.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

@@ -11,12 +11,12 @@ use spikewire::Tick;
 /// Maximum number of leak events that one call sends.
 const MAX_LEAKS: u32 = 255;
 
-/// Longest time that a tick may lie before the last one and still count as late, in µs: 67 s. A tick that lies further
-/// back is taken for a later one, after the 32-bit clock has wrapped, for example after an hour in which the chip was
-/// gated.
+/// The driver compares a tick with the time of the last leak event. A tick that is earlier by at most this duration,
+/// in µs (67 s), counts as late. A tick that is earlier by more counts as a future tick, because the 32-bit clock has
+/// wrapped.
 const LATEST: u32 = 1 << 26;
 
-/// Returns the time from `last` to `now` in µs; `None` if `now` lies up to 67 s before `last`.
+/// Returns the time from `last` to `now` in µs; `None` if `now` is at most 67 s earlier than `last`.
 fn passed(last: Tick, now: Tick) -> Option<u32> {
     let passed = now.micros().wrapping_sub(last.micros());
     (passed < LATEST.wrapping_neg()).then_some(passed)
@@ -42,12 +42,14 @@ impl Time {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Sends the leak events for the time that has passed up to the tick `now`. Time in which the chip was gated
-    /// counts, up to 70 minutes; the first call only notes the time. A call sends at most 255 leak events; it skips and
-    /// [counts](super::Counters::skipped_steps) the rest. (255 leaks of 1 may not bring a potential of 12 bits to 0.)
+    /// Sends the leak events that are due up to the tick `now`. The first call sends none and only stores `now`. Time
+    /// in which the chip was gated counts, up to 70 minutes. A call sends at most 255 leak events. If more are due,
+    /// the oldest ones are never sent, and are counted as [skipped](super::Counters::skipped_steps). (255 leaks of 1
+    /// may not bring a potential of 12 bits to 0.)
     ///
     /// # Errors
-    /// Returns the errors of [`send`](Self::send). Leak events that were not sent are due at the next call.
+    /// Returns the errors of [`send`](Self::send). After an error, the next call sends the leak events that this call
+    /// still had to send.
     pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.advance_with(now, &mut on_output)
     }

@@ -52,7 +52,7 @@ impl<D: SpiDevice> Wire<D> {
         self.write(register.into(), value)
     }
 
-    /// Writes the bits of a byte that are 0 in `keep`; the others keep their value.
+    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
     pub(super) fn write_byte(
         &mut self,
         address: Address,

@@ -121,7 +121,7 @@ pub struct ReckOn<D, P> {
     sizes: Sizes,
 }
 
-/// Highest numbers of an input, a neuron and an output that the network uses.
+/// The highest number of an input, of a neuron and of an output in the network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sizes {
     input: u8,
@@ -151,9 +151,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     pub const MAX_CLOCKS: u32 = 76_000;
 
     /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
-    /// times; [`MAX_CLOCKS`](Self::MAX_CLOCKS) polls suffice if each takes at least one clock cycle of the chip. If
-    /// polls are faster, pass `MAX_CLOCKS` times the number of polls in a clock cycle, rounded up: the driver derives
-    /// two short waits from that factor.
+    /// times. [`MAX_CLOCKS`](Self::MAX_CLOCKS) polls suffice if each poll takes at least one clock cycle of the chip.
+    /// If several polls fit into one clock cycle, multiply `MAX_CLOCKS` by their number, rounded up.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         let wire = Wire { device };
         let sizes = Sizes { input: 255, neuron: 255, output: 15 };
@@ -242,7 +241,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         }
     }
 
-    /// Passes the result on; after an error the chip must be reset before the next call.
+    /// Returns `result` unchanged. If it is an error, the driver refuses all calls until the next reset.
     fn heed<T>(&mut self, result: Outcome<T, D, P>) -> Outcome<T, D, P> {
         if result.is_err() {
             self.state = State::NotReset;

@@ -151,8 +151,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.chip.check_sync()
     }
 
-    /// Writes the registers and lets the chip run. Checks that the memories are closed: every read must then return the
-    /// word of the last read before.
+    /// Writes the registers and lets the chip run. Checks that the memories are closed: while they are, every read
+    /// returns the word of the last read that was made with open memories.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range; nothing was changed then. Also returns an error if the bus
@@ -253,8 +253,8 @@ fn words(network: &impl DescribeReckOn) -> u32 {
     rows.wrapping_mul(row).wrapping_add(outputs).wrapping_add(4 * u32::from(PAIRS))
 }
 
-/// Calls `visit` for every word of the chip's memories that the network needs, with the word's address and value, and
-/// `progress` with the number of words so far.
+/// Calls `visit` with the address and the value of every 32-bit word that the network needs in the chip's memories.
+/// Calls `progress` with the number of words visited so far.
 fn each_word<B, X>(
     network: &impl DescribeReckOn,
     mut visit: impl FnMut(Address, u32) -> Result<(), ChipError<B, X>>,

@@ -18,11 +18,13 @@ pub struct ReckOnSample<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
 }
 
-/// The options of a time step. By default it neither counts for the label nor learns.
+/// The options of a time step. By default a step does not count for the sample's label, and the chip does not learn in
+/// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ReckOnStep<'a> {
-    /// Whether this step counts for the label: the output with the highest potential gets a point.
+    /// Whether the output with the highest potential in this step gets a point. At the end of the sample, the output
+    /// with the most points is the label.
     pub counts: bool,
     /// The target from which the chip learns in this step; `None` if it does not learn.
     pub target: Option<ReckOnTarget<'a>>,
@@ -38,11 +40,12 @@ pub enum ReckOnTarget<'a> {
     Potentials(&'a [i16]),
 }
 
-/// An answer of the chip. [`ReckOnAnswers`] selects which of the two the chip sends.
+/// An answer of the chip. [`ReckOnAnswers`] selects whether the chip sends a label or potentials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnAnswer {
-    /// The number of the output that was the highest in the most counted steps; the first one if several are equal.
+    /// The number of the output that had the highest potential in the most steps with [`counts`](ReckOnStep::counts)
+    /// set; the lowest number if several outputs are equal.
     Label(u8),
     /// The outputs' potentials; 0 for outputs that the network does not have.
     Potentials([i16; 16]),
@@ -77,7 +80,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
-    /// Sends a spike of an input. It acts after the next tick. If an input is sent twice within a step, it counts once.
+    /// Sends a spike of an input, which acts after the next tick. An input that is sent twice within a step acts only
+    /// once.
     ///
     /// # Errors
     /// Returns an error if the network has no such input. Also returns an error if the chip does not answer, or if the
@@ -200,8 +204,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
     }
 
-    /// Ticks, and waits until the chip has taken the tick. The chip must be set to send an answer after it: the ready
-    /// pin then stays low until the answer is taken.
+    /// Sends a tick, and waits until the chip has taken it. The chip must be set to send an answer after the tick: the
+    /// ready pin then stays low until the driver takes the answer.
     fn tick(&mut self) -> Outcome<(), D, P> {
         self.port.set_tick(true).map_err(ChipError::Port)?;
         let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;

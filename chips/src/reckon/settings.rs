@@ -1,7 +1,8 @@
 //! The registers of `ReckOn` that set its answers and its learning.
 
-/// What the chip answers, and when the driver returns the answers. In any setting the chip sends an answer in every
-/// step, which proves the step: one byte for a label, or two for each output's potential.
+/// The kind of answer that the chip sends, and when the driver returns answers. In any setting the chip sends an
+/// answer in every step, which proves that it did the step: one byte for a label, or two bytes for the potential of
+/// each output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,7 +26,7 @@ impl ReckOnAnswers {
     }
 }
 
-/// What the targets are, from which the chip learns.
+/// The kind of target from which the chip learns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -69,12 +70,12 @@ pub struct ReckOnLearning {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnSettings {
-    /// What the chip answers, and when the driver returns the answers.
+    /// The kind of answer that the chip sends, and when the driver returns answers.
     pub answers: ReckOnAnswers,
-    /// What the targets are. [`Label`](ReckOnAnswers::Label) answers need
+    /// The kind of target from which the chip learns. [`Label`](ReckOnAnswers::Label) answers need
     /// [`Classification`](ReckOnTask::Classification).
     pub task: ReckOnTask,
-    /// How the chip learns; `None` switches learning off. (After a reset it is on.)
+    /// The parameters of learning; `None` switches learning off. (After a reset it is on.)
     pub learning: Option<ReckOnLearning>,
 }
 

@@ -15,20 +15,20 @@ impl Address {
         Self(1 << 28 | (pair as u32) << 2 | quarter)
     }
 
-    /// Returns the address of the weights from an input to neurons 0 to 3. The weights to each next four neurons follow
-    /// at the next address.
+    /// Returns the address of the 32-bit word with the weights from an input to neurons 0 to 3. The next word has the
+    /// weights to neurons 4 to 7, and so on.
     pub(super) const fn input(input: u16) -> Self {
         Self(3 << 28 | (input as u32) << 6)
     }
 
-    /// Returns the address of the weights from a neuron to neurons 0 to 3. The weights to each next four neurons follow
-    /// at the next address.
+    /// Returns the address of the 32-bit word with the weights from a neuron to neurons 0 to 3. The next word has the
+    /// weights to neurons 4 to 7, and so on.
     pub(super) const fn recurrent(neuron: u16) -> Self {
         Self(4 << 28 | (neuron as u32) << 6)
     }
 
-    /// Returns the address of the weights from a neuron to outputs 0 to 3. The weights to each next four outputs follow
-    /// at the next address.
+    /// Returns the address of the 32-bit word with the weights from a neuron to outputs 0 to 3. The next word has the
+    /// weights to outputs 4 to 7, and so on.
     pub(super) const fn output(neuron: u16) -> Self {
         Self(5 << 28 | (neuron as u32) << 2)
     }
@@ -38,7 +38,7 @@ impl Address {
         Self::output(0x1AA)
     }
 
-    /// Returns the address that is `words` words further on.
+    /// Returns the address that is `words` 32-bit words after this address.
     pub(super) const fn next(self, words: u16) -> Self {
         Self(self.0.wrapping_add(words as u32))
     }

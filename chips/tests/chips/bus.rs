@@ -1,4 +1,4 @@
-//! An SPI bus that fails when a test wants it to, which the mocks of `embedded-hal-mock` cannot do.
+//! An SPI bus on which a test lets one chosen transaction fail. (The mocks of `embedded-hal-mock` always succeed.)
 
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 

@@ -1,5 +1,5 @@
-//! Faults that tinyODIN and ODIN show if a driver makes calls in the wrong order: tests that this driver causes none of
-//! them, even with lost and doubled clock pulses.
+//! Tests that the driver of tinyODIN and ODIN causes none of the faults that calls in the wrong order cause in these
+//! chips, even if clock pulses are lost or doubled.
 
 use std::num::NonZeroU32;
 
@@ -435,8 +435,8 @@ fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
     assert!(pairs_within_an_access(77) > 10_000);
 }
 
-/// Two faults that cancel out in the last frames of a sync check, and leave a wrong value in the byte that the check
-/// writes, are an error.
+/// Two faults may cancel out in the last frames of a sync check and leave a wrong value in the byte that the check
+/// writes. The driver must return an error.
 #[test]
 fn a_pair_within_a_sync_check_is_an_error() {
     use ClockFault::{Doubled, Lost};

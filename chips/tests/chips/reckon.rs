@@ -36,8 +36,8 @@ fn on(board: &Board) -> Chip {
     ReckOn::new(board.spi(), board.port(), Chip::MAX_CLOCKS)
 }
 
-/// The network in plain arithmetic. At a tick, neurons fire and outputs are read; then spikes and inputs act on the
-/// potentials.
+/// The reference: the network in plain arithmetic. At a tick, neurons fire and outputs are read. After that, spikes
+/// and inputs act on the potentials.
 #[derive(Clone)]
 struct Plain {
     potentials: [i32; 4],
@@ -382,8 +382,7 @@ fn slopes_are_written_with_their_sign() {
     assert_eq!(slopes, [16, 31, 0, 5, 15]);
 }
 
-/// Faults of the port: the levels at which `AERIN_ACK` and `OUT_REQ` are stuck, and the number of bytes that an answer
-/// has instead of the right one.
+/// Faults of the port: levels at which `AERIN_ACK` and `OUT_REQ` are stuck, and a wrong number of bytes in an answer.
 #[derive(Default)]
 struct Lines {
     acknowledge: Cell<Option<bool>>,

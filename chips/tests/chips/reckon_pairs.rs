@@ -9,7 +9,7 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// Which part of a chip's content to compare, and the calls that the driver makes before the comparison.
+/// The part of a chip's content that a test compares, and the calls of the driver before that comparison.
 type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
@@ -173,8 +173,8 @@ fn a_lost_and_a_doubled_clock_within_an_access_are_an_error_or_right() {
     assert!(accesses((30, false)) > 500);
 }
 
-/// A pulse doubled before the second read turns it into a write of 0; a pulse lost at its end hides the shift. The
-/// driver must notice it.
+/// A clock pulse that is doubled before the second read turns this read into a write of 0. A pulse that is lost at the
+/// end of the read hides the shift. The driver must notice this pair of faults.
 #[test]
 fn a_weight_that_is_read_is_not_written_where_it_ends() {
     let faults = [(5 * FRAME - 1, Doubled), (6 * FRAME - 1, Lost)];
@@ -183,8 +183,8 @@ fn a_weight_that_is_read_is_not_written_where_it_ends() {
     assert!(result.is_err());
 }
 
-/// A header that reads a word of neurons, and that loses its first bit, writes an output's potential. The read then
-/// returns 0, which equals the word. The potential must stay 0.
+/// If the header of a read of neurons loses its first bit, the chip instead writes an output's potential. The read
+/// then returns 0, which equals the word of neurons. The potential must stay 0.
 #[test]
 fn a_word_of_neurons_that_is_read_moves_no_output() {
     // All words are written, the sync is checked, and the first word is read.

@@ -1,5 +1,5 @@
-//! Tests of `ReckOn` with a driver that reads its pins rarely and late: for networks of any size its answers are those
-//! of a driver with fast pins.
+//! Tests of the driver of `ReckOn` with slow pins: the driver reads them rarely and late, and must return the same
+//! answers as with fast pins, for networks of any size.
 
 use std::cell::Cell;
 
@@ -130,7 +130,8 @@ const SETTINGS: [ReckOnSettings; 3] = [
     ReckOnSettings::POTENTIALS,
 ];
 
-/// Makes a board, and a driver whose port calls last as long as `pace` says at the time.
+/// Makes a board, and a driver for its chip. Each call of the driver's port lasts as long as `pace` says at that
+/// moment.
 fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     let board = Board::new(10, 0);
     let port = Slow { port: board.port(), board: board.clone(), pace };
@@ -161,8 +162,8 @@ fn sample<'a, 'b>(
     Ok(((answers, fired), started))
 }
 
-/// With 26 clock cycles a call, the ready pin is low for less than one call: in steps of networks of up to 10 neurons,
-/// and at the tick that begins a sample for up to 25 neurons.
+/// If a port call takes 26 clock cycles, the ready pin is low for less than one call: in steps of networks of up to 10
+/// neurons, and at the tick that begins a sample for up to 25 neurons.
 #[test]
 fn pins_that_are_read_seldom_change_no_answer() {
     for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {

@@ -34,7 +34,7 @@ impl Random {
         (u64::from(self.0.next_u32()) * u64::from(end)).wrapping_shr(32) as u32
     }
 
-    /// Draws a number below 2^`bits`, whose number of bits is uniformly distributed.
+    /// Draws a length from 0 to `bits` uniformly, and then a number with at most that many bits.
     fn of_any_size(&mut self, bits: u32) -> u32 {
         let bits = self.below(bits + 1);
         self.below(1 << bits)

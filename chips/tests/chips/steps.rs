@@ -7,8 +7,8 @@ use spikewire_chips::{
     Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
 };
 
-/// A neuron in plain arithmetic. Its potential is the one that it compares with its threshold. The offset that the
-/// chip's potential has during a step is left out.
+/// A neuron of the reference, in plain arithmetic. Its potential does not contain the offset by which the chip lowers
+/// all potentials during a step.
 #[derive(Clone, Debug)]
 struct Neuron {
     threshold: i32,
@@ -17,8 +17,8 @@ struct Neuron {
     rung: i32,
     /// Number of leaks that only this neuron receives after a spike.
     own: u16,
-    /// Weights from the layer before, grouped by sending neuron, then by row. The bias and the weights from the
-    /// neuron's own layer are separate.
+    /// Weights from the previous layer: first those of its first neuron, one for each row of synapses of that neuron.
+    /// The bias and the weights from the neuron's own layer are separate.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -31,7 +31,8 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Number of rungs that raise a neuron up to 0; `above` is the number of further rungs before it compares.
+    /// Number of rungs that bring a neuron from the offset up to 0. `above` is the number of further rungs until the
+    /// neuron compares with its threshold.
     below: u16,
     above: u16,
     leaks: Vec<Vec<u16>>,
@@ -44,7 +45,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl Net {
-    /// Runs a step; returns the neurons of each layer that fire. `before` are those that fired in the step before.
+    /// Runs a step and returns the neurons of each layer that fire. `before` holds the neurons of each layer that
+    /// fired in the previous step.
     fn step(&mut self, step: usize, inputs: &[u16], before: &[Vec<u16>]) -> Vec<Vec<u16>> {
         let [below, above, lift] = [self.below, self.above, self.lift].map(i32::from);
         let rows = self.rows;
@@ -108,7 +110,7 @@ impl Net {
         None
     }
 
-    /// Returns the weight of row `row` of the chip's synapses onto neuron `post`.
+    /// Returns the weight from row `row` of tinyODIN's synapses to neuron `post`.
     fn row(&self, row: usize, post: usize) -> i8 {
         let (layer, _, neuron) = self.neuron(post).unwrap();
         let rows = self.rows;
@@ -153,8 +155,8 @@ impl Net {
     }
 }
 
-/// The network as `load` takes it: all rows of synapses are inputs, in open loop. The second field is the number of
-/// rows.
+/// The network as the driver's `load` takes it. All rows of synapses are inputs, in open loop. The second field is the
+/// number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

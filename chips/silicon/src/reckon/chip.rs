@@ -53,14 +53,14 @@ pub enum EventState {
     Wait,
     /// Searches for the next input or neuron that has an event.
     Count,
-    /// Applies an event to all neurons: two neurons in two clock cycles.
+    /// Applies an event to all neurons, one pair of neurons in every two clock cycles.
     Event,
     /// Updates the trace of an input whose number is higher than that of any neuron.
     Trace,
 }
 
-/// The state of two neurons, as one word of memory stores it. A neuron that was not updated since the sample began
-/// counts as 0, whatever the memory holds.
+/// The state of two neurons, as one word of memory stores it. If a neuron was not updated since the sample began, its
+/// state counts as 0, whatever the memory holds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
@@ -224,8 +224,8 @@ pub struct Outputs {
     pub data: u8,
     /// Level of `SPI_RDY`, which is high while SPI may access the memories.
     pub spi_ready: bool,
-    /// Level of `TIMING_ERROR_RDY`: high while the chip is ready for a tick; with register 23 set, high after a tick that
-    /// came too early.
+    /// Level of `TIMING_ERROR_RDY`, which is high while the chip is ready for a tick. If register 23 is set, the level
+    /// is high after a tick that came too early.
     pub error_or_ready: bool,
 }
 
@@ -297,8 +297,8 @@ fn part(address: u16, data: u32) -> (u128, u128) {
     (u128::from(data) << shift, 0xFFFF_FFFF << shift)
 }
 
-/// Adds three 16-bit numbers as the chip does: the sum saturates if its sign differs from that of both `one` and `other`,
-/// even if only `noise` causes this.
+/// Adds three 16-bit numbers as the chip does. If `one` and `other` have the same sign and the sum has the opposite
+/// sign, the sum saturates, even if only `noise` changed the sign.
 fn add(one: i16, other: i16, noise: i16) -> i16 {
     let sum = one.wrapping_add(other).wrapping_add(noise);
     match (one < 0, other < 0, sum < 0) {
@@ -457,7 +457,7 @@ impl ReckOn {
         }
     }
 
-    /// Returns the highest number that a step counts to: the largest of the highest neuron, input and output.
+    /// Returns the number at which a time step ends its count: the highest number of a neuron, an input or an output.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }

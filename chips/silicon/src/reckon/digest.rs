@@ -19,8 +19,8 @@ impl Mixed {
 }
 
 impl ReckOn {
-    /// Returns two numbers: the pins, the states of both controllers and the current event; and a digest of all
-    /// registers.
+    /// Returns two numbers. The first contains the pins, the states of both controllers and the current event. The
+    /// second is a digest of all registers.
     pub fn digest(&self) -> [u64; 2] {
         let now = &self.now;
         let (state, event_state) = (now.state as u64, now.event_state as u64);

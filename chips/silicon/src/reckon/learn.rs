@@ -20,7 +20,7 @@ pub(super) struct Learning {
     regularised: u16,
 }
 
-/// A word of weights that may change, and the random numbers that decide which do.
+/// A word of weights, and the random numbers that decide which of its weights change.
 struct Move<'a> {
     weights: u128,
     random: &'a Bits,
@@ -30,8 +30,8 @@ struct Move<'a> {
 }
 
 impl Move<'_> {
-    /// Returns the new word of weights and its mask. `likely` returns, for a weight, a signed measure of how likely it
-    /// moves up or down, and whether it may move.
+    /// Returns the new word of weights and its mask. For the index of a weight, `likely` returns a signed measure of
+    /// how likely the weight moves up or down, and whether the weight may move.
     fn apply(&self, likely: impl Fn(usize) -> (i32, bool)) -> (u128, u128) {
         let (mut data, mut mask) = (0, 0);
         for n in 0..16 {

@@ -10,7 +10,7 @@ pub(super) struct Lfsr {
     state: u32,
 }
 
-/// The bits of one clock cycle; the first is bit 0 of the first word.
+/// The bits that a generator produces in one clock cycle; the first is bit 0 of the first word.
 pub(super) type Bits = [u64; 8];
 
 /// Length of the part of the sequence that is computed: up to 25 bits before this clock cycle's first bit, up to 512

@@ -8,7 +8,7 @@ use core::ops::Index;
 /// A memory of 128-bit words, which are all 0 until they are written.
 #[derive(Clone, Debug)]
 pub struct Memory {
-    /// The words from the start to the last one written; the words after them are 0.
+    /// The words from address 0 to the highest address written; the words after them are 0.
     words: Vec<u128>,
     length: usize,
 }
