@@ -242,7 +242,9 @@ function step() {
   } else {
     // Here and not within, so that the address is that of what is executed.
     if (core.interruptsUpdated && core.checkForInterrupts()) core.waiting = false;
+    // Of a handler's address rp2040js keeps the bit for Thumb, which an addition of PC would take along.
     const at = core.PC & ~1;
+    core.PC = at;
     slow = 0;
     const cycles = core.executeInstruction();
     if (fates.length === 0) note(at, cycles); // what breaks is executed no differently

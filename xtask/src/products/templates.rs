@@ -48,7 +48,7 @@ SECTIONS
 } INSERT BEFORE .text;
 ";
 
-pub const TEMPLATES: [Template; 5] = [
+pub const TEMPLATES: [Template; 7] = [
     STM32,
     Template {
         hal: "embassy-nrf",
@@ -61,4 +61,14 @@ pub const TEMPLATES: [Template; 5] = [
     RP,
     Template { hal: "stm32f4xx-hal", ..STM32 },
     Template { hal: "rtic", ..STM32 },
+    Template { hal: "rp2040-hal", ..RP },
+    Template {
+        hal: "rp235x-hal",
+        target: "thumbv8m.main-none-eabihf",
+        chip: "RP235x",
+        memory: "rp2350",
+        sections: "",
+        emulated: None,
+        ..RP
+    },
 ];
