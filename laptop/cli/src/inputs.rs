@@ -94,7 +94,8 @@ fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
 }
 
 impl InputOptions {
-    /// Converts the options to the library's form; a log from standard input is copied to a file first.
+    /// Converts the options to the type that the library `lab` takes. A log from standard input is copied to a file
+    /// first.
     ///
     /// # Errors
     /// Returns an error if standard input cannot be read or copied.
@@ -128,13 +129,14 @@ impl ChannelOptions {
 /// The file to which a log from standard input was copied.
 static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 
-/// Returns the path of a recording: of standard input that of a copy if it is a log or an archive, which are not read in
-/// one go.
+/// Returns the path from which a recording can be read. A log, a `NumPy` archive or a Parquet file on standard input is
+/// copied to a temporary file, because readers need random access to it; the result is then the path of the copy.
+/// Otherwise the result is `input` itself.
 ///
 /// # Errors
 /// Returns an error if standard input cannot be read or copied.
 pub(crate) fn as_file(input: &Path) -> Result<PathBuf> {
-    /// First bytes of files of `NumPy`'s arrays, and of Parquet.
+    /// First bytes of the tables that are copied: `NumPy`'s `.npz` archives, and Parquet files.
     const TABLES: [&[u8]; 2] = [b"PK\x03\x04", b"PAR1"];
     if input != Path::new("-") {
         return Ok(input.to_owned());

@@ -11,7 +11,8 @@ const PERIOD: Duration = Duration::from_millis(500);
 /// Maximum number of addresses whose event rates are shown.
 const ADDRESSES: usize = 6;
 
-/// A status line on standard error, shown only if standard error is a terminal and the command's output goes elsewhere.
+/// A status line on standard error. It is shown only if standard error is a terminal, and the command does not write
+/// its output to a terminal.
 pub(crate) struct Live {
     line: Option<ProgressBar>,
     shown: Instant,

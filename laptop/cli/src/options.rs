@@ -43,12 +43,12 @@ pub(crate) fn read(path: &str) -> Result<File, String> {
     File::read(path).map_err(|error| words::of_lab(&error))
 }
 
-/// The scheme if one was named, the sample type, and the parameters that were given.
+/// The scheme, or `None` if none was named, with the sample type and the given parameters.
 pub(crate) type Chosen = (Option<Scheme>, SampleType, Asked);
 
 impl Coding {
-    /// Returns the scheme, if one is named, with the sample type and the parameters. They come from the command line
-    /// and from the file of `--params`.
+    /// Combines the options with the file of `--params`, and returns scheme, sample type and parameters. The scheme is
+    /// `None` if neither the options nor the file name one.
     ///
     /// # Errors
     /// Returns an error if `--scheme` and the file name different schemes.
@@ -85,7 +85,7 @@ impl Coding {
 /// Returns the scheme of a file of parameters.
 ///
 /// # Errors
-/// Returns an error if `--scheme` is given (`named`) and differs.
+/// Returns an error if `named`, the scheme given by `--scheme`, is a different one.
 pub(crate) fn agreed(file: &File, named: Option<Scheme>) -> Checked<Scheme> {
     match named {
         Some(named) if named != file.scheme => {
@@ -156,8 +156,8 @@ option_group!(
 const PARAMETERS: &str = "Parameters";
 const CALIBRATION: &str = "Instead of calibration";
 
-/// Adds options to `command`, one for each parameter that `is_taken` accepts, of any scheme. Schemes with a parameter
-/// of the same name share one option.
+/// Adds an option to `command` for each parameter that `is_taken` accepts; the parameters are those of all schemes.
+/// Schemes with a parameter of the same name share one option.
 pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) -> Command {
     for (name, owners) in parameters(is_taken) {
         let Some(&(_, parameter)) = owners.first() else { continue };

@@ -1,4 +1,5 @@
-//! Draws the picture of `listen --live` in the terminal: values, spikes, losses, and why a value is not exact.
+//! Draws the picture of `listen --live` in the terminal: values, spikes, losses, and the reasons for values that are
+//! not exact.
 
 use crate::stop::Stop;
 use anyhow::{Context, Result, bail};
@@ -30,7 +31,7 @@ const FOOTER: u16 = 3;
 /// Maximum number of channels that are drawn.
 const MOST_CHANNELS: usize = 24;
 
-/// The state of every channel as received so far.
+/// The content of the picture: the state of every channel, as far as it has been received.
 pub(crate) struct Panel {
     channels: Vec<Channel>,
     /// Number of neurons of each channel.
@@ -46,7 +47,7 @@ struct Channel {
     name: String,
     unit: String,
     value: Option<f64>,
-    /// Why the value is not exact.
+    /// Reason that the value is not exact, if there is one.
     withheld: Option<Withheld>,
     /// Time and direction of the spikes that the raster shows.
     spikes: VecDeque<(Tick, Polarity)>,
@@ -106,7 +107,7 @@ impl Panel {
         }
     }
 
-    /// Moves the panel's time forward to a tick, if it is later.
+    /// Moves the panel's time forward to `tick`, unless `tick` is earlier.
     fn reach(&mut self, tick: Tick) {
         let step = self.now.map_or(0, |now| since(tick, now));
         if step.cast_signed() >= 0 {
@@ -171,7 +172,7 @@ impl Panel {
         cells.into_iter().map(|cell| GLYPHS[cell]).collect()
     }
 
-    /// Formats the counts of the link and, for each channel whose value is not exact, the reason.
+    /// Formats the counts of the link. Appends the reason for each channel whose value is not exact.
     fn counts(&self, tally: &LinkTally) -> String {
         let LinkTally { frames, lost, gaps, .. } = tally;
         let (seconds, spikes) = (self.elapsed as f64 / 1e6, self.spikes);
@@ -209,7 +210,8 @@ struct Noting<'a> {
 }
 
 impl Noting<'_> {
-    /// Copies to the panel the values in `items`, and for each channel the reason that its value is not exact.
+    /// Copies the values in `items` to the panel. Also copies, for every channel, the reason that its value is not
+    /// exact.
     fn note(&self, items: &[Item]) {
         let mut panel = self.panel.borrow_mut();
         for item in items {
@@ -248,7 +250,7 @@ impl Values for Noting<'_> {
     }
 }
 
-/// The lines of the terminal, below earlier output, in which a panel is drawn.
+/// The lines of the terminal in which a panel is drawn, below earlier output.
 pub(crate) struct Screen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
     panel: Rc<RefCell<Panel>>,
@@ -274,8 +276,8 @@ impl Screen {
         Ok(Self { terminal, panel: Rc::clone(panel), drawn: None })
     }
 
-    /// Draws the panel if at least [`PERIOD`] has passed since it was last drawn. With `wait`, keeps drawing until as
-    /// much time has passed as on the sender's clock, or until `stop` ends the command.
+    /// Draws the panel if at least [`PERIOD`] has passed since it was last drawn. With `wait`, keeps drawing until the
+    /// laptop's clock has caught up with the sender's clock, or until `stop` ends the command.
     ///
     /// # Errors
     /// Returns an error if the terminal cannot be written.

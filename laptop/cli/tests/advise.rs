@@ -35,9 +35,9 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg "));
 }
 
-/// In a control loop of 5 Hz bandwidth, at 100 samples a second, a code whose latency exceeds one sample is not
-/// advised: the latency takes about 20° of phase. Step forward is not advised either. When it is tuned for few spikes,
-/// it cannot follow this signal's jumps.
+/// A control loop of 5 Hz bandwidth, at 100 samples a second, allows a latency of one sample, about 20° of phase. No
+/// code with a longer latency is advised. Step forward is not advised either: if it is tuned for few spikes, it cannot
+/// follow this signal's jumps.
 #[test]
 fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     let sample = |sample: u32| {
@@ -180,8 +180,8 @@ fn a_shaken_flight_is_advised_on() {
     assert!(!report["channels"][0]["reaching"].as_array().unwrap().is_empty());
 }
 
-/// A log recorded on the ground, with only 10 samples, or with a constant value gets a verdict, and no scheme is
-/// advised for it.
+/// No scheme is advised for three logs: one recorded on the ground, one with only 10 samples, and one with a constant
+/// value. The report gives the reason.
 #[test]
 fn a_log_on_the_ground_or_too_short_has_a_verdict() {
     let rest = spikewire(&format!("advise {} {SHORT}", flight("vtol_at_rest.csv")), "");

@@ -27,9 +27,9 @@ fn the_last_line_says_how_many_means_agree() {
     assert_eq!(report.lines().last(), Some("24 of 24 means within sampling error"));
 }
 
-/// Mean figures of an earlier version. Each item has the name of the table, the length of the signals in seconds, and
-/// the mean of each of [`SCHEMES`]. A single changed spike changes these means. They therefore reveal a slightly wrong
-/// rule, which a comparison with the paper's statistics would not.
+/// Mean efficiencies and RMSEs that an earlier version of `bench` printed. Each item has the name of the table, the
+/// length of the signals in seconds, and one mean for each of [`SCHEMES`]. A single changed spike changes these means.
+/// They therefore reveal a slightly wrong rule, unlike a comparison with the paper's statistics.
 #[rustfmt::skip]
 const BEFORE: [(&str, u64, [f64; 8]); 6] = [
     ("efficiency", 1, [37.900000, 29.975000, 75.100000, 45.800000, 73.675000, 62.275000, 0.000000, -223.700000]),

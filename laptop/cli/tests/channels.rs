@@ -1,4 +1,4 @@
-//! Files of spikes with several channels.
+//! Tests of `encode` and `decode` with several channels in one file of spikes.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{events, flight, flight_logs, good, ran, refused};
 
 const COLUMNS: [&str; 6] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"];
 
-/// Options of a scheme, used for every column, and the number of neurons of one column.
+/// Schemes with their options, and the number of neurons that each scheme has for one column.
 const SCHEMES: [(&str, usize); 6] = [
     ("sf --threshold 0.1", 1),
     ("tbr --factor 0.5", 1),

@@ -1,8 +1,8 @@
-//! `network --on controller`: the converted networks fire as in the frameworks that trained them, for the update rule
-//! of each.
+//! `network --on controller`: the converted networks fire as in the frameworks that trained them. The tests cover the
+//! update rule of each framework.
 //!
 //! In `peers/nir`, `lif`, `braille` and their spikes are from the repository of NIR (BSD 3-Clause, 2023, NIR Team);
-//! `peers/frameworks.py` wrote the others.
+//! `peers/frameworks.py` wrote the other files.
 
 mod common;
 
@@ -42,7 +42,7 @@ fn differing(one: &Trains, other: &Trains) -> usize {
     one.iter().zip(other).map(|(one, other)| only(one, other) + only(other, one)).sum()
 }
 
-/// The spikes of two recurrent networks that read Braille equal the published spikes of their hidden layer.
+/// Two recurrent networks read Braille. The spikes of their hidden layers equal the published spikes.
 #[test]
 fn networks_that_snntorch_trained_fire_as_was_published() {
     let inputs = trains("braille.txt");
@@ -65,7 +65,8 @@ fn networks_that_snntorch_trained_fire_as_was_published() {
     }
 }
 
-/// Over 1000 steps, one neuron has the potentials that each framework recorded, to the bit or, for Norse, within 1e-7.
+/// Over 1000 steps, the potentials of one neuron equal those that the frameworks recorded: within 1e-7 for Norse, to
+/// the bit for the others.
 #[test]
 fn one_neuron_has_the_potentials_that_were_published() {
     let table = text("lif.csv");
@@ -97,8 +98,8 @@ fn one_neuron_has_the_potentials_that_were_published() {
     }
 }
 
-/// Over 200 steps, networks fire exactly as in the framework that wrote their file, and the potentials of the outputs
-/// are within 2e-5.
+/// Over 200 steps, networks fire exactly as in the framework that wrote their file. The potentials of their outputs
+/// differ from the framework's by at most 2e-5.
 #[test]
 fn networks_fire_as_their_frameworks_do() {
     use Reset::{NoReset, Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueLate};
@@ -233,8 +234,8 @@ fn a_network_becomes_the_module_of_the_firmware() {
     assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.stderr);
 }
 
-/// A network in JSON needs no options for its update rule, and the potentials of outputs that never fire are compared
-/// too.
+/// A network in JSON needs no options for its update rule. The report also compares the potentials of outputs that
+/// never fire.
 #[test]
 fn json_goes_onto_the_controller_and_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 5.5}], "readout": {"weights": [[1, -2]]}}"#;

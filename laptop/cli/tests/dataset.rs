@@ -1,4 +1,5 @@
-//! Many logs at once: killed and continued, and back from Parquet to the bits of a single `encode`.
+//! `dataset` with many logs: a run that was killed is continued, and the Parquet files restore exactly the spikes of a
+//! single `encode`.
 
 mod common;
 
@@ -13,7 +14,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Kinds of logs, and the channel that is read from each.
+/// Kinds of logs, and the channel that the tests read from logs of each kind.
 const CHANNELS: [(&str, &str); 8] = [
     ("table", "gyro_x"),
     ("ulog", "sensor_combined.gyro_rad[0]"),
@@ -26,7 +27,7 @@ const CHANNELS: [(&str, &str); 8] = [
 ];
 const SCHEME: &str = "--scheme sf --threshold 0.05 --skip-non-finite";
 
-/// Returns a table with a missing value, a gap and a step back.
+/// Returns a CSV table with missing values, a gap, and a time that goes back.
 fn table(rows: usize) -> String {
     let mut text = "time_ms,gyro_x,gyro_y\n".to_owned();
     for row in 0..rows {
@@ -45,7 +46,7 @@ fn table(rows: usize) -> String {
     text
 }
 
-/// Writes logs of all kinds below a directory; returns how many, without what is no log.
+/// Writes logs of all kinds, and one file that is not a log, below `directory`; returns the number of logs.
 fn logs(directory: &Path, rows: usize) -> usize {
     let of = |name: &str, content: &[u8]| {
         let path = directory.join(name);
@@ -83,7 +84,7 @@ fn rows(dataset: &Path) -> Vec<Value> {
     whole.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Returns the names of files in the directories of the parts.
+/// Returns the names of the files in the directories `events` and `values` of a data set.
 fn parts(dataset: &Path) -> Vec<String> {
     let of = |directory: &str| {
         fs::read_dir(dataset.join(directory))
@@ -99,7 +100,7 @@ fn is_unfinished(part: &str) -> bool {
     part.contains("/.spikewire-")
 }
 
-/// Starts the program, and kills it once it has written `done` rows and is within a log.
+/// Starts the program, and kills it in the middle of a log, after it has written `done` rows of the manifest.
 fn killed(arguments: &str, dataset: &Path, done: usize) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
         .args(arguments.split_whitespace())
@@ -332,9 +333,9 @@ fn what_cannot_be_asked_is_refused() {
     refused(&format!("decode --spikes {table}"), "", &["--spikes takes a Parquet file"]);
 }
 
-/// Returns the processor time of all programs that this process has run to their end, in seconds.
+/// Returns the processor time, in seconds, of all programs that this process has started and that have ended.
 fn spent() -> f64 {
-    /// Ticks of the kernel's clock in a second, on every machine that runs Linux.
+    /// Clock ticks in a second; Linux gives processor times in these ticks.
     const TICKS: f64 = 100.0;
     let text = fs::read_to_string("/proc/self/stat").unwrap();
     let (_, fields) = text.rsplit_once(')').unwrap();
@@ -342,7 +343,8 @@ fn spent() -> f64 {
     fields[13..15].iter().map(|own| own.parse::<f64>().unwrap()).sum::<f64>() / TICKS
 }
 
-/// Runs the program, and returns the largest memory that it took, in MB. It is killed once it has written `until` rows.
+/// Runs the program; returns the largest amount of memory that it used, in MB. Kills the program after it has written
+/// `until` rows of the manifest.
 fn measured(arguments: &str, dataset: &Path, until: usize) -> f64 {
     let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
         .args(arguments.split_whitespace())
@@ -366,8 +368,9 @@ fn measured(arguments: &str, dataset: &Path, until: usize) -> f64 {
     most
 }
 
-/// Takes minutes: `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`, on Linux. The tables and
-/// the `ULog` are of real flights, cut at a thousand places and multiplied; the other formats hold waves.
+/// Encoding a thousand logs in one run takes at most 1.2 times the processor time of encoding each on its own. Tables
+/// repeat a real flight, and `ULog` files are cut from one; the other formats hold sine waves. The test takes minutes:
+/// `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`, on Linux.
 #[test]
 #[ignore = "a measurement"]
 fn a_thousand_logs_cost_little_more_than_each_alone() {

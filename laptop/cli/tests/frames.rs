@@ -4,8 +4,8 @@ mod common;
 
 use common::{file, ran};
 
-/// Returns frames in which `level` maps a step of 0 to 219 to a grey level. Both ranges of video, full and limited, can
-/// express 220 levels, and can therefore show the same pictures.
+/// Returns frames whose pixels have steps of 0 to 219; `level` maps a step to a grey level. Both ranges of video, full
+/// and limited, can express 220 levels, and can therefore show the same pictures.
 fn frames(level: impl Fn(u32) -> u8) -> Vec<Vec<u8>> {
     let frame =
         |frame: u32| (0..64 * 48).map(|pixel| level((pixel * 7 + frame * 61) % 220)).collect();

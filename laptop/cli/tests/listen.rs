@@ -125,7 +125,8 @@ fn board_since_boot<P: Start>(
     Board { frames: sender.1, values }
 }
 
-/// Decodes `frames` with `listen`, checks that each value marked `exact` equals the board's, and returns all lines.
+/// Decodes `frames` with `listen`, and checks that each value marked `exact` equals the board's. Returns all lines that
+/// `listen` wrote.
 fn assert_sampled<S: Sample>(board: &Board<S>, frames: &[Vec<u8>], options: &str) -> Vec<Line> {
     let heard = good_bytes(&format!("listen {options}"), &frames.concat());
     let lines = values(&heard.output);

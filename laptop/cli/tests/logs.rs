@@ -75,7 +75,8 @@ fn packed(how: &str, bytes: &[u8]) -> Vec<u8> {
     packed
 }
 
-/// As files and on standard input. Packers that run on several cores write a stream for each piece.
+/// Every log is read with every compression, from a file and from standard input. The compressed files consist of two
+/// streams, as packers that use several cores write them.
 #[test]
 fn any_log_is_read_in_any_packing() {
     let logs = [
@@ -191,8 +192,8 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {}", empty.path().display()), "", &["which has a file metadata.yaml"]);
 }
 
-/// With a threshold of 101, larger than any change between frames, every decoded sample is within 101 of the rate in
-/// the log.
+/// Step forward with a threshold of 101 decodes every sample to within 101 of the angular rate in the log. No rate
+/// changes by more than 101 between two frames.
 #[test]
 fn a_blackbox_log_is_read_frame_by_frame() {
     let (_directory, path) = file("log.bbl", blackbox());
@@ -232,7 +233,8 @@ fn a_blackbox_log_that_is_cut_or_damaged_goes_on_where_it_can() {
     assert!(ran.output.contains("# samples=200\n"), "{}", ran.output);
 }
 
-/// The binary and the text form of a log decode to the same angular rates, with one topic for each of two sensors.
+/// The binary and the text form of a log decode to the same angular rates. Each of the two sensors has a topic of its
+/// own.
 #[test]
 fn an_ardupilot_log_is_read_sensor_by_sensor() {
     for (name, log) in [("log.bin", dataflash()), ("log.log", dataflash_text().into_bytes())] {
@@ -360,8 +362,8 @@ fn bags_are_tuned_and_advised_on() {
     }
 }
 
-/// Spikes decode to the same values from a ROS log as from a CSV file: for codes with one neuron and several, with and
-/// without polarity, with sub-timesteps, with several spikes a sample, and for one and two channels.
+/// The spikes in a ROS log decode to the same values as those in a CSV file. The codes have one neuron or several,
+/// polarities or none, sub-timesteps, or several spikes a sample. Each code is tested on one channel and on two.
 #[test]
 fn spikes_as_messages_decode_as_those_of_a_table() {
     let flight = flight("hexarotor.csv");
@@ -393,8 +395,8 @@ fn spikes_as_messages_decode_as_those_of_a_table() {
     assert!(report.contains("event_1: 3627 samples of spyke_msgs/msg/SpykeArray"), "{report}");
 }
 
-/// A bag written by the toolbox of Dupeyroux et al. (2022) decodes as the toolbox's own script does: with the mean of
-/// the thresholds, and without the first message's spike.
+/// A bag written by the toolbox of Dupeyroux et al. (2022) decodes as in the toolbox's own script. The script uses the
+/// mean of the thresholds, and ignores the spike of the first message.
 #[test]
 fn the_toolboxs_own_bag_decodes_as_its_script_does() {
     let numbers =

@@ -107,8 +107,8 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
-/// A sender. `text` is its flight file, and `frames` are the bytes that it sends. `kinds` names the fields that the
-/// test varies in this file.
+/// A sender. `text` is its flight file, and `frames` are the bytes that it sends. `kinds` has the names of the fields
+/// that the test varies in this file.
 struct Sender {
     text: String,
     kinds: BTreeSet<&'static str>,

@@ -24,14 +24,15 @@ fn network(file: &str) -> String {
 /// tuning.
 const AS_THE_CHIP: &str = "--compare spike --no-held-out";
 
-/// Returns the numbers in the line of a report that begins with `start`.
+/// Returns the numbers in one line of `report`, the first that begins with `start`.
 fn figures(report: &str, start: &str) -> Vec<f64> {
     let line = report.lines().find_map(|line| line.strip_prefix(start)).expect(start);
     let numbers = line.split([' ', ',', ';', '%', ':']);
     numbers.filter_map(|number| number.parse().ok()).collect()
 }
 
-/// The constant equals the one in the firmware `examples/rate-loop`, which is built for every core and runs in QEMU.
+/// The constant that `network` writes equals the one in the firmware `examples/rate-loop`. This firmware is built for
+/// every core and runs in QEMU.
 #[test]
 fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     let ran = good(&network(&peers("roll.nir").display().to_string()), "");
@@ -48,17 +49,17 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     assert!(winners[0] > 80.0, "{}", ran.stderr);
 }
 
-/// Writes a network to a JSON file; returns the file's directory, and the arguments that convert the network with the
-/// spikes of step forward as its inputs.
+/// Writes a network to a JSON file, in a new directory. Returns the directory, and the arguments that convert the
+/// network. The network's inputs are the spikes of step forward.
 fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
     let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
     let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
     (directory, format!("network {path} {options} {sf} {}", flight("hexarotor.csv")))
 }
 
-/// Networks whose weights the chip can hold unrounded give the same spikes on the chip as in double precision. No sum
-/// of weights equals a threshold, and at most one spike a sample reaches a neuron, so that the order of spikes does not
-/// matter.
+/// If a chip can hold a network's weights unrounded, the network fires on the chip exactly as in double precision. The
+/// order of spikes does not matter here: no sum of weights equals a threshold, and a neuron receives at most one spike
+/// in a sample.
 #[test]
 fn networks_that_a_chip_can_hold_lose_nothing() {
     let three = r#"{"name": "one", "weights": [[3, 0], [0, 5]], "threshold": 11.5},
@@ -210,8 +211,8 @@ fn a_file_of_spikes_drives_a_network_that_answers_step_by_step() {
 }
 
 /// A rise and a fall in the same step cancel out in the trained network. They do not cancel out on a chip whose neurons
-/// compare after each spike. To compare once a step takes more events, but loses nothing here.
-/// The command therefore chooses it.
+/// compare after each spike. A comparison once a step takes more events, but loses nothing here. The command therefore
+/// chooses `--compare step`.
 #[test]
 fn neurons_compare_once_a_step_if_that_agrees_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},
@@ -318,8 +319,9 @@ fn stretches(is_held_out: bool) -> String {
     table
 }
 
-/// The script `turns.py` trained this recurrent network, and reports how often it fires. In double precision it fires
-/// exactly as often, on the chip as often within 3 %. The constant equals the one in the firmware `examples/rate-loop`.
+/// The script `turns.py` trained this recurrent network, and reports its number of spikes. In double precision the
+/// number is the same; on the chip it differs by less than 3 %. The constant equals the one in the firmware
+/// `examples/rate-loop`.
 #[test]
 fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     let (_trained, trained) = file("trained.csv", stretches(false));
@@ -361,7 +363,8 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
-/// Networks whose layers are nested graphs, as snnTorch and Norse write them, are read, and so is a recurrent layer.
+/// Two forms of NIR graphs are read: layers that are nested graphs, as snnTorch and Norse write them, and a recurrent
+/// layer.
 #[test]
 fn nested_and_recurrent_graphs_are_taken() {
     let whole = good(&network(&peers("roll.nir").display().to_string()), "");
@@ -413,8 +416,8 @@ fn damaged_files_are_refused() {
     assert!(refusals >= 60, "{refusals}");
 }
 
-/// Files written by the Python package `nir` are read, and a faulty one is refused with the name of the node. `cargo
-/// verify peers` runs this test.
+/// Files written by the Python package `nir` are read. A faulty file is refused with a message that names the faulty
+/// node. `cargo verify peers` runs this test.
 #[test]
 #[ignore = "needs PEERS_PYTHON with nir"]
 fn files_of_pypis_nir_are_read_and_what_is_wrong_is_named() {

@@ -1,4 +1,4 @@
-//! Tables as other programs write them, and files that are not tables.
+//! Tests with tables as other programs write them, and with files that are not tables.
 
 mod common;
 

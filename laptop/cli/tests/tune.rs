@@ -42,7 +42,7 @@ fn each_goal_is_reached_and_beats_the_paper() {
     assert!(number(&row, "/tuned_on/rmse") <= 0.4 && number(&row, "/tuned_on/efficiency") > 80.0);
 }
 
-/// For codes of steps, no threshold on a grid gives a lower RMSE than the one that the search finds.
+/// For three schemes with a threshold, no threshold on a grid gives a lower RMSE than the one that the search finds.
 #[test]
 fn no_threshold_on_a_grid_is_better() {
     let (_directory, signal) = paper_signal();
@@ -64,8 +64,8 @@ fn no_threshold_on_a_grid_is_better() {
     }
 }
 
-/// If the goal is exactly the efficiency that known settings reach, settings at least as good are found: rounding the
-/// percentage excludes none.
+/// If the goal is exactly the efficiency that known settings reach, the search finds settings at least as good. The
+/// rounding of a percentage must not exclude the known settings.
 #[test]
 fn settings_exactly_at_the_goal_are_found() {
     let flight = flight("hexarotor.csv");
@@ -277,7 +277,7 @@ fn several_logs_are_tuned_on_together() {
     );
 }
 
-/// A log is refused with the reason if it is noise or constant, too short, never in the air, clipped, or full of gaps.
+/// A log is refused, with the reason, if it is noise, constant, too short, never in the air, clipped, or full of gaps.
 #[test]
 fn logs_that_say_nothing_are_refused() {
     let noise = |count: u64| -> Vec<f64> {

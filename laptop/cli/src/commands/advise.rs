@@ -21,9 +21,9 @@ use std::path::{Path, PathBuf};
 /// Describe a log and advise a bank for it: one scheme for all channels, its parameters, and the reasons.
 ///
 /// Each scheme is tuned briefly on each channel, with some blocks of the log held out. A scheme qualifies if its RMSE
-/// is at most --max-rmse on the tuned blocks, and at most 1.25 times that on the held-out blocks. Of the schemes that
-/// qualify, the one that needs the fewest bytes a second on the link is advised. With --loop-bandwidth, a scheme must
-/// also have flown a simulated drone well while frames were lost.
+/// is at most --max-rmse on the tuned blocks, and at most 1.25 times --max-rmse on the held-out blocks. Of the schemes
+/// that qualify, the one that needs the fewest bytes a second on the link is advised. With --loop-bandwidth, a scheme
+/// must also have flown a simulated drone well while frames were lost.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

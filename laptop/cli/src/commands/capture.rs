@@ -59,7 +59,7 @@ pub(crate) fn run(options: &Capture) -> Result<()> {
     })?)
 }
 
-/// Replaces the command in a build without the feature `capture`.
+/// The command in a build without the feature `capture`, which always fails.
 ///
 /// # Errors
 /// Always returns an error, which says how to build with the feature.

@@ -15,13 +15,16 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-/// Encode many logs of any kinds to Parquet files of spikes and samples, with a manifest of what became of each log.
+/// Encode many logs of any kinds to Parquet files of spikes and samples, with a manifest of the logs.
 ///
-/// In the directory DIR, `events/NAME.parquet` has a log's spikes (`index`, `channel`, `polarity`, `neuron` if a channel
-/// has several, `time_us` if the log has times), `values/NAME.parquet` the samples that were encoded, and `manifest.jsonl` a
-/// row for each log: its hash, what was read and what was not, and on which side of the split it is. A log that cannot be
-/// read gets a row with the reason. A run that was ended, even killed, is continued by the same command; a log that has
-/// changed is encoded again. `decode --spikes` turns a file of spikes into the one that `encode` writes.
+/// The directory DIR holds two Parquet files for each log, and the file `manifest.jsonl`. `events/NAME.parquet` holds
+/// the log's spikes in the columns `index`, `channel` and `polarity`, with `neuron` if a channel has several neurons,
+/// and `time_us` if the log has times. `values/NAME.parquet` holds the samples that were encoded. `manifest.jsonl`
+/// holds a row for each log: its hash, the counts of what was read and left out, and its side of the split. A log that
+/// cannot be read has a row with the reason.
+///
+/// The same command continues a run that was ended, even if it was killed. A log that has changed is encoded again.
+/// `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -31,34 +34,35 @@ Examples:
 pub(crate) struct Dataset {
     #[command(flatten)]
     coding: Coding,
-    /// Flight's file (TOML) that `advise -o` wrote: encodes its channels as the flight's sender does
+    /// Flight file (`flight.toml`) that `advise -o` wrote: encodes the file's channels as the sender on the drone does
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
-    /// Files, directories and patterns such as 'logs/**/*.ulg'. In a directory, logs are found by their content, and
-    /// tables by their endings, such as .csv and .parquet
+    /// Files, directories and patterns such as 'logs/**/*.ulg'. In a directory, logs are recognised by their content,
+    /// and tables by their file extensions, such as .csv and .parquet
     logs: Vec<PathBuf>,
-    /// File with more of them, one on each line; `-` is standard input
+    /// File that lists further logs, directories and patterns, one on each line; `-` is standard input
     #[arg(long, value_name = "FILE")]
     list: Option<PathBuf>,
-    /// Channels to read from logs of one kind, in place of the flight's or of --columns. KIND is table, ulog, ardupilot,
-    /// mavlink, bag, ros2, mcap or blackbox. If given several times for a kind, the first that a log has is taken
+    /// Channels to read from logs of one kind, in place of the channels of --flight or --columns. KIND is table, ulog,
+    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. The option may be given several times for a kind; each log is
+    /// then read with the first channels that it has
     #[arg(long, value_name = "KIND=NAMES", help_heading = "Input")]
     channels_of: Vec<ChannelsOf>,
     #[command(flatten)]
     channel: ChannelOptions,
-    /// Directory to write, or to complete
+    /// Directory to write; a directory that an earlier run left incomplete is completed
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Share of the flights that is for testing, 0 to 1
+    /// Share of the flights to use for testing, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = 0.2)]
     test: f64,
-    /// Put all logs of a directory on the same side of the split; otherwise each log is a flight of its own
+    /// Count all logs of a directory as one flight, on one side of the split; default: each log is a flight of its own
     #[arg(long)]
     by_directory: bool,
-    /// Number of logs to encode at once; default: one for each core
+    /// Number of logs to encode at the same time; default: one for each core
     #[arg(long, value_parser = whole::<usize>)]
     jobs: Option<usize>,
-    /// Print the counts as JSON
+    /// Print the numbers of logs, samples and spikes as JSON
     #[arg(long)]
     json: bool,
 }
@@ -127,7 +131,7 @@ impl Dataset {
         })
     }
 
-    /// Reads the list of logs.
+    /// Reads the file of `--list`; returns no paths if the option is not given.
     fn listed(&self) -> Result<Vec<PathBuf>> {
         let Some(list) = &self.list else { return Ok(Vec::new()) };
         let text = if list == Path::new("-") {

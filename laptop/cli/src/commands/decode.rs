@@ -16,11 +16,12 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Decode a file of spikes that `encode` wrote, a Parquet file of spikes that `dataset` wrote, or a ROS log with messages
-/// `spyke_msgs`, of the toolbox by Dupeyroux et al. (2022). The scheme and its parameters are read from the file itself.
+/// Decode a file of spikes that `encode` wrote, a Parquet file of spikes that `dataset` wrote, or a ROS log with
+/// messages of `spyke_msgs`, from the toolbox by Dupeyroux et al. (2022). The scheme and its parameters are read from
+/// the file itself.
 ///
 /// Writes the columns `index,value`; with several channels, one column for each, under its name. If times were
-/// recorded, the column `time_us` follows: exact at events and at gaps, evenly spaced between them.
+/// recorded, the column `time_us` follows. Its times are exact at events and at gaps, and evenly spaced between them.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:

@@ -14,9 +14,10 @@ use std::path::{Path, PathBuf};
 /// Convert a video to the events of its pixels, as an event camera would send them.
 ///
 /// VIDEO is YUV4MPEG2 (`.y4m`, or `-`), pictures (`.png`, `.jpg`, `.pgm`, as files or a directory, in the order of
-/// their names), or any format that an installed `ffmpeg` reads. Only the brightness counts. A pixel sends an event
-/// when its brightness differs by `--threshold` grey levels from the last brightness that it sent, or when the
-/// logarithm of its brightness differs by `--contrast`. The first frame sends nothing.
+/// their names), or any format that an installed `ffmpeg` reads. Colours are ignored. With `--threshold`, a pixel sends
+/// an event when its brightness differs by this number of grey levels from the last brightness that it sent. With
+/// `--contrast`, it sends an event when the logarithms of the two differ by this contrast. The first frame sends
+/// nothing.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -89,10 +90,11 @@ pub(crate) fn run(options: &Frames) -> Result<()> {
     }
 }
 
-/// Converts a contrast, a difference of natural logarithms, to steps of 1/1024.
+/// Converts a contrast, a difference of natural logarithms, to a whole number of steps of 1/1024.
 ///
 /// # Errors
-/// Returns an error, which names `option`, if the result is outside 1 to 5673, the step from black to white.
+/// Returns an error that names `option` if the number of steps is outside 1 to 5673. From black to white there are 5673
+/// steps.
 fn levels(option: &str, contrast: f64) -> Result<u16> {
     /// Number of levels for a difference of 1 in the natural logarithm.
     const SCALE: f64 = 1024.0;

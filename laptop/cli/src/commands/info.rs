@@ -23,8 +23,9 @@ Examples:
   spikewire info --json logs 'more/*.bag'")]
 pub(crate) struct Info {
     /// Log or table: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an
-    /// MCAP file, Betaflight's blackbox, or a table in CSV, JSON lines, Parquet or `NumPy`'s arrays, also compressed; `-` is
-    /// standard input. Of several, of directories and of patterns such as 'logs/*.bag', each is listed under its name
+    /// MCAP file, Betaflight's blackbox, or a table in CSV, JSON lines, Parquet or `NumPy`'s arrays, also compressed;
+    /// `-` is standard input. Several files, directories and patterns such as 'logs/*.bag' may be given; each file is
+    /// then listed under its name
     #[arg(required = true)]
     logs: Vec<PathBuf>,
     /// Report time steps longer than this multiple of the usual step
@@ -38,7 +39,7 @@ pub(crate) struct Info {
     json: bool,
 }
 
-/// The content of a file.
+/// The content of a file: a log's format, topics and notes, or a table's summary.
 enum Content {
     Log(Kind, Vec<Overview>, Vec<String>),
     Table(Box<Summary>),
@@ -47,7 +48,7 @@ enum Content {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if a log cannot be read; if there are several, the others are listed first.
+/// Returns an error if a log cannot be read. If several logs are given, the readable ones are listed first.
 pub(crate) fn run(options: &Info) -> Result<()> {
     let logs = dataset::expand(&options.logs)?;
     let is_single = logs.len() == 1;
@@ -114,12 +115,12 @@ impl Info {
     }
 }
 
-/// Returns the name of a recording in text.
+/// Returns the name under which a file is listed: its path, or `standard input`.
 fn name_of(log: &Path) -> String {
     InputOptions { input: log.to_owned(), channel: ChannelOptions::default() }.name()
 }
 
-/// Describes a file for programs.
+/// Returns the JSON description of a file called `name`.
 fn json(name: &str, content: &Content) -> serde_json::Value {
     match content {
         Content::Log(kind, topics, notes) => {
@@ -160,7 +161,7 @@ fn json(name: &str, content: &Content) -> serde_json::Value {
     }
 }
 
-/// Adds what the times say.
+/// Adds to a JSON description what the times show: rate, duration, gaps, steps back and restarts of the clock.
 fn add_times(all: &mut serde_json::Value, clock: &Clock, rollover: &Rollover) {
     all["rate"] = json!(clock.rate());
     all["seconds"] = json!(clock.seconds());

@@ -241,8 +241,8 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     if options.live { live(&*brought.network, converted.inputs().0) } else { Ok(()) }
 }
 
-/// Simulates the network step by step. Each line of standard input holds the numbers of the inputs that fire; the line
-/// of output for it holds the number of clock cycles, and the numbers of the outputs that fired.
+/// Simulates the network step by step. Each line of standard input is a step: the numbers of the inputs that fire. Each
+/// line of output answers a step: the number of clock cycles, and the numbers of the outputs that fired.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| -> lab::Result<_> {

@@ -8,15 +8,15 @@ use lab::network::{Asked, Current, Decay, Fires, Framework, Numbers, Reset};
 /// Options for the update rule of a network's neurons, which a NIR file does not contain.
 #[derive(Args, Debug)]
 pub(crate) struct RuleOptions {
-    /// Framework whose update rule the network follows. A NIR file needs this or --reset; on the controller, this or
-    /// all of the options below
+    /// Framework whose update rule the network follows. A NIR file needs this option or --reset. On the controller, a
+    /// NIR file needs this option or all of the options below
     #[arg(long = "as", value_name = "FRAMEWORK", value_parser = of(&FRAMEWORKS))]
     framework: Option<Framework>,
     /// Reset mode: the effect of a spike on its neuron's potential. Give one mode for all layers, or a comma-separated
     /// list with a mode for each layer that fires
     #[arg(long = "reset", value_delimiter = ',', value_parser = of(&RESETS))]
     resets: Vec<Reset>,
-    /// Whether a neuron fires only if its potential is above its threshold, or also if it is equal to it
+    /// Whether a neuron fires only if its potential is above its threshold, or also if the two are equal
     #[arg(long, value_parser = of(&FIRES))]
     fires: Option<Fires>,
     /// Formula by which a time constant becomes the decay of potentials and currents in a step

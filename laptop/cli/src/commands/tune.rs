@@ -96,7 +96,7 @@ pub(crate) struct Tune {
     /// Search even if the log is a bad guide: nothing but noise, never in the air, full of gaps, or clipped
     #[arg(long, help_heading = "Search")]
     anyway: bool,
-    /// Also report the RMSE below this frequency, such as `40Hz`
+    /// Also report the RMSE of the error's part below this frequency, such as `40Hz`
     #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     below: Option<f64>,
     /// Form in which to write the settings: a constant in Rust, a file for --params, or a flight file (`flight.toml`)

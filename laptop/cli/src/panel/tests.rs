@@ -1,4 +1,4 @@
-//! Draws the recorded flight as it arrives over a link.
+//! Tests of the panel, which draws a recorded flight while its frames arrive over a link.
 
 use super::Panel;
 use lab::events::{LinkReader, Stream, values_writer};
@@ -38,7 +38,7 @@ fn flight(first: f32) -> Flight {
     Flight::parse(&text).unwrap()
 }
 
-/// Encodes the first `samples` samples of the recorded flight; returns the bytes of the frame after each sample.
+/// Encodes the first `samples` samples of the recorded flight; returns the bytes that the link sends for each sample.
 fn frames(samples: usize) -> Vec<Vec<u8>> {
     let schemes = THRESHOLDS.map(SendOnDelta::<f32, 8>::new);
     let mut bank = Bank::<_, 6>::per_channel(schemes.each_ref());
@@ -65,8 +65,8 @@ fn frames(samples: usize) -> Vec<Vec<u8>> {
     sent.collect()
 }
 
-/// Returns the lines that the panel draws after `samples` samples of this flight. `is_lost` returns whether the frame
-/// of a sample is lost on the link.
+/// Returns the lines of the panel after `samples` samples of the recorded flight. `is_lost` decides for each sample
+/// whether the link loses its frame.
 fn picture(flight: &Flight, samples: usize, is_lost: impl Fn(usize) -> bool) -> Vec<String> {
     let panel = Rc::new(RefCell::new(Panel::of_flight(flight)));
     let mut drawn = Vec::new();

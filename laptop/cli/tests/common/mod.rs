@@ -108,7 +108,7 @@ pub fn events(spikes: &str) -> Vec<(usize, usize, i32)> {
         .collect()
 }
 
-/// Parses a file of spikes of one neuron; returns for each sample its spike, 1 or -1, or 0 for none.
+/// Parses a file of spikes with one neuron. Returns a number for each sample: 1 or -1 for a spike, 0 for no spike.
 pub fn train(spikes: &str) -> Vec<i32> {
     let samples = spikes.lines().find_map(|line| line.strip_prefix("# samples=")).unwrap();
     let mut train = vec![0; samples.parse().unwrap()];
