@@ -31,7 +31,7 @@ mod op {
 /// Reader of a ROS 1 bag, from start to end.
 pub(crate) struct Bag {
     walk: Walk,
-    /// Index in `walk.topics` for each connection. The key is the connection's number.
+    /// Index in `walk.topics` of each connection's topic. The key is the connection's number.
     connections: HashMap<u32, usize>,
     header: Vec<u8>,
     data: Vec<u8>,
@@ -115,8 +115,8 @@ impl Bag {
     }
 }
 
-/// Reads the header or the data of a record into `part`. Each is stored as its length, in four bytes, and that number
-/// of bytes.
+/// Reads the header or the data of a record into `part`. In the file, the length of a part comes before it, in four
+/// bytes.
 ///
 /// # Errors
 /// Returns the reason if the file ends within the part, or cannot be read.

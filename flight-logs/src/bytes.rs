@@ -95,7 +95,7 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
 }
 
 /// Decompresses `packed`, whose decompressed size should be `size` bytes. `how` is the name of the compression. Returns
-/// the decompressed bytes and, if they are not complete or too many, a description of the fault.
+/// the decompressed bytes. Also returns a description of the fault if bytes are missing, or if there are too many.
 pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
     let mut bytes = Vec::new();
     let mut limited =

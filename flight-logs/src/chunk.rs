@@ -90,7 +90,8 @@ impl Walk {
     /// Opens a log, which must start with the bytes `version`.
     ///
     /// # Errors
-    /// Returns an error if the log cannot be read, or if it starts with other bytes: the error's text is then `other`.
+    /// Returns an error if the log cannot be read. Returns an error with the text `other` if the log does not start
+    /// with `version`.
     pub(crate) fn open(path: &Path, faults: Faults, version: &[u8], other: &str) -> Result<Self> {
         let (mut bytes, mut start) = (Bytes::open(path)?, Vec::new());
         let taken = bytes.take(version.len() as u64, &mut start);

@@ -181,8 +181,8 @@ impl Definition {
         Parser::parse(&name, &|name| texts.get(name).cloned(), dialect)
     }
 
-    /// Creates the layout of a ROS 2 message. `look_up` returns the definition's text for a type `package/Type`, for
-    /// this message and for those nested in it.
+    /// Creates the layout of a ROS 2 message. `look_up` returns the text of the definition of a type `package/Type`. It
+    /// must know the message's type, and the types of nested messages.
     ///
     /// # Errors
     /// Returns the reason if a line or a nested type cannot be understood, or if a message contains itself.
@@ -257,7 +257,7 @@ impl Definition {
     }
 
     /// Returns the paths to a time stamp, selected by a name such as `header.stamp`; `None` if the name does not select
-    /// one.
+    /// a time stamp.
     pub fn stamp(&self, asked: &str) -> Option<Stamp> {
         let Ok((path, Kind::Nested(index))) = self.find(asked) else { return None };
         let [seconds, nanoseconds] = &self.nested(index).fields[..] else { return None };
@@ -356,7 +356,8 @@ impl<'a> Parser<'a> {
         Ok(Definition { structs: parser.structs })
     }
 
-    /// Returns the index in `structs` of a message's layout; parses the definition the first time.
+    /// Returns the index in `structs` of the layout of the message type `name`. The first call for a type parses its
+    /// definition.
     fn add(&mut self, name: &str, depth: usize) -> Result<usize, String> {
         if depth > DEEPEST {
             return Err(format!("{name} is nested too deeply, perhaps within itself"));

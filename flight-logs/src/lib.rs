@@ -139,7 +139,7 @@ impl Kind {
     ///
     /// # Errors
     /// Returns an error if the file cannot be opened or read, if the path is a directory without `metadata.yaml`, or if
-    /// a file `.ulg` is no `ULog` file.
+    /// a file with the extension `.ulg` is not a `ULog` file.
     pub fn of(path: &Path) -> Result<Option<Self>> {
         if path.file_name().is_some_and(|name| name == rosbag2::METADATA) {
             return Ok(Some(Self::Directory));
@@ -171,8 +171,9 @@ impl Kind {
         }
     }
 
-    /// Recognises the kind of a log by its first bytes, decompressed, of which 8 KiB are enough; `None` if they are not
-    /// those of a log. A ROS 2 bag that is a directory has none.
+    /// Recognises the format of a log by its first bytes, which must be decompressed; 8 KiB are enough. Returns `None`
+    /// if the bytes are not the start of a log. A ROS 2 bag that is a directory has no first bytes; use [`Kind::of`]
+    /// for it.
     pub fn of_start(start: &[u8]) -> Option<Self> {
         of_start(start)
     }

@@ -171,8 +171,8 @@ impl Kind {
         }
     }
 
-    /// Returns a log of 100 messages, compressed by the method `how`: each chunk of ten messages on its own, or a
-    /// database as a whole.
+    /// Returns a log of 100 messages, compressed by the method `how`. In a log of chunks, each chunk holds ten messages
+    /// and is compressed on its own. A database is compressed as a whole.
     pub fn log(self, how: &str) -> Vec<u8> {
         if self == Self::Db3 {
             let bag = database(&(0..100).map(|sample| self.record(sample)).collect::<Vec<_>>());

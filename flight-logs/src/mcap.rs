@@ -39,7 +39,7 @@ pub(crate) struct Mcap {
     walk: Walk,
     /// Name, encoding and text of each schema. The key is the schema's number.
     schemas: HashMap<u16, (String, String, String)>,
-    /// Index in `walk.topics` for each channel. The key is the channel's number.
+    /// Index in `walk.topics` of each channel's topic. The key is the channel's number.
     channels: HashMap<u16, usize>,
     data: Vec<u8>,
 }
@@ -75,8 +75,8 @@ impl Mcap {
         self.walk.chunk.begin(at, (chunk, fault), self.walk.is_over, &mut self.walk.faults)
     }
 
-    /// Parses a message record. Returns its entry, and the length of the message at the end of the record; `None` if
-    /// the record is too short or its channel is unknown.
+    /// Parses a message record. Returns its entry, and the length of the message, which is at the end of the record.
+    /// Returns `None` if the record is too short or its channel is unknown.
     fn entry(&self, mut record: &[u8], at: u64) -> Option<(Entry, usize)> {
         let channel = u16_from(&mut record)?;
         let sequence = u32_from(&mut record)?;
@@ -238,8 +238,8 @@ impl Chunked for Mcap {
     }
 }
 
-/// Stores a message's content in `message`. Decompresses the content if it starts with the first bytes of Zstandard,
-/// with which no uncompressed message of ROS 2 starts.
+/// Stores a message's content in `message`. Decompresses the content if it starts with the first bytes of Zstandard. No
+/// uncompressed message of ROS 2 starts with these bytes.
 fn take_content(content: &[u8], message: &mut Vec<u8>) {
     if content.starts_with(&ZSTD) {
         *message = unpack("zstd", content, LARGEST_MESSAGE).0;
@@ -248,7 +248,7 @@ fn take_content(content: &[u8], message: &mut Vec<u8>) {
     }
 }
 
-/// Removes a text from the front of `left`. A text is stored as its length, in four bytes, and that number of bytes.
+/// Removes a text from the front of `left`. The length of a text comes before it, in four bytes.
 fn text(left: &mut &[u8]) -> Option<String> {
     let length = u32_from(left)?;
     Some(String::from_utf8_lossy(take(left, length.into())?).into_owned())

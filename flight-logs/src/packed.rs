@@ -5,7 +5,7 @@ use bzip2::read::MultiBzDecoder;
 use flate2::read::MultiGzDecoder;
 use std::io::{BufReader, Read};
 
-/// Compression of a whole file. Files of several streams, as parallel packers write them, are read to their end.
+/// Compression of a whole file. Parallel packers write a file as several streams; all of them are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Packing {
@@ -35,7 +35,7 @@ impl Packing {
         }
     }
 
-    /// Decompresses an input, which starts with its first byte.
+    /// Returns a reader of the decompressed content of `input`, which must be at its first byte.
     pub fn reader(self, input: impl Read + 'static) -> Box<dyn Read> {
         const BUFFER: usize = 1 << 18;
         fn buffered(input: impl Read + 'static) -> Box<dyn Read> {

@@ -89,7 +89,8 @@ impl Reading {
         Ok(microseconds(stamped.unwrap_or(entry.time)))
     }
 
-    /// Returns a text to begin an error message about the current message: its file, byte offset and topic.
+    /// Returns the start of an error message about the current message. It names the log's file, and the message's byte
+    /// offset and topic.
     pub fn place(&self) -> String {
         let at = self.entry.map_or(0, |entry| entry.at);
         format!("{}: byte {at}, a message of topic {}", self.file, self.topic())

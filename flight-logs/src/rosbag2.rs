@@ -24,7 +24,7 @@ pub(crate) struct Sqlite {
     database: Database,
     faults: Faults,
     topics: Vec<Topic>,
-    /// Index in `topics` for each topic. The key is the topic's number in the database.
+    /// Index in `topics` for each topic of the database. The key is the topic's number in the database.
     topic_indices: HashMap<i64, usize>,
     rows: Rows,
     /// Indices of the columns with topic, time and content of a message.
@@ -136,7 +136,7 @@ impl Log for Sqlite {
 pub(crate) struct Directory {
     files: VecDeque<PathBuf>,
     current: Option<Box<dyn Log>>,
-    /// Index in `topics` for each topic of the current file, in the order in which the file lists its topics.
+    /// Index in `topics` for each topic of the current file. The order is that of the topics in the file.
     topic_indices: Vec<usize>,
     topics: Vec<Topic>,
     faults: Faults,

@@ -28,10 +28,10 @@ pub(crate) struct Table {
     root: u64,
 }
 
-/// The rows of a table, read one by one in the order of their numbers.
+/// The rows of a table, read one by one in the order of their row numbers.
 #[derive(Debug)]
 pub(crate) struct Rows {
-    /// Pages from the root down to the current leaf, each with the index of its next cell.
+    /// Pages from the root down to the current leaf. Each page comes with the index of its next unread cell.
     stack: Vec<(Page, usize)>,
     /// Number of pages visited so far. If it exceeds the number of pages in the file, pages refer to each other in a
     /// circle.
@@ -125,7 +125,8 @@ impl Database {
         Ok(Page { number, bytes })
     }
 
-    /// Returns the content of a row, `length` bytes long. It starts in `cell`, and may continue on overflow pages.
+    /// Returns the content of a row, which is `length` bytes long. The content starts in `cell`, and may continue on
+    /// overflow pages.
     fn payload(&mut self, cell: &[u8], length: u64) -> Result<Vec<u8>, String> {
         if length > self.pages * self.page {
             return Err(format!("a row of {length} bytes is larger than the file"));

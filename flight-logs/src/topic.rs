@@ -32,7 +32,7 @@ impl Topic {
         Self { name, kind, wire: Wire::Ros1, definition: Err(why) }
     }
 
-    /// Returns the topic's index in `topics`. Appends the topic first, if the list has no equal one.
+    /// Returns the topic's index in `topics`. If the list has no equal topic, appends this topic first.
     pub(crate) fn index_in(self, topics: &mut Vec<Self>) -> usize {
         let known = topics.iter().position(|topic| *topic == self);
         known.unwrap_or_else(|| {

@@ -4,8 +4,8 @@ use crate::Result;
 use crate::bytes::Bytes;
 use crate::faults::Faults;
 
-/// Number of bytes in the window, except near the end of the file. No message of the formats that use a window is
-/// longer.
+/// Number of bytes in the window, except near the end of the file. In the formats that use a window, no message is
+/// longer than this.
 pub(crate) const AHEAD: usize = 4096;
 
 /// The next bytes of a file, read but not yet decoded.

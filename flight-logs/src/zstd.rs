@@ -6,7 +6,7 @@ use std::io::{self, Cursor, ErrorKind, Read};
 /// First bytes of a file compressed by Zstandard.
 pub(crate) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// Decompresses all frames of a Zstandard file, one after the other. Packers that run on several cores write several
+/// Decompresses all frames of a Zstandard file, one after the other. Packers that use several cores write several
 /// frames.
 pub(crate) struct Frames<R> {
     input: R,

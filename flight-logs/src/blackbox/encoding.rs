@@ -19,9 +19,9 @@ pub(crate) enum Fault {
 /// Encoding of one number of a frame, or of several neighbouring numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
-    /// Variable length, seven bits in each byte; the lowest bit of the number is the sign (zigzag).
+    /// A signed number of variable length, seven bits in each byte. The lowest bit is the sign (zigzag).
     Signed,
-    /// Variable length, seven bits in each byte, unsigned.
+    /// An unsigned number of variable length, seven bits in each byte.
     Unsigned,
     /// A 14-bit two's complement number of variable length, seven bits in each byte. The decoded number is negated.
     Negative14,
@@ -31,7 +31,7 @@ pub(crate) enum Encoding {
     Three,
     /// Four numbers, each of 0, 4, 8 or 16 bits.
     Four,
-    /// No bytes: the number is 0.
+    /// A number that takes no bytes, and is 0.
     Null,
     /// Three numbers. Their lengths are 2, 2 and 2 bits, or 5, 5 and 4 bits, or 8, 7 and 7 bits, or 1 to 4 bytes each.
     ThreeVariable,
@@ -92,7 +92,7 @@ impl Input<'_> {
     }
 
     /// Reads one group of `count` numbers with this encoding. `version` is the log's data version. The result has eight
-    /// items, of which those after the group are 0.
+    /// items; the items after the group are 0.
     pub(crate) fn numbers(
         &mut self,
         encoding: Encoding,

@@ -32,7 +32,7 @@ pub(crate) struct Fields {
     pub encodings: Vec<Encoding>,
 }
 
-/// Upper bound of the header's `I interval`, and of numerator and denominator of its `P interval`.
+/// Upper bound of three numbers in the header: the `I interval`, and the numerator and denominator of the `P interval`.
 const MOST: i64 = 1 << 12;
 
 impl Header {

@@ -32,7 +32,7 @@ const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
 pub(crate) struct Blackbox {
     faults: Faults,
     window: Window,
-    /// Number of logs in the file so far. A flight controller appends one for each flight.
+    /// Number of logs found in the file so far. A flight controller appends one log for each flight.
     logs: usize,
     session: Option<Session>,
     topics: Vec<Topic>,

@@ -108,7 +108,7 @@ impl Binary {
         Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
     }
 
-    /// Counts the range skipped as damaged, which ends at the current position.
+    /// Counts the range of damaged bytes that ends at the current position, if there is one.
     fn end_damage(&mut self) -> Result<()> {
         match self.damaged.take() {
             None => Ok(()),
@@ -142,7 +142,7 @@ impl Defined {
     }
 
     /// Parses the content of an `FMTU` message, which assigns units to the columns of a message type. `columns` are the
-    /// columns of the message itself. Returns `None` if the message is of another type, or invalid.
+    /// columns of the `FMTU` message itself. Returns `None` if `FmtType` or `UnitIds` is missing or invalid.
     fn of_units(columns: &[Column], content: &[u8]) -> Option<Self> {
         let column = |name: &str| {
             let index = columns.iter().position(|column| column.name == name)?;

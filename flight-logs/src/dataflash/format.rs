@@ -106,8 +106,8 @@ impl Format {
         Self { name, length, columns, instance: None, time, topics: HashMap::new() }
     }
 
-    /// Returns the definition of this format's messages after conversion. With `is_text` the log is a text log, whose
-    /// numbers become `f64`.
+    /// Returns the definition of this format's messages after conversion. Set `is_text` for a text log, whose numbers
+    /// become `f64`.
     fn definition(&self, is_text: bool) -> Result<Definition, String> {
         let columns = self.columns.as_ref().map_err(Clone::clone)?;
         let field = |column: &Column| {
@@ -203,8 +203,9 @@ impl Formats {
         format.topics.clear();
     }
 
-    /// Returns the index of the topic for messages of type `kind` from this instance; adds the topic if it is new. The
-    /// topic of instance 0 is `IMU`, that of instance 1 `IMU:1`. Returns `None` if the type is not defined.
+    /// Returns the index of the topic for messages of type `kind` from the sensor with number `instance`; adds the
+    /// topic if it is new. For example, the topic of instance 0 is `IMU`, and that of instance 1 is `IMU:1`. Returns
+    /// `None` if the type is not defined.
     pub(crate) fn topic(&mut self, kind: u8, instance: i64, is_text: bool) -> Option<usize> {
         let format = self.of_type.get_mut(&kind)?;
         if let Some(&known) = format.topics.get(&instance) {

@@ -27,7 +27,7 @@ thread_local! {
     static LENT: RefCell<HashMap<PathBuf, Rc<dyn Bytes>>> = RefCell::default();
 }
 
-/// Provides a file under a name, in place of a file already provided under it.
+/// Provides a file under a name. Replaces a file that was provided earlier under the same name.
 pub fn lend(name: impl Into<PathBuf>, bytes: impl Bytes + 'static) {
     LENT.with_borrow_mut(|lent| lent.insert(name.into(), Rc::new(bytes)));
 }
@@ -80,7 +80,7 @@ impl File {
 /// Creates an empty file in memory, for decompressed bytes.
 ///
 /// # Errors
-/// Never returns an error, unlike its counterpart outside of browsers.
+/// Never returns an error; the result has the same type as outside of browsers.
 pub fn scratch() -> io::Result<File> {
     Ok(File { content: Content::Scratch(Vec::new()), offset: 0 })
 }

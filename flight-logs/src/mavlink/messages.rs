@@ -15,8 +15,8 @@ pub(crate) struct Message {
     pub definition: Definition,
 }
 
-/// Number, name and fields of each message, the fields in the order of their bytes. Fields after `|` are extensions:
-/// older senders leave them out.
+/// Number, name and fields of each message. The fields are in the order of their bytes. Fields after `|` are
+/// extensions: older senders leave them out.
 #[rustfmt::skip]
 const MESSAGES: &[(u32, &str, &str)] = &[
     (0, "HEARTBEAT", "uint32_t custom_mode; uint8_t type autopilot base_mode system_status mavlink_version"),

@@ -24,7 +24,7 @@ pub(crate) struct Mavlink {
     window: Window,
     faults: Faults,
     topics: Vec<Topic>,
-    /// Index in `topics` by message number and sender. The sender is given by its system and its component.
+    /// Index in `topics` for each message number and sender. A sender is given by its system and its component.
     senders: HashMap<(u32, [u8; 2]), usize>,
     message: Vec<u8>,
     /// Number of packets skipped because their messages are unknown.
@@ -87,8 +87,8 @@ fn look(left: &[u8]) -> Ahead<'_> {
 }
 
 impl Packet<'_> {
-    /// Returns whether the packet, which is at the start of `left`, is valid. A known message needs the right checksum.
-    /// After an unknown message another packet must follow.
+    /// Returns whether the packet at the start of `left` is valid. The packet of a known message needs the right
+    /// checksum. The packet of an unknown message must be followed by another packet.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
             Some(message) => {
@@ -134,7 +134,7 @@ impl Mavlink {
         })
     }
 
-    /// Reads the packet at the current position; returns `None` if there is no valid one. The result is the packet's
+    /// Reads the packet at the current position; returns `None` if no valid packet is there. The result is the packet's
     /// length and, if its message is known, the index of its topic and its time in ns.
     fn packet(&mut self) -> Option<(usize, Option<(usize, i64)>)> {
         let left = self.window.left();

@@ -15,14 +15,14 @@ use std::path::Path;
 /// First bytes of a `ULog` file.
 pub(crate) const START: &[u8] = b"ULog";
 
-/// Error text for a file `.ulg` that starts with other bytes.
+/// Error text for a file with the extension `.ulg` that does not start as `ULog` files do.
 pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` and 12 bytes more";
 
 /// Reader of a `ULog` file, which is held in memory.
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
     topics: Vec<Topic>,
-    /// Layout of the messages of each topic, by its index in `topics`.
+    /// Layout of the messages of each topic. The index is that of the topic in `topics`.
     series: Vec<Series>,
     /// Valid data messages that are still to be read: index of the topic, and offset in the file.
     messages: std::vec::IntoIter<(usize, usize)>,

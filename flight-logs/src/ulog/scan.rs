@@ -92,7 +92,7 @@ pub(crate) struct Scan<'a> {
     registered: HashMap<u16, usize>,
     /// Topics in the order in which they were registered.
     pub topics: Vec<Topic>,
-    /// Layout of the messages of each topic, by its index in `topics`.
+    /// Layout of the messages of each topic. The index is that of the topic in `topics`.
     pub series: Vec<Series>,
     /// Valid data messages, in the order of the file: index of the topic, and offset in the file.
     pub messages: Vec<(usize, usize)>,
@@ -103,8 +103,8 @@ pub(crate) struct Scan<'a> {
 pub(crate) struct Series {
     /// Path to the field with the time at which a message was logged.
     pub time: Path,
-    /// Length of a message without and with the padding at its end, in bytes. The logger usually leaves the padding
-    /// out.
+    /// Lengths of a message in bytes: first without the padding at its end, then with it. The logger usually leaves the
+    /// padding out.
     pub lengths: (usize, usize),
 }
 
@@ -129,8 +129,8 @@ impl<'a> Scan<'a> {
         scan
     }
 
-    /// Returns the offset from which data was appended to the finished log, as PX4 does after a crash; `None` if there
-    /// is none.
+    /// Returns the offset at which PX4 appended data to the finished log, as it does after a crash. Returns `None` if
+    /// nothing was appended.
     fn appended(&self) -> Option<usize> {
         let first = self.header(HEADER, self.bytes.len()).filter(|first| first.kind == b'B')?;
         let content = &self.bytes[first.content];
@@ -285,7 +285,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// Returns whether the message's kind exists in `ULog`, with this length.
+/// Returns whether `ULog` has messages of this kind with this length.
 fn is_known(message: &Message) -> bool {
     let length = message.content.len();
     match message.kind {
