@@ -37,9 +37,9 @@ impl Bytes {
         self.at
     }
 
-    /// Replaces the content of `bytes` by the next `count` bytes of the file's content. Returns false if the content
-    /// ends before. Memory is allocated only for bytes that have been read, so a huge `count` from a damaged file
-    /// does no harm.
+    /// Replaces the content of `bytes` by the next `count` bytes of the file's content. Returns false if fewer than
+    /// `count` bytes are left. Memory is allocated only for bytes that have been read, so a huge `count` from a damaged
+    /// file does no harm.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read or decompressed.
@@ -50,7 +50,7 @@ impl Bytes {
         Ok(taken as u64 == count)
     }
 
-    /// Skips `count` bytes; returns false if the file ends before.
+    /// Skips `count` bytes; returns false if fewer bytes are left in the file.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read or decompressed.

@@ -36,7 +36,7 @@ pub struct Field {
 pub enum Kind {
     /// A number.
     Number(Number),
-    /// A number that is not selected by name: PX4's time stamp, or padding.
+    /// A number that cannot be selected by name, such as PX4's time stamp or padding.
     Hidden(Number),
     /// A text of UTF-8, preceded by its length.
     Text,

@@ -60,7 +60,7 @@ impl Faults {
         Ok(())
     }
 
-    /// Counts a fault that is common in good logs of this kind, and therefore never refused.
+    /// Counts a fault that is never refused, because good logs of this kind often have it.
     pub(crate) fn lose(&mut self, at: u64, what: impl Display) {
         self.skipped += 1;
         if self.skipped == 1 {

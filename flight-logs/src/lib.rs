@@ -1,14 +1,14 @@
-//! Reads flight logs message by message: PX4's `ULog`, `ArduPilot`'s `DataFlash`, `MAVLink` telemetry, bags of ROS 1 and
-//! ROS 2, MCAP files, and Betaflight's blackbox.
+//! Reads flight logs message by message: PX4's `ULog`, `ArduPilot`'s `DataFlash`, `MAVLink` telemetry, bags of ROS 1
+//! and ROS 2, MCAP files, and Betaflight's blackbox.
 //!
 //! All formats are read in the same way. [`Kind::of`] recognises a log by its first bytes. [`Reading`] returns its
 //! messages in the order of the file, and reads the numbers of a message by the names of their fields. Memory use does
-//! not grow with the length of the log, except for `ULog`, which is read as a whole. Logs compressed by gzip, Zstandard,
-//! bzip2 or xz are decompressed while they are read.
+//! not grow with the length of the log, except for `ULog`, which is read as a whole. Logs compressed by gzip,
+//! Zstandard, bzip2 or xz are decompressed while they are read.
 //!
-//! **Damage.** An [`Error`] names the byte at which a log is damaged. With [`Damage::Skip`], reading continues after the
-//! damage, and [`Reading::notes`] lists what was left out. No log makes a reader panic; the tests read a thousand damaged
-//! logs of each kind.
+//! **Damage.** An [`Error`] names the byte at which a log is damaged. With [`Damage::Skip`], reading continues after
+//! the damage, and [`Reading::notes`] lists what was left out. No log makes a reader panic; the tests read a thousand
+//! damaged logs of each kind.
 //!
 //! ```no_run
 //! use flight_logs::{Damage, Kind, Reading};

@@ -27,13 +27,14 @@ pub(crate) enum Encoding {
     Negative14,
     /// Up to eight numbers. The bits of the first byte tell which of the numbers are not 0. Only these numbers follow.
     UpToEight,
-    /// Three numbers. Their lengths are 2, 4 or 6 bits, the same for all three, or 1 to 4 bytes each.
+    /// Three numbers. Either all three have 2, 4 or 6 bits, or each has 1 to 4 bytes.
     Three,
     /// Four numbers, each of 0, 4, 8 or 16 bits.
     Four,
     /// A number that takes no bytes, and is 0.
     Null,
-    /// Three numbers. Their lengths are 2, 2 and 2 bits, or 5, 5 and 4 bits, or 8, 7 and 7 bits, or 1 to 4 bytes each.
+    /// Three numbers. Either their lengths are 2, 2 and 2 bits, or 5, 5 and 4 bits, or 8, 7 and 7 bits, or each has 1
+    /// to 4 bytes.
     ThreeVariable,
 }
 

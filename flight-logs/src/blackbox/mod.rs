@@ -53,8 +53,8 @@ struct Session {
     home: Vec<i32>,
     /// Iteration and time in µs of the last good frame.
     last: Option<(i64, i64)>,
-    /// Iteration and time in µs of a full frame that is too far from the last good one. The next full frame confirms or
-    /// refutes it.
+    /// Iteration and time in µs of a full frame that is too far from the last good frame. The next full frame confirms
+    /// or refutes these values.
     doubted: Option<(i64, i64)>,
     /// Index of the field `loopIteration`.
     iteration: Option<usize>,

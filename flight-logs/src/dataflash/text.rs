@@ -14,7 +14,7 @@ pub(crate) struct Text {
     window: Window,
     faults: Faults,
     formats: Formats,
-    /// Whether a definition has been read. Some loggers write other text before the first one.
+    /// Whether a definition has been read. Some loggers write other text before the first definition.
     is_begun: bool,
     message: Vec<u8>,
     /// Time of the last message that contained a time, in ns.

@@ -238,7 +238,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Stores a format definition, `name:type field;type[8] field;`. An invalid one is counted as a fault.
+    /// Stores a format definition, `name:type field;type[8] field;`. An invalid definition is counted as a fault.
     fn define(&mut self, at: usize, content: &[u8]) {
         let defined = str::from_utf8(content).ok().and_then(|text| text.split_once(':'));
         let fields = |fields: &str| fields.replace(';', "\n");

@@ -24,8 +24,9 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`,
-    /// telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is standard input
+    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and
+    /// `.log`, telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is standard
+    /// input
     pub input: PathBuf,
     #[command(flatten)]
     channel: ChannelOptions,

@@ -175,7 +175,8 @@ fn values(table: &[u8]) -> Vec<Line> {
         .collect()
 }
 
-/// Decodes the board's frames with `listen`, and checks that each event's value is marked `exact` and equals the board's.
+/// Decodes the board's frames with `listen`, and checks that each event's value is marked `exact` and equals the
+/// board's.
 fn assert_exact<S: Sample>(board: &Board<S>, options: &str) {
     let heard = good_bytes(&format!("listen {options}"), &board.frames.concat());
     let heard: Vec<Line> =

@@ -1,4 +1,5 @@
-//! Logs of ROS, Betaflight, `ArduPilot` and `MAVLink`: read whole, cut and damaged, and ROS logs written by `encode`.
+//! Logs of ROS, Betaflight, `ArduPilot` and `MAVLink` are read, whole, cut and damaged. ROS logs that `encode` wrote
+//! are read too.
 
 mod common;
 

@@ -120,8 +120,8 @@ fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
     assert!(steps.contains("not to be relied on in another flight"), "{steps}");
 }
 
-/// Held-out blocks are encoded as part of the whole flight, so that the decoded value carries its drift into each block.
-/// For `mw`, which drifts, the RMSE is more than three times as large on held-out blocks as on tuned ones.
+/// Held-out blocks are encoded as part of the whole flight, so that the decoded value carries its drift into each
+/// block. For `mw`, which drifts, the RMSE is more than three times as large on held-out blocks as on tuned ones.
 #[test]
 fn held_out_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     let text = std::fs::read_to_string(flight("hexarotor.csv")).unwrap();

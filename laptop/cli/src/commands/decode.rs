@@ -29,8 +29,8 @@ Example:
   spikewire decode spikes.csv -o decoded.csv
   spikewire decode --spikes dataset/events/flight-0123456789ab.parquet -o spikes.csv")]
 pub(crate) struct Decode {
-    /// File of spikes, a ROS bag or MCAP file with spikes, or a Parquet file of spikes in a data set; `-` reads a file of
-    /// spikes from standard input
+    /// File of spikes, a ROS bag or MCAP file with spikes, or a Parquet file of spikes in a data set; `-` reads a file
+    /// of spikes from standard input
     #[arg(default_value = "-")]
     spikes: PathBuf,
     /// Read the undamaged part of a log that is cut short or damaged

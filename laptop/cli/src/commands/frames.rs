@@ -44,7 +44,7 @@ pub(crate) struct Frames {
     /// Number of frames for which a pixel stays silent after a frame in which it sent events
     #[arg(long, default_value_t = 0)]
     refractory: u8,
-    /// Maximum number of events in a frame. Events beyond it are counted, and delayed to later frames
+    /// Maximum number of events in a frame. Further events are counted, and delayed to later frames
     #[arg(long)]
     budget: Option<u32>,
     /// Spread the events of a pixel over the time since the previous frame, which is divided into --most parts

@@ -29,8 +29,8 @@ use std::rc::Rc;
 /// runs on boards. A temporal code gives a value for each event. The other codes give a value for each sample and
 /// channel, from the channel's first event on.
 ///
-/// A value marked `exact` equals, bit for bit, the value that a decoder on the sender has. Values of a temporal code are
-/// exact from a keyframe until data is lost. Values of a rate code are exact once a filter's length of samples has
+/// A value marked `exact` equals, bit for bit, the value that a decoder on the sender has. Values of a temporal code
+/// are exact from a keyframe until data is lost. Values of a rate code are exact once a filter's length of samples has
 /// arrived without loss. Values of a population code are exact again from the first spike after a loss.
 #[derive(Args, Debug)]
 #[command(after_help = "\

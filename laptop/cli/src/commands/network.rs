@@ -85,8 +85,8 @@ pub(crate) struct Network {
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
     /// Time at which tinyODIN's neurons compare their potentials with their thresholds. With `spike` they compare after
-    /// each spike, which the chip does by itself. With `step` they compare once a step, as in training. This takes more
-    /// events; default: the one that keeps more accuracy
+    /// each spike, which the chip does by itself. With `step` they compare once a step, as in training; a step then
+    /// takes more events. Default: the choice that keeps more accuracy
     #[arg(long, value_parser = compares())]
     compare: Option<Compare>,
     /// Rust file to write; default: standard output
@@ -287,9 +287,9 @@ struct Driven {
 }
 
 impl Driven {
-    /// Checks that the network has exactly the number of inputs that an encoded recording gives. If the spikes come from
-    /// a file, the network may have more inputs. `inputs` is the network's number of inputs, and `layer` is the name of
-    /// its first layer.
+    /// Checks that the network has exactly the number of inputs that an encoded recording gives. If the spikes come
+    /// from a file, the network may have more inputs. `inputs` is the network's number of inputs, and `layer` is the
+    /// name of its first layer.
     fn check(&self, (inputs, layer): (usize, &str), scheme: Option<Scheme>) -> Result<()> {
         let given = &self.words;
         match scheme {

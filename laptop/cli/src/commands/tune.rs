@@ -213,7 +213,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// Converts the options to a request to the library, without the logs.
+    /// Converts the options to a request to the library; the request does not contain the logs yet.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Schemes::One(scheme) => vec![scheme],
