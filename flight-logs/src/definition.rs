@@ -458,7 +458,7 @@ pub(crate) fn declared(line: &str) -> Option<(&str, &str)> {
     (!name.is_empty() && !behind.starts_with('=')).then_some((kind, name))
 }
 
-/// Returns the definition of a type that is part of ROS itself, and that logs therefore leave out.
+/// Returns the definition of a type that is part of ROS itself. Logs leave such definitions out.
 fn built_in(name: &str, dialect: Dialect) -> Option<&'static str> {
     Some(match (name, dialect) {
         ("time", Dialect::Ros1) => "uint32 secs\nuint32 nsecs",

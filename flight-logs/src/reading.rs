@@ -96,7 +96,8 @@ impl Reading {
         format!("{}: byte {at}, a message of topic {}", self.file, self.topic())
     }
 
-    /// Returns notes on the faults found in the log so far, one sentence each. They are complete at the end of the log.
+    /// Returns notes on the faults found in the log so far, one sentence each. The notes are complete at the end of the
+    /// log.
     pub fn notes(&mut self) -> Vec<String> {
         self.log.faults().notes()
     }

@@ -11,7 +11,7 @@ mod text;
 pub(crate) use binary::Binary;
 pub(crate) use text::Text;
 
-/// First bytes of the `FMT` message that defines `FMT` itself, and begins every log.
+/// First bytes of the `FMT` message that defines `FMT` itself. This message is the first of every log.
 pub(crate) const START: &[u8] = b"\xa3\x95\x80\x80\x59FMT\0BBnNZ";
 
 /// A log must begin within this number of bytes from the start of its file, because some loggers write other text

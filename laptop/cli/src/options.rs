@@ -66,7 +66,7 @@ impl Coding {
     /// Returns the scheme, the sample type and the parameters, from the command line and the file of `--params`.
     ///
     /// # Errors
-    /// Returns an error if neither names a scheme, or if the two name different ones.
+    /// Returns an error if neither of the two names a scheme, or if they name different schemes.
     pub(crate) fn one(&self) -> Checked<(Scheme, SampleType, Asked)> {
         let (scheme, sample, parameters) = self.chosen()?;
         let Some(scheme) = scheme else {

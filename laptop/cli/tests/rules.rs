@@ -1,4 +1,4 @@
-//! Properties of the schemes as the program runs them; `host-tests` checks the schemes themselves.
+//! Tests of the schemes as the program runs them; `host-tests` checks the schemes themselves.
 
 mod common;
 
