@@ -59,11 +59,12 @@ pub trait DescribeReckOn {
 pub struct ReckOnNetwork<const IN: usize, const N: usize, const OUT: usize> {
     /// Parameters of each pair of neurons, one entry for neurons `2 n` and `2 n + 1`: `N / 2` entries, rounded up.
     pub pairs: &'static [ReckOnPair],
-    /// Weights from each input to all neurons.
+    /// Weights from each input to all neurons, with a row for each input.
     pub inputs: [[i8; N]; IN],
-    /// Weights from each neuron to all neurons; empty if the network is not recurrent.
+    /// Weights from each neuron to all neurons, with a row for each sending neuron; empty if the network is not
+    /// recurrent.
     pub recurrent: &'static [[i8; N]],
-    /// Weights from each neuron to all outputs.
+    /// Weights from each neuron to all outputs, with a row for each neuron.
     pub outputs: [[i8; OUT]; N],
     /// The parameters that all neurons share.
     pub shared: ReckOnShared,
