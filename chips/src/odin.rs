@@ -89,8 +89,8 @@ pub struct OdinRegisters {
     pub burst_clocks: u32,
     /// Register 19: which spikes go to the output bus.
     pub output_source: OutputSource,
-    /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. The output bus then shows the
-    /// states of the neuron and the synapse instead of spikes.
+    /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. If set, the output bus shows
+    /// the states of the neuron and the synapse instead of spikes.
     pub monitored: Option<(u8, u8)>,
     /// Register 23: whether synapses without the mapping bit learn.
     pub updates_unmapped: bool,

@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use super::AerPort;
 use spikewire::Event;
 
-/// The phase that a handshake has reached, or in which it timed out.
+/// The phase that a handshake has reached, or the phase in which it timed out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

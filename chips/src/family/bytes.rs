@@ -29,7 +29,7 @@ pub enum FormatError {
         /// Length of the bytes or the buffer given.
         given: usize,
     },
-    /// A neuron or a weight is out of its range; or an output is not a neuron of the network, or occurs twice.
+    /// A neuron or a weight is out of its range. Or an output is not a neuron of the network, or occurs twice.
     Value,
 }
 

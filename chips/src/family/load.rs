@@ -58,7 +58,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     /// network runs.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
+    /// Returns an error if the network does not fit or the bus failed. Returns [`ReadBack`](ChipError::ReadBack) at the
     /// first difference; then reset the chip.
     pub fn verify(
         &mut self,

@@ -148,8 +148,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Pulses reset, which brings chip and bus into sync; then gates the chip, opens its loop, and checks that the chip
-    /// answers. For this check a byte must not be 0. Therefore neuron [`Input::PROBED`] is disabled if it was never
-    /// written.
+    /// answers. The check needs a byte in the memory of neurons that is not 0. Therefore, if neuron [`Input::PROBED`]
+    /// was never written, this call disables it, which sets a bit.
     ///
     /// Spikes in the chip's queue are lost, and the pending word is dropped. If the pending word was an event of
     /// [`Running::feed`] that the chip has not acknowledged, the driver keeps the event and sends it again.

@@ -132,7 +132,7 @@ pub trait Describe<I: Input> {
 /// How the inputs of a network reach its neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs<const IN: usize, const N: usize> {
-    /// Each input has a row of synapses. An entry is the weights from that input to all neurons.
+    /// Each input has a row of synapses: its weights to all neurons.
     Rows([[i8; N]; IN]),
     /// Each input is a virtual event, which acts on one neuron without a synapse. An entry is that neuron and the
     /// weight. In tinyODIN only the first 16 neurons can receive virtual events.

@@ -90,8 +90,8 @@ pub struct Steps<'a> {
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// Number of rows of synapses that each input takes, and each neuron that sends spikes to other neurons. The weight
-    /// of an input or neuron is the sum of the weights in its rows.
+    /// Number of rows of synapses that each input takes, and each neuron whose spikes act on neurons. The weight of an
+    /// input or neuron is the sum of the weights in its rows.
     pub rows: u16,
     /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
     pub layers: &'a [StepsLayer],

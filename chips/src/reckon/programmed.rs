@@ -74,7 +74,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// Compares the chip's memories with a network, including weights that learning may have changed.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
+    /// Returns an error if the network does not fit or the bus failed. Returns [`ReadBack`](ChipError::ReadBack) at the
     /// first difference; then reset the chip.
     pub fn verify(&mut self, network: &impl DescribeReckOn) -> Outcome<(), D, P> {
         check::<D::Error, P::Error>(network)?;

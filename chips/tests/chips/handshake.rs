@@ -221,7 +221,7 @@ fn an_error_at_every_transfer_asks_for_a_reset() {
     }
 }
 
-/// A port whose input ACK can be held at a level, and whose output bus can be kept from being idle. Counts the reads of
+/// A port whose input ACK a test can hold at a level, and whose output bus a test can keep busy. Counts the reads of
 /// the output bus's REQ.
 struct Held<P> {
     port: P,
