@@ -12,10 +12,10 @@ use super::error::{at_most, in_range};
 /// - **Blocks:** a transfer carries 1, 4, 8, 16 or 32 words of 32 bits; the driver splits longer runs.
 /// - **Addresses:** multiples of 4 from `0xFC00_0000` to `0xFCFF_FFFC`, as in the vendor's driver. The bus carries the
 ///   low 26 bits, and the chip adds the rest.
-/// - **Faults:** chip select begins every block anew, so that a lost or doubled clock pulse spoils one block only.
+/// - **Faults:** chip select begins every block anew, so that a lost or doubled clock pulse spoils only one block.
 ///   There is no checksum, so [`program`](Self::program) reads everything back. A disturbed header may write a block to
-///   another address: after [`ReadBack`](ChipError::ReadBack) rewrite all memory that matters. If the intended address
-///   already held the same words, the fault goes unnoticed.
+///   another address. Therefore, after [`ReadBack`](ChipError::ReadBack), rewrite all memory that matters. If the
+///   intended address already held the same words, the fault goes unnoticed.
 ///
 /// Checked against the vendor's sources, and against a model of the transport made from them; never against a chip.
 ///

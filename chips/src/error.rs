@@ -37,7 +37,7 @@ pub enum ChipError<B, P = Infallible> {
     Busy,
     /// The weights from one input or neuron have both signs, which this chip cannot store.
     MixedSigns {
-        /// Row of these weights: the number of the presynaptic neuron, or the row of the input.
+        /// Row of synapses with these weights: the number of the presynaptic neuron, or the row of the input.
         pre: u8,
     },
     /// A value is out of its range.
@@ -54,7 +54,7 @@ pub enum ChipError<B, P = Infallible> {
     /// The weight of a virtual event is 0, which the chip would take for a full spike.
     ZeroWeight,
     /// Memory reads back a different value than was written. On a chip without a reset line, write the value again. On
-    /// a chip with one all memory is in doubt: reset the chip, and write all of its memory again.
+    /// a chip with a reset line, all memory is in doubt: reset the chip, and write all of its memory again.
     ReadBack {
         /// Address at which the values differ.
         address: u32,

@@ -89,8 +89,8 @@ pub struct OdinRegisters {
     pub burst_clocks: u32,
     /// Register 19: which spikes go to the output bus.
     pub output_source: OutputSource,
-    /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. The output bus then shows the
-    /// states of the neuron and the synapse instead of spikes.
+    /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. If set, the output bus shows
+    /// the states of the neuron and the synapse instead of spikes.
     pub monitored: Option<(u8, u8)>,
     /// Register 23: whether synapses without the mapping bit learn.
     pub updates_unmapped: bool,
@@ -170,8 +170,9 @@ impl Input for OdinInput {
     const PROBED: u8 = 255;
     const NEURON_BYTES: u8 = 16;
     const PARAMETERS: [u8; 16] = 0xFFFF_FFFF_FFC0_003F_FFFF_FFFF_FFFF_FFFF_u128.to_le_bytes();
-    /// `BistabilityAll` takes 64 clock cycles for each neuron, and waits for up to 33 spikes of 512 clock cycles each.
-    /// All other words take 1600 at most: `LeakAll` takes 512, after at most two spikes.
+    /// The slowest word is `BistabilityAll`: it takes 64 clock cycles for each neuron, and waits for up to 33 spikes of
+    /// 512 clock cycles each. All other words take at most 1600 clock cycles: `LeakAll` takes 512, after at most two
+    /// spikes.
     const MAX_CLOCKS: u32 = 34_000;
     const QUEUE: u32 = 32;
     const OPEN_LOOP: u16 = 1;

@@ -5,11 +5,11 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OutputSource {
-    /// The spikes of neurons, at the moment when they fire.
+    /// The spikes of neurons, when the neurons fire.
     #[default]
     Neurons,
-    /// The spikes from the chip's queue, when the chip has processed them. In closed loop they are spikes of neurons
-    /// and of inputs, in open loop only of inputs. ODIN sends only the spikes that act on its monitored neuron.
+    /// The spikes that leave the queue, when the chip has processed them. In closed loop these are spikes of neurons
+    /// and of inputs; in open loop, of inputs only. ODIN sends only spikes that act on its monitored neuron.
     Queue,
 }
 

@@ -69,8 +69,8 @@ pub struct XyloMap {
     pub outputs: u16,
     /// Mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
-    /// The bit that shows which input bank the next time step reads: the address of its register, and its mask. The bit
-    /// is 1 for the second bank. `None` if the public sources do not give them.
+    /// The bit that shows which input bank the next time step reads, as the address of its register and its mask. The
+    /// bit is 1 for the second bank. `None` if the public sources do not give this bit.
     pub next_bank: Option<(u16, u32)>,
 }
 
@@ -109,14 +109,14 @@ impl XyloMap {
 /// counted as saturated.
 ///
 /// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which
-///   one, and writes there.
+///   bank the next step reads, and writes the counts to that bank.
 /// - **Order:** set the counts, then run the step. While the chip runs a step the driver accepts no counts, and
 ///   [`step`](Self::step) waits for the step without triggering a second one.
 /// - **Counts stay** in the chip. A step without new counts uses the old counts of its bank again, unless they are
 ///   [cleared](Self::clear_input), as in the vendor's programs.
-/// - **Faults:** the chip confirms no write, and the public sources do not say which registers can be read back.
-///   Therefore the [`Registers`] that you supply must report every write that fails. A lost write leaves the old
-///   counts, and a lost trigger leaves the outputs of the step before.
+/// - **Faults:** the chip does not confirm writes, and the public sources do not say which registers can be read back.
+///   Therefore the [`Registers`] that you supply must report every write that fails. If the write of counts is lost,
+///   the chip keeps the old counts. If the trigger is lost, it keeps the outputs of the step before.
 ///
 /// Checked against the vendor's sources alone, never against a chip.
 ///

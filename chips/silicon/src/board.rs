@@ -1,5 +1,5 @@
-//! The simulated board: a chip's model, and the SPI device and the port through which a driver accesses it. Contains
-//! the port for tinyODIN and ODIN.
+//! The simulated board: the model of a chip, and the SPI device and the port through which a driver accesses the chip.
+//! Contains the port for tinyODIN and ODIN.
 //!
 //! The chip's time advances with the driver's calls: by `ratio` clock cycles for each SPI clock cycle, and by
 //! `call_clocks` for each call of the port.

@@ -34,8 +34,8 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     fn is_disabled(neuron: u128) -> bool;
     /// Returns whether a bistability event may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Returns whether a spike from the queue goes to the output bus while it is applied to `neuron`, for registers
-    /// with which the output bus carries the spikes of the queue.
+    /// Returns whether a spike from the queue goes to the output bus while the chip applies the spike to `neuron`. Only
+    /// for registers with which the output bus carries the spikes of the queue.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 

@@ -1,5 +1,5 @@
-//! The properties of ODIN: 256 neurons whose potentials have 8 bits, and weights of 3 bits whose sign is that of the
-//! presynaptic neuron.
+//! The properties of ODIN: 256 neurons whose potentials have 8 bits, and weights of 3 bits. A weight has the sign of
+//! the presynaptic neuron.
 
 use super::chip::{Drive, Input, Kind, Registers};
 

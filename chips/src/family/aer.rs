@@ -5,12 +5,13 @@ use core::num::NonZeroU32;
 use super::AerPort;
 use spikewire::Event;
 
-/// The phase that a handshake has reached, or in which it timed out.
+/// The phase that a handshake has reached, or the phase in which it timed out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
-    /// ACK is still high from the previous word, or that word's handshake has not ended. The new word was not sent.
+    /// ACK is still high from the previous word, or the handshake of the previous word has not ended. The new word was
+    /// not sent.
     Idle,
     /// ACK did not rise after REQ rose. The word is pending: it stays on the bus, with REQ high, until the chip takes
     /// it or is reset.
@@ -45,8 +46,8 @@ pub(super) enum Carries {
     Event(Event),
 }
 
-/// State of the ACK that the driver raises on the output bus. After a port call that failed, the level of the pin is
-/// unknown.
+/// State of the ACK on the output bus, which the driver controls. After a port call that failed, the level of the pin
+/// is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     /// ACK is low; the next REQ announces a new output.
@@ -61,8 +62,8 @@ enum Answer {
 
 /// The microcontroller's side of the input bus and the output bus.
 ///
-/// The chip reads the word on its input bus for as long as it works on it, and then acknowledges whichever REQ it
-/// finds. Therefore a word stays on the bus until it is acknowledged, even if that takes several calls.
+/// The chip reads the word on its input bus for as long as it works on that word. Then the chip acknowledges whichever
+/// REQ it finds. Therefore a word stays on the bus until the chip acknowledges it, even if that takes several calls.
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
@@ -107,11 +108,12 @@ impl<P: AerPort> Aer<P> {
         clocks.saturating_mul(self.reads_per_clock.get())
     }
 
-    /// Raises the chip's reset without changing REQ, then lowers the input bus's REQ and the output bus's ACK. If the
-    /// chip takes the pending word after the reset has risen, it waits for REQ to fall, and the reset drops the word
-    /// before it has an effect.
+    /// Raises the chip's reset, and only then lowers the input bus's REQ and the output bus's ACK. The order matters if
+    /// the chip takes the pending word at this moment: the chip then waits for REQ to fall, and the reset drops the
+    /// word before the word has an effect.
     ///
-    /// Returns the pending word if the driver saw no ACK for it. Also returns whether an output was lost.
+    /// Returns the origin of the pending word if there is one and the driver saw no ACK for it. Also returns whether an
+    /// output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
         if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
             self.phase = Phase::Release;

@@ -19,8 +19,8 @@ pub enum FormatError {
     Magic,
     /// The bytes contain a network for a different chip than the driver's.
     Chip,
-    /// The network has no neurons; or more than 256 neurons, inputs or rows of synapses; or, for `ReckOn`, more than 16
-    /// outputs.
+    /// The network has no neurons, or more than 256 neurons, inputs or rows of synapses. A network for `ReckOn` may
+    /// also have no inputs, no outputs, or more than 16 outputs.
     Size,
     /// The bytes or the buffer have the wrong length.
     Length {
@@ -29,7 +29,7 @@ pub enum FormatError {
         /// Length of the bytes or the buffer given.
         given: usize,
     },
-    /// A neuron or a weight is out of its range; or an output is not a neuron of the network, or occurs twice.
+    /// A neuron or a weight is out of its range. Or an output is not a neuron of the network, or occurs twice.
     Value,
 }
 
@@ -55,13 +55,15 @@ impl core::error::Error for FormatError {}
 /// | bytes | content |
 /// |---|---|
 /// | 4 | `SWN1` |
-/// | 1 | the chip: 1 tinyODIN, 2 ODIN; 3 is [`ReckOnBytes`](crate::ReckOnBytes) |
-/// | 1 | bit 0: recurrent; bit 1: inputs are virtual events |
-/// | 2, 2, 2 | neurons, inputs, outputs |
-/// | 4 or 16 a neuron | the neuron as in the chip's memory |
-/// | a row for each input | signed weights of 4 bits, two a byte, the first in the low half; for a virtual event instead 2 bytes, neuron and weight |
-/// | a row for each neuron | the weights to all neurons, packed like those of an input; only if the network is recurrent |
-/// | 1 an output | the neuron |
+/// | 1 | the chip: 1 is tinyODIN, 2 is ODIN (3 is `ReckOn`, see [`ReckOnBytes`](crate::ReckOnBytes)) |
+/// | 1 | bit 0: the network is recurrent; bit 1: the inputs are virtual events |
+/// | 2, 2, 2 | numbers of neurons, inputs and outputs |
+/// | 4 or 16 for each neuron | the neuron as in the memory of tinyODIN (4 bytes) or ODIN (16 bytes) |
+/// | a row for each input | the weights to all neurons; for a virtual event instead 2 bytes, the neuron and the weight |
+/// | a row for each neuron | the weights to all neurons; left out if the network is not recurrent |
+/// | 1 for each output | the neuron whose spikes are this output |
+///
+/// A row consists of signed weights of 4 bits, two in each byte, the first in the low half.
 ///
 /// Numbers of two bytes are little-endian. There is no checksum; [`Gated::load`](super::Gated::load) compares the
 /// chip's memory with these bytes.
@@ -85,7 +87,8 @@ struct Shape {
 }
 
 impl Shape {
-    /// Returns the lengths in bytes of neurons, inputs, recurrent rows and outputs.
+    /// Returns the lengths in bytes of the four tables: neurons, weights from inputs, weights between neurons, and
+    /// outputs.
     fn lengths<I: Input>(self) -> [usize; 4] {
         let row = usize::from(self.neurons.div_ceil(2));
         let (neurons, inputs) = (usize::from(self.neurons), usize::from(self.inputs));

@@ -1,15 +1,15 @@
 //! The counters of a chip's driver.
 
-/// Numbers of resets, and of time steps, events, words and outputs that were lost or late. Each number saturates at
-/// its largest value.
+/// The driver's counters of resets, and of time steps, events, words and outputs that were skipped, lost, late or sent
+/// again. Each counter saturates at its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
     /// Number of resets, including the first one.
     pub resets: u32,
-    /// Number of time steps that were never sent to the chip. A call skips those beyond the latest 255, and a reset
-    /// drops a step that the chip has not acknowledged.
+    /// Number of time steps that were never sent to the chip. If more than 255 time steps are due, a call skips the
+    /// oldest ones. A reset drops a time step that the chip has not acknowledged.
     pub skipped_steps: u32,
     /// Number of events that were fed after their time step was over.
     pub late_events: u32,

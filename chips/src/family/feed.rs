@@ -7,19 +7,19 @@ use super::{AerPort, Input, Outcome, Running};
 use spikewire::{Event, Source};
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Sends all events of `events` to the chip, each as the input that `to_input` returns for it, and the time steps
-    /// that pass between them. Returns the number of events sent. If `to_input` returns `None`, the event is dropped
-    /// and [counted](super::Counters::unmapped_events). [`Describe::input_for`](super::Describe::input_for) returns the
-    /// input of a network for an event. Keyframes and breaks are skipped. To feed from a queue, pass its consumer's
-    /// `waiting()`, which ends even if events arrive faster than the chip takes them.
+    /// Sends all events of `events` to the chip, and the time steps that pass between these events. Returns the number
+    /// of events sent. Each event is sent as the input that `to_input` returns for it, for example by
+    /// [`Describe::input_for`](super::Describe::input_for). If `to_input` returns `None`, the event is dropped and
+    /// [counted](super::Counters::unmapped_events). Keyframes and breaks are skipped. To feed from a queue, pass the
+    /// `waiting()` of its consumer: this source ends even if events arrive faster than the chip takes them.
     ///
     /// The events' ticks must not decrease. An event whose time step is over is sent in the current time step, and
     /// counted as [late](super::Counters::late_events).
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). After an error, call `feed` again with the remaining events. No
-    /// event is lost or sent twice, except those that a reset [counts](super::Counters::repeated_events), and those
-    /// whose input is invalid. Such an event is dropped.
+    /// event is lost or sent twice, with two exceptions. An event whose input is invalid is dropped. An event may be
+    /// sent again after a reset, and is then [counted](super::Counters::repeated_events).
     pub fn feed<A: Into<Option<I>>>(
         &mut self,
         mut events: impl Source,

@@ -14,13 +14,14 @@ const PROBE_CLOCKS: u32 = 1_000;
 /// A gated chip: its memories can be accessed, and it takes no events. Its loop is open (spikes do not reach other
 /// neurons), so that no write to memory makes a neuron fire.
 ///
-/// **Checks:** a call reads the old bytes, writes those that differ, and reads them back. Frames before and after the
-/// writes check that chip and bus are in sync. Therefore the call returns an error if a clock pulse was lost or
+/// **Checks:** a call reads the old bytes, writes the bytes that differ, and reads these back. Before and after the
+/// writes it checks that chip and bus are in sync. Therefore the call returns an error if a clock pulse was lost or
 /// doubled, and also if a lost and a doubled pulse cancel out. After such an error all memory is in doubt: reset the
-/// chip, and write all of it again.
+/// chip, and write all of its memory again.
 ///
-/// **Time:** writing a neuron of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at 656 kHz; writing a synapse takes 14
-/// frames; writing a neuron of ODIN takes 59. For whole networks [`load`](Self::load) takes 2 frames for each byte.
+/// **Time:** writing a neuron of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at 656 kHz; writing a neuron of ODIN takes
+/// 59 frames; writing a synapse takes 14 frames. For whole networks [`load`](Self::load) takes only 2 frames for each
+/// byte.
 #[derive(Debug)]
 pub struct Gated<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -34,14 +35,14 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes the registers and lets the chip run.
     ///
     /// **Checks:** after each register the driver checks that chip and bus are in sync, so that a lost or doubled clock
-    /// pulse is an error. Two faults that cancel out within the frame of a register and its check go unnoticed, and may
-    /// leave a wrong register or wrong potentials. Then the chip must answer a time step of one neuron, which shows
-    /// that the gate is open. If that neuron leaks, the driver raises its potential by the leak beforehand, so that the
-    /// network is unchanged afterwards.
+    /// pulse is an error. Two faults within the frame of a register and its check may cancel out and go unnoticed; they
+    /// may leave a wrong register or wrong potentials. Finally the driver sends a probe, a time step of one neuron;
+    /// only a chip whose gate is open answers. If that neuron leaks, the driver raises its potential by the leak
+    /// beforehand, so that the network is unchanged afterwards.
     ///
-    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 206 for ODIN. 17 more frames if the probed
-    /// neuron leaks from a potential other than 0, and 4 (tinyODIN) or 16 (ODIN) more for each neuron that cannot be
-    /// probed.
+    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 206 frames for ODIN. A probed neuron that leaks
+    /// from a potential other than 0 takes 17 more frames. Each neuron that cannot be probed takes 4 (tinyODIN) or 16
+    /// (ODIN) more frames.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range, or [`NoProbe`](ChipError::NoProbe); the chip is then still
@@ -134,8 +135,8 @@ fn bytes_of<I: Input>(neuron: u8) -> impl Iterator<Item = Address> + Clone {
     (0..I::NEURON_BYTES).map(move |byte| Address::neuron(neuron, byte))
 }
 
-/// Prepares the probe, which is a time step of one neuron. Returns the number of a neuron whose state is unchanged
-/// after that step. If the neuron leaks, raises its potential by the leak beforehand.
+/// Chooses a neuron for the probe, which is a time step of that neuron alone, and returns its number. If the neuron
+/// leaks, first raises its potential by the leak, so that the probe leaves the neuron as it was.
 fn prepare_probe<I: Input, D: SpiDevice, P: AerPort>(
     chip: &mut OdinChip<I, D, P>,
 ) -> Outcome<u8, D, P> {

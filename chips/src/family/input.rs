@@ -6,22 +6,23 @@ use super::super::ChipError;
 
 /// The input words of a chip of the ODIN family, and the layout of the chip's memories.
 pub trait Input: Copy {
-    /// The input that is a time step for all neurons. The chip has no timer of its own, so the driver sends this input.
+    /// The input that lets all neurons take a time step. The chip has no timer of its own, so the driver sends this
+    /// input.
     const LEAK_ALL: Self;
-    /// Highest neuron that [`probe`](Self::probe) accepts. [`reset`](super::OdinChip::reset) disables this neuron if it
-    /// was never written.
+    /// The highest neuron that can be [probed](Self::probe). [`reset`](super::OdinChip::reset) disables this neuron if
+    /// it was never written.
     const PROBED: u8;
     /// Number of bytes in a neuron, 16 at most.
     const NEURON_BYTES: u8;
     /// Mask of the bits in a neuron's bytes that hold parameters, which do not change while the chip runs.
     const PARAMETERS: [u8; 16];
-    /// Maximum number of clock cycles of the chip from a word's REQ to its ACK, for any word, with a full queue.
-    /// Outputs that wait for their ACK, and spikes between neurons, add to it.
+    /// Maximum number of clock cycles of the chip from the REQ of a word to its ACK, for the slowest word and a full
+    /// queue. Not included: the time in which outputs wait for their ACK, and the time for spikes between neurons.
     const MAX_CLOCKS: u32;
     /// Number of spikes and virtual events that the chip's queue holds.
     const QUEUE: u32;
-    /// Number of the register that opens the loop: while it is 1, the spikes of neurons go to the output bus and not to
-    /// other neurons. The driver keeps it at 1 while the chip is gated.
+    /// Number of the register that opens the loop. While this register is 1, spikes of neurons go to the output bus,
+    /// and not to other neurons. The driver keeps the register at 1 while the chip is gated.
     const OPEN_LOOP: u16;
     /// Code of the chip in [`NetworkBytes`](super::NetworkBytes).
     const KIND: u8;
@@ -45,8 +46,8 @@ pub trait Input: Copy {
     /// Returns the input that is a spike on row `pre` of the synapses.
     fn spike(pre: u8) -> Self;
 
-    /// Returns the input that is a time step for one neuron, up to [`PROBED`](Self::PROBED). A running chip
-    /// acknowledges this input, and a gated chip does not.
+    /// Returns the input that lets one neuron take a time step; `neuron` is at most [`PROBED`](Self::PROBED). A running
+    /// chip acknowledges this input, and a gated chip does not.
     fn probe(neuron: u8) -> Self;
 
     /// Returns the input that adds `weight` to the potential of one neuron directly, without a synapse.
@@ -61,8 +62,8 @@ pub trait Input: Copy {
     /// Decodes a neuron from the bytes of the chip's memory.
     fn neuron(bytes: [u8; 16]) -> Self::Neuron;
 
-    /// Returns the state that a neuron must have before a time step to be in this state after it, without firing.
-    /// Returns `None` if no such state exists.
+    /// Returns the state that a time step turns into the state `neuron` without firing. Returns `None` if there is no
+    /// such state.
     fn before_step(neuron: &Self::Neuron) -> Option<Self::Neuron>;
 
     /// Encodes a signed weight as the 4 bits of a synapse.

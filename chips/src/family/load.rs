@@ -24,8 +24,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     /// Writes a network to the chip, disables all neurons that it does not use, and then reads everything back. Leaves
     /// synapses onto the disabled neurons as they are. Calls `progress` after each neuron and each row.
     ///
-    /// **Time:** two frames of 5 bytes for each byte of a neuron, and for each two synapses of a row. 256 neurons of
-    /// tinyODIN with 256 rows take 67 584 frames, 4.1 s at 656 kHz.
+    /// **Time:** two frames of 5 bytes, a write and a read, for each byte of memory. A neuron takes 4 bytes (tinyODIN)
+    /// or 16 bytes (ODIN), and two synapses take one byte. 256 neurons of tinyODIN with 256 rows take 67 584 frames,
+    /// 4.1 s at 656 kHz.
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
@@ -57,7 +58,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     /// network runs.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
+    /// Returns an error if the network does not fit or the bus failed. Returns [`ReadBack`](ChipError::ReadBack) at the
     /// first difference; then reset the chip.
     pub fn verify(
         &mut self,
@@ -85,8 +86,8 @@ fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
-/// Calls `visit` for every byte of the chip's memories that the network uses, with the byte's address, a mask of the
-/// bits that the network does not use, and the value of all other bits.
+/// Calls `visit` for every byte of the chip's memories that the network uses. Its arguments are the byte's address, a
+/// mask of the bits that the network does not use, and a value with all other bits.
 fn each_byte<I: Input, B, P>(
     network: &impl Describe<I>,
     mut visit: impl FnMut(Address, u8, u8) -> Result<(), ChipError<B, P>>,

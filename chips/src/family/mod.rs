@@ -50,14 +50,16 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give access to a chip that was
 ///   left in that state.
 /// - **Synchronisation:** a lost or doubled clock pulse puts chip and bus out of sync. Calls on a gated chip detect
-///   such a fault; after a fault in the last frame of a call, the next call detects it. Calls also detect a lost and a
-///   doubled pulse within one access to memory. (Such a pair within the frame of a register and its check goes
-///   unnoticed, because registers cannot be read back.) After an error of the bus, or a byte that reads back
-///   differently, the driver refuses all calls until the next reset, and all memory is in doubt: load it again.
+///   such a fault; if the fault is in the last frame of a call, the next call detects it. If a lost and a doubled pulse
+///   cancel out within one access to memory, calls detect this, too. If they cancel out within the frame of a register
+///   and its check, this goes unnoticed, because registers cannot be read back. After an error of the bus, or a byte
+///   that reads back differently, the driver refuses all calls until the next reset. All memory is then in doubt: load
+///   it again.
 /// - **Waits:** the driver reads the pins a given number of times, then returns an error.
-/// - **Words** that the chip has not acknowledged when a wait ends stay pending. Every call that sends a word finishes
-///   the pending one first; [`Running::poll`] continues with it; a reset drops it.
-/// - **Events** that could not be sent are kept, and sent first at the next call, even after a reset.
+/// - **Pending words:** a word that the chip has not acknowledged when a wait ends stays pending. Every call that sends
+///   a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
+/// - **Unsent events:** an event that could not be sent is kept, and is sent first at the next call, even after a
+///   reset.
 /// - **Losses** are counted; see [`counters`](Self::counters).
 ///
 /// # What to know about the chips
@@ -128,28 +130,29 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Sets the length of a time step in µs: [`Running::feed`] and [`Running::advance`] then send a leak event for
     /// every `step` µs that pass. By default they send none.
     ///
-    /// Call [`Running::advance`] at least every 70 minutes. A tick more than 70 minutes after the previous one counts
-    /// as a late one, for which no leak is sent.
+    /// Call [`Running::advance`] at least every 70 minutes. If a tick comes more than 70 minutes after the previous
+    /// one, the driver takes it for a late tick and sends no leak.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
     }
 
-    /// Sets how many pin reads fit into one clock cycle of the chip; 1 by default, more if the microcontroller is much
-    /// faster than the chip. Every wait reads the pins this many times as often. If the number is too low, words time
-    /// out, and [`Running::gate`] may gate a chip that is still working, whose potentials are then wrong.
+    /// Sets the number of pin reads that fit into one clock cycle of the chip. The default is 1; set more if the
+    /// microcontroller is much faster than the chip. The driver multiplies the pin reads of every wait by this number.
+    /// If the number is too low, words time out, and [`Running::gate`] may gate a chip that is still working, whose
+    /// potentials are then wrong.
     #[must_use]
     pub fn with_reads_per_clock(mut self, reads: NonZeroU32) -> Self {
         self.aer.set_reads_per_clock(reads);
         self
     }
 
-    /// Pulses reset, which brings chip and bus into sync; then gates the chip, opens its loop, and checks that it
-    /// answers. The check needs a byte that is not 0: it disables neuron [`Input::PROBED`] if that neuron was never
-    /// written.
+    /// Pulses reset, which brings chip and bus into sync; then gates the chip, opens its loop, and checks that the chip
+    /// answers. The check needs a byte in the memory of neurons that is not 0. Therefore, if neuron [`Input::PROBED`]
+    /// was never written, this call disables it, which sets a bit.
     ///
-    /// Spikes in the chip's queue are lost, and the pending word is dropped. If that word was an event of
-    /// [`Running::feed`] that the chip has not acknowledged, it is kept and sent again.
+    /// Spikes in the chip's queue are lost, and the pending word is dropped. If the pending word was an event of
+    /// [`Running::feed`] that the chip has not acknowledged, the driver keeps the event and sends it again.
     ///
     /// # Errors
     /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.

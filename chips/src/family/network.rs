@@ -8,8 +8,8 @@ use spikewire::{Code, Event, Polarity, Scheme, Tick};
 /// [`Gated::load`](super::Gated::load) writes them to the chip.
 ///
 /// The network's neurons are the chip's neurons from 0 on. An input is either a row of synapses onto all neurons, or a
-/// virtual event for one neuron. In open loop the chip's rows from 0 on belong to the inputs; in closed loop they belong
-/// to the neurons, and the rows of the inputs follow.
+/// virtual event for one neuron. In open loop the chip's rows of synapses from row 0 on belong to the inputs. In closed
+/// loop the first rows belong to the neurons, and the rows of the inputs follow.
 pub trait Describe<I: Input> {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
@@ -40,9 +40,10 @@ pub trait Describe<I: Input> {
     /// Returns the chip's input for an event that a bank of encoders of this scheme sends, or `None` if the network has
     /// no such input.
     ///
-    /// Neuron `n` of the bank is input `n` of the network. A [signed](Code::IS_SIGNED) code, such as that of
+    /// Neuron `n` of the encoders is input `n` of the network. A [signed](Code::IS_SIGNED) code, such as that of
     /// step-forward, takes two inputs for each neuron: input `2 n` for [`Polarity::Up`], input `2 n + 1` for
-    /// [`Polarity::Down`]. Rate codes have the same type of spikes and never go down: their odd inputs stay silent.
+    /// [`Polarity::Down`]. Rate codes have the same type of spikes, but never send [`Polarity::Down`], so that their
+    /// odd inputs stay silent.
     ///
     /// ```
     /// use spikewire_chips::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
@@ -94,8 +95,9 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// Returns the registers to [run](super::Gated::run) the network with: closed loop if it is recurrent; the output
-    /// bus carries the spikes of neurons; neurons beyond the network are not used.
+    /// Returns the registers with which to [run](super::Gated::run) the network. The loop is closed if the network is
+    /// recurrent, otherwise open. The output bus carries the spikes of neurons. Neurons beyond the network are not in
+    /// use.
     fn registers(&self) -> I::Registers {
         let mut inhibitory = [0; 16];
         for row in 0..self.rows() {
@@ -118,7 +120,7 @@ pub trait Describe<I: Input> {
         self.first_input_row().saturating_add(if is_virtual { 0 } else { self.inputs() })
     }
 
-    /// Returns the weight that row `row` of the synapses has onto neuron `post`.
+    /// Returns the weight of the synapse in row `row` onto neuron `post`.
     fn row_weight(&self, row: u16, post: u8) -> i8 {
         match row.checked_sub(self.first_input_row()) {
             Some(input) => self.input_weight(input, post),
@@ -130,10 +132,10 @@ pub trait Describe<I: Input> {
 /// How the inputs of a network reach its neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs<const IN: usize, const N: usize> {
-    /// Each input has a row of synapses: these are its weights to all neurons.
+    /// Each input has a row of synapses: its weights to all neurons.
     Rows([[i8; N]; IN]),
-    /// Each input acts on one neuron without a synapse: that neuron, and the weight. tinyODIN has such virtual events
-    /// only for its first 16 neurons.
+    /// Each input is a virtual event, which acts on one neuron without a synapse. An entry is that neuron and the
+    /// weight. In tinyODIN only the first 16 neurons can receive virtual events.
     Virtual([(u8, i8); IN]),
 }
 
@@ -194,8 +196,8 @@ pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> 
     pub neurons: [I::Neuron; N],
     /// The inputs, and their weights.
     pub inputs: Inputs<IN, N>,
-    /// The weights from neurons to all neurons: row `n` belongs to neuron `n`. Neurons without a row have no effect on
-    /// other neurons; if there are no rows, the loop is open.
+    /// The weights between neurons: row `n` has the weights from neuron `n` to all neurons. Neurons without a row have
+    /// no effect on other neurons. If there are no rows, the loop is open.
     pub recurrent: &'static [[i8; N]],
     /// The neuron of each output, in the order of the outputs.
     pub outputs: [u8; OUT],

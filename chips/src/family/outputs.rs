@@ -23,7 +23,8 @@ use spikewire::{Event, Tick};
 /// let tick = Tick::from_micros(1_000);
 ///
 /// let mut spikes = Spikes::<16>::new();
-/// // As `chip.poll(NETWORK.answers(…))?` does with neurons that fire; neuron 1 is no output.
+/// // In flight, `chip.poll(NETWORK.answers(…))?` passes the neurons that fire.
+/// // Here neurons 1 and 6 fire. Neuron 1 is not an output, and is ignored.
 /// [1, 6].map(NETWORK.answers(tick, |event| spikes.push(event)));
 /// let [value] = readout.decode(tick, spikes.as_slice());
 /// assert_eq!(value, 0.5);

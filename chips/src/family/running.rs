@@ -7,8 +7,8 @@ use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome};
 
 /// Number of clock cycles from the driver's ACK of an output until the chip continues, with a margin.
 const HANDSHAKE_CLOCKS: u32 = 32;
-/// Number of clock cycles that [`Running::quiesce`] allows for outputs, in addition to four times the longest time that
-/// the chip works without an output. Enough for more than a thousand outputs.
+/// Number of clock cycles that [`Running::quiesce`] allows for the handshakes of outputs; enough for more than a
+/// thousand outputs. `quiesce` adds this number to four times the longest time that the chip works without an output.
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
 /// A running chip: it takes events, and its memories cannot be accessed. After an error the chip still runs, unless the
@@ -48,10 +48,10 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
 
     /// Waits until the chip has processed all its input, and passes neurons that fire meanwhile to `on_output`.
     ///
-    /// No pin shows that the chip is at rest. Therefore this waits until no output has come for the longest time that
-    /// the chip can work without an output. In open loop that time is a few sweeps, each of 2 clock cycles for every
-    /// neuron in use. In closed loop it is one sweep for each spike that the queue can hold: 66 000 clock cycles for
-    /// tinyODIN's 256 neurons.
+    /// No pin shows that the chip is at rest. Therefore this call waits until no output has come for the longest time
+    /// that the chip can work without an output. In open loop that time is a few sweeps, each of 2 clock cycles for
+    /// every neuron in use. In closed loop that time is one sweep for each spike that the queue can hold: 66 000 clock
+    /// cycles for tinyODIN with 256 neurons.
     ///
     /// # Errors
     /// Returns [`Busy`](ChipError::Busy) if outputs keep coming, for example from a network that drives itself; see

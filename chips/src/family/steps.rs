@@ -5,17 +5,17 @@ use embedded_hal::spi::SpiDevice;
 
 use super::{AerPort, ChipError, Input, Outcome, Running};
 
-/// The sequence of events by which tinyODIN runs one time step of a network whose neurons compare with their thresholds
-/// once a step, as in training. `Steps` belong to a [`Network`](super::Network) in open loop; `spikewire network`
-/// writes both, and [`Running::step`] runs a step.
+/// Describes how tinyODIN runs a time step of a network in which each neuron compares its potential with its threshold
+/// once a step, as in training. [`Running::step`] runs such a step. `Steps` belong to a [`Network`](super::Network) in
+/// open loop; the command `spikewire network` writes both.
 ///
-/// While a step's inputs arrive, all potentials are offset downwards, so that no neuron reaches its threshold. Then a
-/// series of events on an extra row of weights raises the first layer, each event by one *rung*, until the offset is
-/// gone and the neurons that are above their thresholds fire. Their spikes go to the next layer, which is raised in
-/// turn. Finally events on a second extra row lower all neurons again. Leaks are sent between these events: a leak
-/// moves the potential towards 0, wherever the offset stands at that moment. Therefore leaks at several heights
-/// together reduce a potential by a share of its value, as in training. A neuron that fired may end above its reset
-/// value; leaks that only this neuron receives remove the excess.
+/// While the inputs of a step arrive, all potentials are offset downwards, so that no neuron reaches its threshold.
+/// Then events on an extra row of weights raise the first layer. Each of these events raises the layer by one *rung*.
+/// At the end the offset is gone, and the neurons above their thresholds fire. Their spikes go to the next layer, which
+/// is raised in turn. Finally, events on a second extra row lower all neurons again. Leaks are sent between the
+/// lowering events. A leak moves a potential, with the present offset, towards 0. Leaks at several offsets together
+/// reduce a potential by a share of its value, as in training. A neuron that fired may end above its reset value; leaks
+/// that only this neuron receives remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
@@ -25,7 +25,8 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 ///     TinyOdinNeuron, neurons_from,
 /// };
 ///
-/// // As `spikewire network` writes them: rises and falls of one rate lead to three neurons, by rungs of 7.
+/// // Two inputs (rises and falls of a rate) and three neurons, whose rungs are 7. `spikewire network` writes such
+/// // constants.
 /// static STEPS: Steps = Steps {
 ///     inputs: 2,
 ///     has_bias: false,
@@ -73,7 +74,7 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// }
 /// ```
 ///
-/// The rows of the network are, in this order:
+/// The rows of synapses of the network are, in this order:
 ///
 /// 1. the inputs, and the bias if the network has one;
 /// 2. for each layer, its neurons onto the next layer (except for the last layer), and onto the layer itself if the
@@ -89,18 +90,19 @@ pub struct Steps<'a> {
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// Number of rows of synapses for each input and for each neuron that sends spikes to neurons. The weight of an
-    /// input or neuron is the sum over its rows.
+    /// Number of rows of synapses that each input takes, and each neuron whose spikes act on neurons. The weight of an
+    /// input or neuron is the sum of the weights in its rows.
     pub rows: u16,
     /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
     pub layers: &'a [StepsLayer],
-    /// Number of events that raise each layer in a step. The same number of events later lowers all neurons again.
+    /// Number of events (rungs) that raise each layer in a step. The same number of events later lowers all neurons.
     pub rungs: u16,
-    /// When leaks are sent in a step: each leak is given as the number of lowering events that come before it, in
-    /// ascending order. Successive steps take successive lists, and begin again after the last list.
+    /// The leaks of all neurons, as a list for each step. After the last list, the next step takes the first list
+    /// again. An entry in a list is one leak: the number of lowering events that come before the leak. Entries are in
+    /// ascending order.
     pub leaks: &'a [&'a [u16]],
-    /// Number of events that raise all neurons again after they were lowered, before the leaks of neurons that fired;
-    /// as many events lower them afterwards. 0 if these leaks need no raising.
+    /// Number of events that raise all neurons before the leaks of [`own_leaks`](Self::own_leaks) are sent. The same
+    /// number of events lowers all neurons after these leaks. 0 if these leaks need no raising.
     pub lift: u16,
     /// For each neuron, the number of leaks that only this neuron receives after it has fired.
     pub own_leaks: &'a [u16],
@@ -120,7 +122,7 @@ pub struct StepsLayer {
 pub struct StepsState {
     /// The neurons that fired in the last step.
     fired: Fired,
-    /// Index into [`Steps::leaks`] for the next step.
+    /// Index in [`Steps::leaks`] of the list for the next step.
     turn: u16,
 }
 
@@ -181,14 +183,15 @@ impl Steps<'_> {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Runs one time step of a network. `inputs` are the numbers of the inputs that fire, in any order; numbers that
-    /// are not inputs of the network are dropped and [counted](super::Counters::unmapped_events). Neurons that fire are
+    /// Runs one time step of a network. `inputs` are the numbers of the inputs that fire, in any order. A number that
+    /// is not an input of the network is dropped and [counted](super::Counters::unmapped_events). Neurons that fire are
     /// passed to `on_output` immediately, each at most once in a step. They include neurons of all layers;
     /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
     ///
-    /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. A step consists of one
-    /// event for each row of an input or spike, [`rungs`](Steps::rungs) events for each layer, as many for lowering all
-    /// neurons, and the leaks. The chip still works on the last event when the call returns.
+    /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. Each input or spike
+    /// takes [`rows`](Steps::rows) events. Raising each layer takes [`rungs`](Steps::rungs) events, and lowering all
+    /// neurons takes `rungs` events once. Each leak takes one event. The chip still works on the last event when the
+    /// call returns.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). The step is then incomplete and the chip's potentials are useless:
@@ -291,7 +294,7 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         })
     }
 
-    /// Sends `times` spikes on row `row` of the chip's synapses.
+    /// Sends `times` spikes, each on all synapses of row `row`.
     fn row(&mut self, row: u16, times: u16) -> Outcome<(), D, P> {
         for _ in 0..times {
             let Ok(pre) = u8::try_from(row) else {
@@ -303,8 +306,8 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends one spike on each row of synapses of one input or neuron. `first` is the first row of all inputs, or of
-    /// all neurons of the layer. `number` is the index of the input or neuron among them.
+    /// Sends one spike on each row of synapses of an input or a neuron. `first` is the first row of all inputs, or the
+    /// first row of all neurons of the layer. `number` is the index of this input or neuron among them.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let first = first.saturating_add(number.saturating_mul(self.rows));
         for at in 0..self.rows {

@@ -1,4 +1,4 @@
-//! Checks that chip and bus are in sync and that the gate is shut; reads and writes memory with such checks.
+//! Checks that the gate is shut and that chip and bus are in sync. Reads and writes memory with these checks.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -40,9 +40,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_sync()
     }
 
-    /// Opens the gate. If the gate is shut later while the chip works, tinyODIN overwrites the byte that was accessed
-    /// last over SPI, in each neuron that it has not processed yet. Therefore the last access before opening the gate
-    /// is to a byte that does not exist.
+    /// Opens the gate, after an access to a byte that does not exist. The reason for this access: if the gate is shut
+    /// later while tinyODIN works, the chip overwrites the byte that was last accessed over SPI, in each neuron that it
+    /// has not processed yet.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
@@ -69,9 +69,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_sync()
     }
 
-    /// Checks that chip and bus are in sync: changes a byte in the memory of synapses, restores it, and reads it both
-    /// times. Fails if the chip runs, or after a lost or doubled clock pulse. Between the two reads it reads a byte
-    /// that is known not to be 0, if there is one, because a chip out of sync sends 0.
+    /// Checks that chip and bus are in sync. Changes a byte in the memory of synapses and reads it, then restores the
+    /// byte and reads it again. Between the two reads, reads a byte that is known not to be 0, if there is one, because
+    /// a chip that is out of sync sends 0. Returns an error if the chip runs, or after a lost or doubled clock pulse.
     pub(super) fn check_sync(&mut self) -> Outcome<(), D, P> {
         let value = match self.anchor {
             Some(value) => value,
@@ -137,8 +137,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Reads once more the byte that the sync check wrote. Two faults in the last frames of the check may cancel out,
-    /// so that the check succeeds although this byte is wrong.
+    /// Reads again the byte that the sync check wrote, because two faults in the last frames of the check may cancel
+    /// out: the check then succeeds although this byte is wrong.
     fn expect_anchor(&mut self) -> Outcome<(), D, P> {
         match self.anchor {
             Some(value) => self.expect_byte(anchor(), 0, value),
@@ -188,7 +188,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores a byte of memory as the beacon if a bit of it that the chip does not change is 1.
+    /// Stores the byte `value` at `address` as the beacon if it is a byte of a neuron, and if one of its bits in `mask`
+    /// is 1 and belongs to a parameter. (The chip does not change parameters.)
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);
@@ -211,7 +212,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Requires a reset after an error of the bus, because a clock pulse may be lost.
+    /// Converts an error of the bus. After such an error the driver refuses all calls until the next reset, because a
+    /// clock pulse may have been lost.
     pub(super) fn heed<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
         result.map_err(|error| {
             self.state = State::NotReset;

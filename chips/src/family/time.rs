@@ -11,9 +11,8 @@ use spikewire::Tick;
 /// Maximum number of leak events that one call sends.
 const MAX_LEAKS: u32 = 255;
 
-/// The driver compares a tick with the time of the last leak event. A tick that is earlier by at most this duration,
-/// in µs (67 s), counts as late. A tick that is earlier by more counts as a future tick, because the 32-bit clock has
-/// wrapped.
+/// Limit in µs (67 s) up to which a tick can be late. A tick is late if it is earlier than the last leak event by at
+/// most this limit. A tick that seems to be even earlier is taken for a future tick, because the 32-bit clock wraps.
 const LATEST: u32 = 1 << 26;
 
 /// Returns the time from `last` to `now` in µs; `None` if `now` is at most 67 s earlier than `last`.
@@ -35,7 +34,7 @@ impl Time {
         Self { step, last: None }
     }
 
-    /// Returns whether the time step that `tick` belongs to is over.
+    /// Returns whether the time step of `tick` is over, that is, whether `tick` is earlier than the last leak event.
     pub(super) fn is_over(&self, tick: Tick) -> bool {
         self.last.is_some_and(|last| passed(last, tick).is_none())
     }
@@ -43,13 +42,13 @@ impl Time {
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Sends the leak events that are due up to the tick `now`. The first call sends none and only stores `now`. Time
-    /// in which the chip was gated counts, up to 70 minutes. A call sends at most 255 leak events. If more are due,
-    /// the oldest ones are never sent, and are counted as [skipped](super::Counters::skipped_steps). (255 leaks of 1
-    /// may not bring a potential of 12 bits to 0.)
+    /// steps that pass while the chip is gated are due, too, if the chip is gated for less than 70 minutes. A call
+    /// sends at most 255 leak events. If more are due, the call drops the oldest ones and counts them as
+    /// [skipped](super::Counters::skipped_steps). (255 leaks of 1 may not bring a potential of 12 bits to 0.)
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). After an error, the next call sends the leak events that this call
-    /// still had to send.
+    /// should have sent and did not.
     pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.advance_with(now, &mut on_output)
     }

@@ -23,8 +23,8 @@ impl Address {
         Self::neuron(255, 0x7F)
     }
 
-    /// Returns the address of the byte that holds the synapse from `pre` to `post`, as the bit fields `{byte, pre, post
-    /// / 8}`. A byte holds two synapses, a word four bytes.
+    /// Returns the address of the byte with the synapse from `pre` to `post`. The address has bit fields for `byte`,
+    /// `pre` and `post / 8`, from high to low: a byte holds two synapses, and a 32-bit word holds four bytes.
     pub(super) fn synapse(pre: u8, post: u8) -> Self {
         let (pre, post) = (u32::from(pre), u32::from(post));
         Self(SYNAPSE | (post >> 1 & 3) << 13 | pre << 5 | post >> 3)
@@ -62,9 +62,9 @@ impl<D: SpiDevice> Wire<D> {
         self.write(WRITE | address.0, u32::from(keep) << 8 | u32::from(value))
     }
 
-    /// Reads a byte, which comes back as the last byte of the frame. The chip ignores the data that is sent with a
-    /// read. The data is all ones, so that a frame that a lost or doubled clock pulse turns into a write keeps all
-    /// bits.
+    /// Reads a byte, which comes back as the last byte of the frame. The driver sends data that is all ones, which the
+    /// chip ignores. If a lost or doubled clock pulse turns the read into a write, these ones mask all bits, so that
+    /// memory does not change.
     pub(super) fn read_byte(&mut self, address: Address) -> Result<u8, D::Error> {
         let mut frame = frame(READ | address.0, 0xF_FFFF);
         self.device.transfer_in_place(&mut frame)?;

@@ -17,13 +17,16 @@ const ZERO: u8 = 2;
 /// |---|---|
 /// | 4 | `SWN1` |
 /// | 1 | the chip: 3 |
-/// | 1 | bit 0: recurrent; bit 1: a neuron that fires returns to 0 |
-/// | 2, 2, 2 | neurons, inputs, outputs |
-/// | 1, 1, 1, 1 | shifts of the weights from inputs, between neurons and to outputs; share of an output's potential that a step keeps |
-/// | 4 a pair of neurons | share of a potential that a step keeps; threshold |
-/// | a row for each input | a signed weight for each neuron |
-/// | a row for each neuron | a signed weight for each neuron; only if the network is recurrent |
-/// | a row for each neuron | a signed weight for each output |
+/// | 1 | bit 0: the network is recurrent; bit 1: a neuron that fires returns to 0 |
+/// | 2, 2, 2 | numbers of neurons, inputs and outputs |
+/// | 1, 1, 1 | left shifts of the weights from inputs, between neurons and to outputs |
+/// | 1 | share of an output's potential that a step keeps |
+/// | 2, 2 for each pair of neurons | share of a neuron's potential that a step keeps; threshold |
+/// | a row for each input | the weights to all neurons |
+/// | a row for each neuron | the weights to all neurons; left out if the network is not recurrent |
+/// | a row for each neuron | the weights to all outputs |
+///
+/// A row consists of signed weights of one byte.
 ///
 /// Numbers of two bytes are little-endian. There is no checksum; [`Programmed::load`](super::Programmed::load) compares
 /// the chip's memory with these bytes.
@@ -37,7 +40,8 @@ pub struct ReckOnBytes<'a> {
     outputs: &'a [u8],
 }
 
-/// Returns the lengths in bytes of pairs, inputs, recurrent rows and outputs.
+/// Returns the lengths in bytes of the four tables: pairs of neurons, and weights from inputs, between neurons and to
+/// outputs.
 fn lengths([neurons, inputs, outputs]: [u16; 3], is_recurrent: bool) -> [usize; 4] {
     let [pairs, neurons, inputs, outputs] =
         [neurons.div_ceil(2), neurons, inputs, outputs].map(usize::from);

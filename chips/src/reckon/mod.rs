@@ -34,35 +34,38 @@ use wire::{Address, Wire};
 ///   time steps until [`ReckOnSample::end`]. [`Started::program`] gives a [`Programmed`] chip again. After an error of
 ///   the bus, of a handshake or of a step, the driver refuses all calls until the next reset.
 /// - **Checks:** the driver reads memories back. Registers cannot be read. Therefore, after each register, the driver
-///   twice writes and reads a word that no network uses, which detects a clock pulse that was lost or doubled before.
-/// - **Undetected faults** consist of a lost and a doubled clock pulse that cancel out. If one of the two lies in the
-///   frame of a register or in the frame before, the register may keep its old value or take a wrong one, or a
-///   different register may be written. If the pair lies in the first bits of a frame that writes weights between
-///   neurons, it may write a register, which is noticed unless the memory held the same weights before. A read by which
-///   a load compares may become a write. [`Programmed::verify`] after the load detects that in weights and parameters,
-///   but not in the potential of a neuron or an output.
+///   writes two words to an address that no network uses, and reads each of them back. This detects a clock pulse that
+///   was lost or doubled before.
+/// - **Undetected faults:** if one clock pulse is lost and another is doubled, chip and bus are in sync again
+///   afterwards. Three cases of such a pair may go unnoticed. In the first case, one of the two faults lies in the
+///   frame of a register or in the frame before: the register may keep its old value or take a wrong one, or a
+///   different register may be written. In the second case, the pair lies in the first bits of a frame that writes
+///   weights between neurons: it may write a register instead. The driver notices this unless the memory held the same
+///   weights before. In the third case, the pair turns a read into a write while a load compares memory.
+///   [`Programmed::verify`] after the load detects this in weights and parameters, but not in the potential of a neuron
+///   or an output.
 /// - **Waits:** the driver reads the pins a given number of times, then returns an error.
 ///
 /// # A time step
-/// Inputs that are sent before a tick act after that tick. At the second tick, neurons leak and fire; their spikes act
-/// after that tick. At the third tick, the outputs show these spikes. With N inputs and N neurons, a step takes 2 N + 4
-/// clock cycles of the chip, and N more for each event.
+/// The inputs sent before a tick act after that tick. At the second tick, neurons leak and fire, and then their spikes
+/// act. At the third tick, the outputs show these spikes. With N inputs and N neurons, a step takes 2 N + 4 clock
+/// cycles of the chip, and N more for each event.
 ///
 /// # What to know about the chip
 /// - After reset learning is on: at the first tick with `TARGET_VALID` the chip would wait for a target without end.
 ///   Therefore [`Programmed::run`] always writes [`ReckOnSettings::learning`].
-/// - A tick that comes before the last step is done stops the chip until a reset, although the pin `TIMING_ERROR_RDY`
+/// - If a tick comes before the last step is done, the chip stops until a reset, although the pin `TIMING_ERROR_RDY`
 ///   then says ready. [`ReckOnSample::step`] waits for this pin before the tick. After the tick the pin is low for only
 ///   2 N + 4 clock cycles, which a driver that reads its pins rarely would miss. Therefore the driver always sets the
-///   chip to send an answer in each step: the pin then stays low until the last byte of the answer is taken, and a step
+///   chip to send an answer in each step. The pin then stays low until the last byte of the answer is taken, and a step
 ///   without an answer is an error.
-/// - If `SAMPLE` falls while the chip learns and does not send an answer in each step, it goes on learning without end,
-///   through all weights.
-/// - Neurons are processed in pairs, up to the number of neurons, inputs or outputs, whichever is the largest. A pair
-///   that the network does not use fires at every step if its memory holds a threshold of 0. Therefore
+/// - If `SAMPLE` falls while the chip learns, and the chip is not set to send an answer in each step, it goes on
+///   learning without end, through all weights.
+/// - The chip processes neurons in pairs, up to the largest of three numbers: that of neurons, of inputs and of
+///   outputs. A pair that the network does not use fires at every step if its memory holds a threshold of 0. Therefore
 ///   [`Programmed::load`] writes all 128 pairs.
-/// - If the number of neurons is odd, the last one would never fire; the driver therefore tells the chip a number that
-///   is one higher.
+/// - If the number of neurons is odd, the last neuron would never fire. Therefore the driver gives the chip a number
+///   that is one higher.
 /// - A frame that announces more than one word to a register writes them all to the same register.
 /// - An input sent twice within a step counts once. Inputs that are sent after the last tick of a sample are lost.
 /// - Reset clears no memory.

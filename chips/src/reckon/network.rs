@@ -24,8 +24,8 @@ impl ReckOnPair {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnShared {
-    /// Left shifts that the chip applies to the weights from inputs, between neurons and to outputs, in this order; 0
-    /// to 7 each.
+    /// Left shifts that the chip applies to weights, 0 to 7 each: to the weights from inputs, between neurons and to
+    /// outputs, in this order.
     pub shifts: [u8; 3],
     /// Share of an output's potential that a time step keeps, in units of 1/128.
     pub keep: u8,
@@ -57,13 +57,15 @@ pub trait DescribeReckOn {
 /// A network with `IN` inputs, `N` neurons and `OUT` outputs, as constant data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReckOnNetwork<const IN: usize, const N: usize, const OUT: usize> {
-    /// Parameters of each pair of neurons, one entry for neurons `2 n` and `2 n + 1`: `N / 2` entries, rounded up.
+    /// Parameters of each pair of neurons. Entry `n` is for neurons `2 n` and `2 n + 1`. There are `N / 2` entries,
+    /// rounded up.
     pub pairs: &'static [ReckOnPair],
-    /// Weights from each input to all neurons.
+    /// Weights from each input to all neurons, with a row for each input.
     pub inputs: [[i8; N]; IN],
-    /// Weights from each neuron to all neurons; empty if the network is not recurrent.
+    /// Weights from each neuron to all neurons, with a row for each sending neuron; empty if the network is not
+    /// recurrent.
     pub recurrent: &'static [[i8; N]],
-    /// Weights from each neuron to all outputs.
+    /// Weights from each neuron to all outputs, with a row for each neuron.
     pub outputs: [[i8; OUT]; N],
     /// The parameters that all neurons share.
     pub shared: ReckOnShared,

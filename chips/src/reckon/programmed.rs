@@ -21,11 +21,12 @@ pub struct Programmed<'a, D, P> {
 const PAIRS: u16 = 128;
 
 impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
-    /// Writes a network, sets all pairs of neurons that it does not use to [`REST`](ReckOnPair::REST), and reads
-    /// everything back. Calls `progress` after each pair and each row.
+    /// Writes a network, and sets all pairs of neurons that the network does not use to [`REST`](ReckOnPair::REST).
+    /// Reads everything back. Calls `progress` after each pair and each row of weights.
     ///
-    /// **Time:** two transfers of 8 bytes for each 32-bit word. There are 512 words for the pairs, and one for each
-    /// four weights. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at 1 MHz.
+    /// **Time:** two transfers of 8 bytes, a write and a read, for each 32-bit word. The pairs take 512 words, and the
+    /// weights take one word for every four. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at 1
+    /// MHz.
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
@@ -73,7 +74,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// Compares the chip's memories with a network, including weights that learning may have changed.
     ///
     /// # Errors
-    /// Returns an error if the network does not fit or the bus failed, and [`ReadBack`](ChipError::ReadBack) at the
+    /// Returns an error if the network does not fit or the bus failed. Returns [`ReadBack`](ChipError::ReadBack) at the
     /// first difference; then reset the chip.
     pub fn verify(&mut self, network: &impl DescribeReckOn) -> Outcome<(), D, P> {
         check::<D::Error, P::Error>(network)?;
@@ -151,8 +152,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.chip.check_sync()
     }
 
-    /// Writes the registers and lets the chip run. Checks that the memories are closed: while they are, every read
-    /// returns the word of the last read that was made with open memories.
+    /// Writes the registers and lets the chip run. Then checks that the memories are closed. When they are closed,
+    /// every read returns the same word: the one that the last read of open memories returned.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range; nothing was changed then. Also returns an error if the bus

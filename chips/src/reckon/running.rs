@@ -18,8 +18,8 @@ pub struct ReckOnSample<'a, D, P> {
     pub(super) chip: &'a mut ReckOn<D, P>,
 }
 
-/// The options of a time step. By default a step does not count for the sample's label, and the chip does not learn in
-/// it.
+/// The options of a time step. In a step with the default options, no output gets a point for the label, and the chip
+/// does not learn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ReckOnStep<'a> {
@@ -34,7 +34,7 @@ pub struct ReckOnStep<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnTarget<'a> {
-    /// The number of the output that should be the highest. Given once in a sample.
+    /// The number of the output that should have the highest potential. Give this target once in a sample.
     Label(u8),
     /// The potential that each output should have.
     Potentials(&'a [i16]),
@@ -44,8 +44,8 @@ pub enum ReckOnTarget<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReckOnAnswer {
-    /// The number of the output that had the highest potential in the most steps with [`counts`](ReckOnStep::counts)
-    /// set; the lowest number if several outputs are equal.
+    /// The label: the number of the output with the most points, or the lowest such number if several outputs are
+    /// equal. In each step with [`counts`](ReckOnStep::counts) set, the output with the highest potential gets a point.
     Label(u8),
     /// The outputs' potentials; 0 for outputs that the network does not have.
     Potentials([i16; 16]),
@@ -91,8 +91,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         self.chip.send(input, false)
     }
 
-    /// Ends a time step and begins the next: waits until the chip is ready, ticks, and takes the chip's answer, which
-    /// proves that the chip has done the step. Returns the answer if the setting is
+    /// Ends a time step and begins the next one. Waits until the chip is ready, ticks, and takes the chip's answer,
+    /// which proves that the chip has done the step. Returns the answer if the setting is
     /// [`PotentialsEachStep`](ReckOnAnswers::PotentialsEachStep), otherwise `None`.
     ///
     /// # Errors
@@ -213,7 +213,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_taken { Ok(()) } else { Err(ChipError::Handshake(Phase::Acknowledge)) }
     }
 
-    /// Waits until the step is done, takes the bytes of the answer meanwhile, and returns the answer.
+    /// Takes the bytes of the chip's answer until the step is done, and returns the answer.
     fn finish(&mut self) -> Outcome<ReckOnAnswer, D, P> {
         let mut bytes = [0; 32];
         let mut taken = 0_usize;

@@ -1,14 +1,14 @@
 //! The registers of `ReckOn` that set its answers and its learning.
 
-/// The kind of answer that the chip sends, and when the driver returns answers. In any setting the chip sends an
-/// answer in every step, which proves that it did the step: one byte for a label, or two bytes for the potential of
-/// each output.
+/// The kind of answer that the chip sends, and when the driver returns an answer. With every setting the chip sends an
+/// answer in each step, which proves that the chip has done the step. An answer is one byte for a label, or two bytes
+/// for the potential of each output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnAnswers {
-    /// Returns a label after the sample: the number of the output that was the highest in the most steps with
-    /// [`counts`](super::ReckOnStep::counts) set.
+    /// Returns a label after the sample: the number of the output with the most points. In each step with
+    /// [`counts`](super::ReckOnStep::counts) set, the output with the highest potential gets a point.
     Label,
     /// Returns the outputs' potentials after the sample.
     Potentials,
@@ -31,10 +31,10 @@ impl ReckOnAnswers {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnTask {
-    /// A target is the number of the output that should be the highest. It is given in the first step of a sample that
-    /// learns.
+    /// A target is the number of the output that should have the highest potential. Give it in the first step of a
+    /// sample that learns.
     Classification,
-    /// A target is a potential for each output. It is given in every step that learns.
+    /// A target is a potential for each output. Give it in every step that learns.
     Regression,
 }
 
@@ -54,12 +54,14 @@ pub struct ReckOnLearning {
     pub traces: [u8; 3],
     /// Shift of the learning signal, 0 to 15.
     pub signal: u8,
-    /// Four potentials, ascending. They bound the five ranges for which [`slopes`](Self::slopes) has a value each.
+    /// Four potentials, ascending. They divide the range of the potential into five, and [`slopes`](Self::slopes) has a
+    /// value for each of the five.
     pub thresholds: [i16; 4],
-    /// Slopes for the five ranges of a neuron's potential, -16 to 15 each. They stand in for the derivative of firing.
+    /// A slope for each of the five ranges of a neuron's potential, -16 to 15. The slope stands in for the derivative
+    /// of firing.
     pub slopes: [i8; 5],
-    /// Right shift and left shift, 0 to 31 each, that set how likely a weight is to change: for the weights from
-    /// inputs, between neurons and to outputs, in this order.
+    /// Shifts that set how likely a weight is to change, as pairs of a right shift and a left shift, 0 to 31 each. The
+    /// three pairs are for the weights from inputs, between neurons and to outputs, in this order.
     pub rates: [(u8, u8); 3],
     /// Whether outputs are compared with targets directly, without the chip's hard sigmoid.
     pub is_linear: bool,

@@ -10,7 +10,7 @@ const READ: u32 = 1 << 31;
 pub(super) struct Address(pub(super) u32);
 
 impl Address {
-    /// Returns the address of one of the four words of a pair of neurons.
+    /// Returns the address of a 32-bit word of a pair of neurons. `quarter` selects one of the four words of the pair.
     pub(super) const fn pair(pair: u16, quarter: u32) -> Self {
         Self(1 << 28 | (pair as u32) << 2 | quarter)
     }

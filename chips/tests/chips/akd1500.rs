@@ -54,8 +54,8 @@ fn the_bytes_on_the_bus_are_golden() {
     chip.release().done();
 }
 
-/// Returns the transactions that `program` should make: writes and then reads, in blocks as the chip's documentation
-/// sizes them. `back` are the words that the reads return.
+/// Returns the transactions that `program` should make: the writes, then the reads, in blocks of the sizes in the
+/// chip's documentation. `back` has the words that the reads return.
 fn programming(address: u32, words: &[u32], back: &[u32]) -> Vec<[Transaction<u8>; 4]> {
     let mut blocks = Vec::new();
     let mut at = 0;
@@ -160,8 +160,8 @@ fn memory(words: impl Iterator<Item = u32>) -> Memory {
     Memory { words, ..Memory::default() }
 }
 
-/// Every byte of a write and of its reading back suffers each fault in turn: `program` returns an error, or memory is
-/// right. The memory held other words before.
+/// Disturbs each byte of a write and of its reading back with each fault in turn. `program` must return an error, or
+/// memory must be right. The next call, without a fault, must succeed.
 #[test]
 fn one_fault_on_the_bus_is_an_error_or_did_no_harm_and_the_next_call_mends_it() {
     let words: Vec<u32> = (0..61).map(|n| 0x0101_0101 * n + 0x8000_0001).collect();

@@ -41,7 +41,8 @@ fn events(addresses: impl IntoIterator<Item = u16>) -> impl Iterator<Item = Even
     addresses.into_iter().map(event)
 }
 
-/// Fills the memory of neurons with neurons of potential 0, without leak and far from their thresholds.
+/// Fills the memory of neurons with neurons whose potential is 0, without leak and with thresholds that they do not
+/// reach.
 fn at_rest(board: &TinyBoard) {
     board.pins().chip.neurons.fill(neuron(2047, 0, 0));
 }

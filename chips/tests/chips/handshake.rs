@@ -221,7 +221,7 @@ fn an_error_at_every_transfer_asks_for_a_reset() {
     }
 }
 
-/// A port whose input ACK can be held at a level, and whose output bus can be kept from being idle. Counts the reads of
+/// A port whose input ACK a test can hold at a level, and whose output bus a test can keep busy. Counts the reads of
 /// the output bus's REQ.
 struct Held<P> {
     port: P,
@@ -519,8 +519,9 @@ fn the_same_handshake_carries_odins_words() {
     assert_eq!(board.pins().chip.taken, [0x0_FFFF, 0x1_0705, 0x7F], "the probe comes first");
 }
 
-/// The upper bounds are the numbers of clock cycles that an earlier driver took, with one clock cycle for each pin
-/// read: 32.9, 136.4 and 518.5 for a spike, 15.5 for a virtual event, 11.6 for an output.
+/// The upper bounds are what an earlier driver took, in clock cycles of the chip, if each pin read takes one clock
+/// cycle. A spike took 32.9, 136.4 and 518.5 with 12, 64 and 256 neurons in use; a virtual event took 15.5; an output
+/// took 11.6.
 #[test]
 fn throughput_is_that_of_the_chip() {
     for (neurons, most) in [(12, 32.9), (64, 136.4), (256, 518.5)] {

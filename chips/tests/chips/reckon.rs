@@ -382,7 +382,8 @@ fn slopes_are_written_with_their_sign() {
     assert_eq!(slopes, [16, 31, 0, 5, 15]);
 }
 
-/// Faults of the port: levels at which `AERIN_ACK` and `OUT_REQ` are stuck, and a wrong number of bytes in an answer.
+/// Faults of the port: levels at which `AERIN_ACK` and `OUT_REQ` are stuck, and an answer with the wrong number of
+/// bytes.
 #[derive(Default)]
 struct Lines {
     acknowledge: Cell<Option<bool>>,

@@ -9,7 +9,7 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// The part of a chip's content that a test compares, and the calls of the driver before that comparison.
+/// A way to compare two chips: the function that reads the content to compare, and the calls of the driver before it.
 type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
@@ -27,9 +27,9 @@ fn whole_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (registers, memories.chain(outputs.map(|(_, word)| word)).collect())
 }
 
-/// Returns all registers, and the part of the memories that `verify` reads for [`NETWORK`]: the last quarter of each
-/// pair of neurons, and the first word of each row, which holds the weights to two neurons or one output. Leaves out
-/// potentials.
+/// Returns all registers, and the part of the memories that `verify` reads for [`NETWORK`]: the parameters of each pair
+/// of neurons, and the first word of each row of weights. This word holds the weights to two neurons or to one output.
+/// Leaves out potentials.
 fn network_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     let word = |row: u128| row & u128::from(u32::MAX);
     let rows = (0..256).map(|neuron| word(chip.recurrent_weights[neuron << 4]));
@@ -77,18 +77,18 @@ const NETWORK: ReckOnNetwork<1, 2, 1> = ReckOnNetwork {
     shared: ReckOnShared { shifts: [0; 3], keep: 110, resets_to_zero: true },
 };
 
-/// Number of words that loading [`NETWORK`] writes: four for each of 128 pairs of neurons, one for the input, and two
-/// for each of 256 neurons.
+/// Number of 32-bit words that loading [`NETWORK`] writes: four for each of 128 pairs of neurons, one for the input,
+/// and two for each of 256 neurons.
 const LOADED: u64 = 512 + 1 + 256 + 256;
 
 /// Compares all registers and memories, immediately after the access.
 const AT_ONCE: Comparison = (whole_content, |_| Ok(()));
-/// Compares only what the network needs, after `verify`, which notices reads that a fault turned into writes.
+/// Calls `verify`, which notices reads that a fault turned into writes. Then compares only what the network needs.
 const VERIFIED: Comparison = (network_content, |chip| chip.programmed()?.verify(&NETWORK));
 
 const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];
 
-/// Returns the positions at which the contents of two chips differ, with both words.
+/// Returns each position at which the contents of two chips differ, and the words of both chips there.
 fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usize, u128, u128)> {
     let words = |of: &(Vec<u32>, Vec<u128>)| {
         of.0.iter().map(|&word| u128::from(word)).chain(of.1.iter().copied()).collect::<Vec<_>>()
@@ -97,10 +97,10 @@ fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usi
     both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
 }
 
-/// Tries pairs of faults in an access: `some` random pairs whose faults are less than `reach` clock pulses apart and,
-/// if `all_in_first`, all pairs within the first frame. Leaves out pairs in which a fault lies in the frame of a
-/// register, which `is_register` recognises, or in the frame before it. Asserts that the access returns an error, or
-/// has the same effect as without faults; returns the number of pairs tried.
+/// Tries pairs of faults in an access. Tries `some` random pairs whose faults are less than `reach` clock pulses apart.
+/// If `all_in_first`, also tries all pairs within the first frame. Leaves out a pair if one of its faults lies in the
+/// frame of a register, which `is_register` recognises, or in the frame before. Asserts that the access returns an
+/// error, or has the same effect as without faults. Returns the number of pairs tried.
 fn pairs<T: PartialEq + std::fmt::Debug>(
     (some, all_in_first): (usize, bool),
     reach: u64,
@@ -173,8 +173,8 @@ fn a_lost_and_a_doubled_clock_within_an_access_are_an_error_or_right() {
     assert!(accesses((30, false)) > 500);
 }
 
-/// A clock pulse that is doubled before the second read turns this read into a write of 0. A pulse that is lost at the
-/// end of the read hides the shift. The driver must notice this pair of faults.
+/// The read of a weight must not become a write unnoticed. A clock pulse that is doubled before the second read turns
+/// this read into a write of 0. A pulse that is lost at the end of the read hides the shift.
 #[test]
 fn a_weight_that_is_read_is_not_written_where_it_ends() {
     let faults = [(5 * FRAME - 1, Doubled), (6 * FRAME - 1, Lost)];
@@ -183,8 +183,9 @@ fn a_weight_that_is_read_is_not_written_where_it_ends() {
     assert!(result.is_err());
 }
 
-/// If the header of a read of neurons loses its first bit, the chip instead writes an output's potential. The read
-/// then returns 0, which equals the word of neurons. The potential must stay 0.
+/// A fault that the driver cannot notice must do no harm. The header of a read of neurons loses its first bit, so that
+/// the chip writes the potential of an output instead. The read returns 0, which is also the correct word. The
+/// potential must stay 0.
 #[test]
 fn a_word_of_neurons_that_is_read_moves_no_output() {
     // All words are written, the sync is checked, and the first word is read.

@@ -21,8 +21,8 @@ type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;
 type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
 
-/// Number of SPI clock pulses in eight frames, within which a lost and a doubled pulse may cancel out before the driver
-/// checks. Such a pair can go unnoticed, because registers cannot be read back.
+/// Number of SPI clock pulses in eight frames. A lost and a doubled pulse that are closer than this may cancel out
+/// before the driver checks. Such a pair can go unnoticed, because registers cannot be read back.
 const CANCELLING: u64 = 320;
 /// Mask of the bits that hold a neuron's potential.
 const STATE: u128 = 0xFFF;
@@ -81,7 +81,7 @@ struct Known {
     registers: Option<TinyOdinRegisters>,
     fired: Vec<u8>,
     out: Vec<u8>,
-    /// Whether the chip ran in closed loop, in which the test does not predict the potentials.
+    /// Whether the chip ran in closed loop, so that the test cannot predict the potentials.
     is_stale: bool,
 }
 
@@ -172,7 +172,7 @@ impl Known {
     }
 }
 
-/// Counts of calls, errors and gatings.
+/// Numbers of calls, of errors and of gatings so far.
 #[derive(Debug, Default)]
 struct Tally {
     calls: u32,
@@ -373,7 +373,8 @@ fn running(
     }
 }
 
-/// Updates the expectations after the chip was gated. If the loop was closed, spikes and potentials are not compared.
+/// Updates what the test expects of a chip that was just gated. If the loop was closed, the test stops comparing spikes
+/// and potentials.
 fn finish(known: &mut Known) {
     if !known.is_open_loop() {
         known.fired.clear();

@@ -17,8 +17,8 @@ struct Neuron {
     rung: i32,
     /// Number of leaks that only this neuron receives after a spike.
     own: u16,
-    /// Weights from the previous layer: first those of its first neuron, one for each row of synapses of that neuron.
-    /// The bias and the weights from the neuron's own layer are separate.
+    /// Weights from the previous layer (without the bias and the neuron's own layer). A neuron of the previous layer
+    /// has one weight for each of its rows of synapses; those of its first neuron come first.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -31,8 +31,8 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Number of rungs that bring a neuron from the offset up to 0. `above` is the number of further rungs until the
-    /// neuron compares with its threshold.
+    /// The chip lowers a neuron at rest to `below` rungs below 0, and its threshold is `above` rungs higher than that
+    /// of the reference.
     below: u16,
     above: u16,
     leaks: Vec<Vec<u16>>,
@@ -155,8 +155,8 @@ impl Net {
     }
 }
 
-/// The network as the driver's `load` takes it. All rows of synapses are inputs, in open loop. The second field is the
-/// number of rows.
+/// The network in the form that the driver loads. All rows of synapses are inputs, in open loop. The second field is
+/// the number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

@@ -105,8 +105,8 @@ fn a_virtual_event_of_odin_has_its_sign_apart() {
     }
 }
 
-/// `before_step` returns the state that a time step turns into the given state: its potential is higher by the leak.
-/// If there is no such state, `before_step` returns `None`.
+/// A time step turns the state that `before_step` returns into the given state. If no state leads to the given state
+/// without firing, `before_step` returns `None`.
 #[test]
 fn before_a_time_step_a_neuron_of_odin_was_higher() {
     let neuron = |potential| OdinNeuron { threshold: 100, leak: 5, potential, ..OdinNeuron::REST };

@@ -142,7 +142,8 @@ fn a_step_under_way_takes_no_counts_and_no_second_trigger() {
     assert_eq!(written, expected, "one trigger, and no counts while it ran");
 }
 
-/// The accesses that fail are the trigger (3), the status (4) and the outputs (5); the next call returns the outputs.
+/// One access of a step fails: the trigger (access 3), the read of the status (4) or the read of the outputs (5). The
+/// next call of `step` must return the outputs.
 #[test]
 fn an_error_of_the_bus_loses_no_outputs() {
     for (number, triggers) in [(3, 2), (4, 1), (5, 1)] {

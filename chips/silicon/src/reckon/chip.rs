@@ -53,14 +53,14 @@ pub enum EventState {
     Wait,
     /// Searches for the next input or neuron that has an event.
     Count,
-    /// Applies an event to all neurons, one pair of neurons in every two clock cycles.
+    /// Applies an event to all neurons. A pair of neurons takes two clock cycles.
     Event,
     /// Updates the trace of an input whose number is higher than that of any neuron.
     Trace,
 }
 
-/// The state of two neurons, as one word of memory stores it. If a neuron was not updated since the sample began, its
-/// state counts as 0, whatever the memory holds.
+/// The state of a pair of neurons, as one word of memory stores it. If a neuron was not updated since the sample began,
+/// its state counts as 0, whatever the memory holds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
@@ -457,7 +457,7 @@ impl ReckOn {
         }
     }
 
-    /// Returns the number at which a time step ends its count: the highest number of a neuron, an input or an output.
+    /// Returns the highest number of a neuron, an input or an output. A time step of the chip counts up to this number.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }

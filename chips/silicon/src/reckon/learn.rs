@@ -30,8 +30,9 @@ struct Move<'a> {
 }
 
 impl Move<'_> {
-    /// Returns the new word of weights and its mask. For the index of a weight, `likely` returns a signed measure of
-    /// how likely the weight moves up or down, and whether the weight may move.
+    /// Returns the new word of weights, and a mask of the weights that change. For the index of a weight in the word,
+    /// `likely` returns a measure of how likely the weight rises (if positive) or falls (if negative), and whether the
+    /// weight may change at all.
     fn apply(&self, likely: impl Fn(usize) -> (i32, bool)) -> (u128, u128) {
         let (mut data, mut mask) = (0, 0);
         for n in 0..16 {
@@ -256,8 +257,9 @@ impl Learning {
     }
 }
 
-/// Returns a signed measure of how likely a weight moves up or down, and whether it may move. `n` is 0 for weights from
-/// inputs, 1 for weights from neurons; `lane` is the receiving neuron among sixteen.
+/// Returns a measure of how likely a weight changes, and whether the weight may change at all. The measure is positive
+/// if the weight would rise, and negative if it would fall. `n` is 0 for weights from inputs, 1 for weights from
+/// neurons. `lane` is the index of the receiving neuron among sixteen.
 fn likely(
     chip: &ReckOn,
     n: usize,
