@@ -27,7 +27,7 @@ pub struct Port {
 
 /// The outcome of [`Port::read`].
 pub enum Bytes {
-    /// Bytes were read, as many as the number says.
+    /// The given number of bytes were read.
     Some(usize),
     /// No bytes have arrived yet.
     NotYet,

@@ -1,4 +1,5 @@
-//! Tables of events as CSV, `tick,address,polarity`. Comment lines hold all other items, such as keyframes.
+//! Tables of events as CSV, with the columns `tick,address,polarity`. Comment lines hold all other items, such as
+//! keyframes.
 
 use super::{EventReader, EventWriter, EventsKind, Item, Known, Tally};
 use crate::error::At;

@@ -13,7 +13,7 @@ use std::io::{BufRead, Read};
 pub enum Item {
     /// A spike.
     Event {
-        /// The spike. Its sample is counted as in the file, samples that are not finite included.
+        /// The spike. Its sample index counts all samples, including samples that are not finite.
         event: Event,
         /// The time of the event's sample in µs, if events have times.
         time: Option<i64>,
