@@ -50,7 +50,8 @@ pub struct AdviseRequest {
     pub recordings: Vec<Recording>,
     /// Sample type of the codecs.
     pub sample: SampleType,
-    /// Largest RMSE that the control loop tolerates, in the signal's unit; a fifth of the standard deviation if `None`.
+    /// Largest RMSE that the control loop tolerates, in the signal's unit. `None` stands for a fifth of the signal's
+    /// standard deviation.
     pub max_rmse: Option<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
@@ -64,7 +65,7 @@ pub struct AdviseRequest {
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
-    /// Seconds after which the search stops; the advice then depends on the machine's speed.
+    /// Seconds after which the search stops. If it stops so, the advice depends on the machine's speed.
     pub seconds: Option<f64>,
     /// Seed of the search.
     pub seed: u64,

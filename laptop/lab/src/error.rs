@@ -1,5 +1,5 @@
-//! The library's errors, as values. A program matches on their kind; each front end (command line, Python, web page)
-//! words them with its own spelling of the settings.
+//! The library's errors, as values. A program matches on an error's kind. Each front end (command line, Python, web
+//! page) formats errors with its own spelling of the settings.
 
 use crate::events::EventsKind;
 #[cfg(feature = "frames")]
@@ -406,7 +406,7 @@ impl From<io::Error> for Error {
     }
 }
 
-/// Implements the conversions from other libraries' errors to [`ErrorKind::Other`], which keeps their messages.
+/// Implements the conversions from other libraries' errors to [`ErrorKind::Other`]. The messages are kept.
 macro_rules! foreign {
     ($($(#[$when:meta])* $error:ty),* $(,)?) => {$(
         $(#[$when])*

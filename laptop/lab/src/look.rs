@@ -35,9 +35,9 @@ pub struct ChannelSummary {
     pub bandwidth: Option<f64>,
     /// Percentage of samples that have the lowest or the highest value and stand in runs of three or more.
     pub clipped: f64,
-    /// Lowest and highest sample while the channel is quiet; `None` if it is always or never quiet.
+    /// Lowest and highest sample while the channel is quiet. `None` if the channel is always or never quiet.
     pub rest: Option<[f64; 2]>,
-    /// Lowest and highest sample while the channel is not quiet; `None` if it is always or never quiet.
+    /// Lowest and highest sample while the channel is not quiet. `None` if the channel is always or never quiet.
     pub flight: Option<[f64; 2]>,
     /// Percentage of samples during which the channel is quiet.
     pub resting: f64,
@@ -173,8 +173,8 @@ fn deviation(values: &[f64]) -> f64 {
 }
 
 /// Estimates the standard deviation of the noise from second differences, as the tenth percentile of all windows. The
-/// second differences of a slow signal are near 0. The standard deviation of the second differences of white noise is
-/// √6 times that of the noise.
+/// second differences of a slow signal are near 0. The second differences of white noise have √6 times the standard
+/// deviation of the noise.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));

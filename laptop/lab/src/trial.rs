@@ -14,8 +14,8 @@ use std::ops::Range;
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// The samples' times in µs; empty if no times were recorded. Where the recorder's clock restarted, the later
-    /// segment is moved to follow the earlier one after a usual step.
+    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, the times after
+    /// the restart are shifted to follow the times before it after a usual step.
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,

@@ -225,8 +225,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     channels: usize,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Whether each channel has a value: from the start if keyframes resynchronize the code, otherwise from the
-    /// channel's first event on.
+    /// Whether each channel has a value. If keyframes resynchronize the code, all channels have a value from the start.
+    /// Otherwise, a channel has a value from its first event on.
     has_fired: [bool; N],
     /// Tick one sample period after the last received event, at which the event's sample is over.
     end: Option<Tick>,

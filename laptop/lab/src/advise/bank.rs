@@ -32,7 +32,7 @@ pub struct BankAdvice {
     banks: Vec<Bank>,
     /// The schemes that cannot serve all channels, each with the reason.
     others: Vec<String>,
-    /// The names of the channels that are unfit for tuning; each channel's own advice says why.
+    /// The names of the channels that are unfit for tuning. The [`Advice`] on each such channel gives the reason.
     left_out: Vec<String>,
     /// Remarks on what neither the log nor the simulator can show.
     unknown: Vec<String>,

@@ -117,8 +117,8 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of this code's attitude errors to those of `other`, over the entries of `everywhere` in
-    /// which both codes have an error.
+    /// Returns the mean ratio of this code's attitude errors to the errors of the code `other`. Only entries of
+    /// `everywhere` in which both codes have an error count.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

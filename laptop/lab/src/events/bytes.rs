@@ -17,7 +17,7 @@ pub(super) struct Reader<D> {
 pub(super) struct Hooks<D> {
     /// Returns an error if the bytes read so far belong to a format other than the decoder's.
     pub check: fn(&D) -> Result<()>,
-    /// Sets the time of the following events, for a format whose events have none.
+    /// Sets the time of the following events, for a format whose events have no times.
     pub set_arrival: Option<fn(&mut D, Tick)>,
 }
 

@@ -59,7 +59,7 @@ pub enum Item {
 pub enum Known {
     /// The value comes from a keyframe.
     Keyframe,
-    /// The value equals that of the sender's own decoder, bit for bit.
+    /// The value equals the value of the sender's own decoder, bit for bit.
     Exact,
     /// The value may differ from the sender's: events were lost since the last keyframe, or no keyframe has come yet.
     Estimate,

@@ -43,7 +43,7 @@ enum Kind {
 }
 
 impl Preview {
-    /// Opens the preview's file, `.png` or `.gif`. Each of `thresholds`, in grey levels, gets a panel; `last` is the
+    /// Opens the preview's file, `.png` or `.gif`. Each of `thresholds`, in grey levels, gets a panel. `last` is the
     /// index of the last frame to draw.
     ///
     /// # Errors

@@ -102,7 +102,8 @@ impl<R: Read> Y4m<R> {
     }
 }
 
-/// Expands brightness of limited range, 16 to 235, to full range; values outside become black or white.
+/// Expands brightness from the limited range, 16 to 235, to the full range. Values outside the limited range become
+/// black or white.
 fn full_range(limited: u8) -> u8 {
     const BLACK: u16 = 16;
     const STEPS: u16 = 219;

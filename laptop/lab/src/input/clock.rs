@@ -148,7 +148,7 @@ impl Clock {
         self.gaps.count
     }
 
-    /// Returns the number of steps back in time, without those at which the clock restarted.
+    /// Returns the number of steps back in time. Restarts of the clock are not counted.
     pub fn steps_back(&self) -> u64 {
         self.backward.count
     }
@@ -296,7 +296,7 @@ fn is_disordered(times: &[i64]) -> bool {
 /// Returns the median of the steps forward, in µs, and the number of samples for each step forward. This number is 1
 /// unless times repeat.
 ///
-/// Returns `None` if no time is later than the one before, or if times repeat and fewer than three steps go forward.
+/// Returns `None` if no step goes forward, or if times repeat and fewer than three steps go forward.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));

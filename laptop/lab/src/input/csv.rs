@@ -367,8 +367,8 @@ struct Rows {
 }
 
 impl Rows {
-    /// Makes a reader of the rows in `start` and of those in `input`. Comment lines are counted in `count`. `above` is
-    /// the number of lines in `start` that are not in the file.
+    /// Makes a reader of the rows in `start` and then in `input`. Comment lines are counted in `count`. `above` is the
+    /// number of lines in `start` that are not in the file.
     fn new(
         start: Start,
         input: impl Read + 'static,

@@ -61,17 +61,18 @@ impl Deref for InputOptions {
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
-    /// Columns of a CSV table, such as `gyro_x`, or `all`; for a log, fields as `TOPIC.FIELD`.
+    /// Columns of a table by name, such as `gyro_x`, or `all`. For a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
     /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a log's messages have the time
     /// at which they were recorded.
     pub time: Option<String>,
-    /// Unit of the time column; by default taken from its name, such as `time (us)` or `stamp_ns`, or from its values.
+    /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
+    /// `stamp_ns`, or from the column's values.
     pub time_unit: Option<TimeUnit>,
-    /// Delimiter of columns: `,` `;` `|` `tab` `space`; by default found in the header.
+    /// Delimiter of columns: `,` `;` `|` `tab` `space`. By default, the delimiter is found in the header.
     pub delimiter: Option<Delimiter>,
-    /// Topic of a log; the suffix `:1` stands for the second instance of a sensor.
+    /// Topic of a log. The suffix `:1` stands for the second instance of a sensor.
     pub topic: Option<String>,
     /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,

@@ -32,7 +32,7 @@ const OTHERS: [(&[u8], &str); 12] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8; text in
+/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8. Text in
 /// other encodings that extend ASCII passes unchanged. `name` is the file's name in errors.
 ///
 /// # Errors
@@ -139,8 +139,8 @@ mod encoding {
     }
 }
 
-/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them;
-/// the tables of all encodings would make up a tenth of the page.
+/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them.
+/// The conversion tables of all encodings would make up a tenth of the page.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

@@ -33,7 +33,8 @@ room!(CaptureKind, Capture);
 
 /// A ring buffer on a board, read by polling.
 pub trait Channel {
-    /// Reads the bytes that are available, up to the buffer's length; returns 0 if there are none.
+    /// Reads the bytes that are available, up to the buffer's length. Returns the number of bytes read, 0 if none are
+    /// available.
     ///
     /// # Errors
     /// Returns an error if the board or the probe was disconnected.

@@ -22,8 +22,8 @@ pub struct Header {
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters,
-/// but others that were derived from them.
+/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters.
+/// It uses parameters that were derived from them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =

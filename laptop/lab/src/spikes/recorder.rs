@@ -76,7 +76,7 @@ pub struct Recorder {
     period: Option<f64>,
     /// Samples that are not written yet.
     pending: VecDeque<Pending>,
-    /// Number of finite samples written so far. Encoders number samples by counting the finite ones.
+    /// Number of finite samples written so far. Encoders number samples by counting finite samples.
     finite: u64,
     /// Events of samples that may still get more events.
     events: VecDeque<Event>,

@@ -22,7 +22,8 @@ pub struct Figures {
     pub snr: f64,
     /// The largest error, in the signal's unit.
     pub worst: f64,
-    /// Delay of the decoded values in samples, besides the code's latency: the lag with the highest correlation.
+    /// Delay of the decoded values in samples, in addition to the code's latency. It is the lag at which signal and
+    /// decoded values correlate most.
     pub lag: i64,
     /// RMSE after the error was low-pass filtered at a frequency limit, if a limit was given.
     pub below: Option<f64>,

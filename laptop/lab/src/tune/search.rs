@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 pub struct Budget<'a> {
     /// Maximum number of settings to score.
     pub evaluations: usize,
-    /// Time at which to stop; the result then depends on the machine's speed.
+    /// Time at which the search stops. If it stops so, the result depends on the machine's speed.
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
@@ -60,7 +60,7 @@ const PARENTS: (usize, usize) = (10, 100);
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest maximum that [`Run::tighten`] sets.
 const ROOM: usize = 16;
-/// Value of settings that cannot be built, worse than all others.
+/// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
 
 /// Searches the best settings for a problem within a budget.
@@ -248,9 +248,9 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample, to twice the number that
-    /// the signal needs, because a higher maximum costs time. The maximum stays at [`ROOM`] or above, because held-out
-    /// blocks and other recordings may jump further.
+    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample. The parameter becomes
+    /// twice the number that the signal needs, because a higher maximum costs time. It stays at [`ROOM`] or above,
+    /// because held-out blocks and other recordings may jump further.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;

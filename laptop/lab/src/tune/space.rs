@@ -80,7 +80,7 @@ pub(crate) struct Inner {
 }
 
 impl Space {
-    /// Makes the space of those parameters of the scheme that `fixed` leaves open.
+    /// Makes the space of the scheme's parameters that `fixed` leaves open.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {
