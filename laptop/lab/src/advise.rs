@@ -65,7 +65,7 @@ pub struct AdviseRequest {
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
-    /// Seconds after which the search stops. If it stops so, the advice depends on the machine's speed.
+    /// Seconds after which the search stops. If this limit ends the search, the advice depends on the machine's speed.
     pub seconds: Option<f64>,
     /// Seed of the search.
     pub seed: u64,

@@ -40,9 +40,9 @@ pub const CHUNK: usize = 8192;
 /// The file of a recording, and options for reading the file.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// A table, a log, or `-` for a table on standard input. Files may be compressed. The formats of tables are CSV, JSON
-    /// lines, Parquet, and `NumPy`'s `.npy` and `.npz`. The formats of logs are PX4's `ULog`, `ArduPilot`'s `.bin` and
-    /// `.log`, telemetry `.tlog`, bags of ROS 1 and 2, MCAP, and Betaflight's blackbox.
+    /// A table, a log, or `-` for a table on standard input. Files may be compressed. The formats of tables are CSV,
+    /// JSON lines, Parquet, and `NumPy`'s `.npy` and `.npz`. The formats of logs are PX4's `ULog`, `ArduPilot`'s `.bin`
+    /// and `.log`, telemetry `.tlog`, bags of ROS 1 and 2, MCAP, and Betaflight's blackbox.
     pub input: PathBuf,
     /// The channels to read.
     pub channel: ChannelOptions,

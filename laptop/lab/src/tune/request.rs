@@ -39,7 +39,7 @@ pub struct TuneRequest {
     pub below: Option<f64>,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
-    /// Seconds after which the search stops. If it stops so, the result depends on the machine's speed.
+    /// Seconds after which the search stops. If this limit ends the search, the result depends on the machine's speed.
     pub seconds: Option<f64>,
     /// Seed of the search: the same seed and number of settings give the same result on every machine.
     pub seed: u64,

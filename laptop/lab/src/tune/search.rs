@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 pub struct Budget<'a> {
     /// Maximum number of settings to score.
     pub evaluations: usize,
-    /// Time at which the search stops. If it stops so, the result depends on the machine's speed.
+    /// Time at which the search stops. If this limit ends the search, the result depends on the machine's speed.
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
