@@ -26,13 +26,13 @@ use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
 
 /// Largest phase, in degrees, that a code's latency may cost a control loop at its bandwidth: a third of a phase margin
-/// of 60°. In the flights of `docs/loop.md` the drone strays with codes that cost 18°, and is lost with those that cost
-/// 80°.
+/// of 60°. In the flights of `docs/loop.md`, the drone strays with codes that cost 18°, and is lost with codes that
+/// cost 80°.
 const PHASE: f64 = 20.0;
 
 /// Largest share of a log's samples at which the code step-forward may fall behind the signal. In the flights of
-/// `docs/loop.md` a threshold that falls behind at 0.9 % of the samples flies; one that does at 3.9 % loses steps and
-/// flips.
+/// `docs/loop.md` the drone flies well if the code falls behind at 0.9 % of the samples. If it falls behind at 3.9 %,
+/// the code loses steps, and the drone flips.
 const STEEP: f64 = 0.02;
 
 /// Smallest sample rate that a control loop can work with, in multiples of the loop's bandwidth. The Nyquist rate, a
@@ -46,25 +46,26 @@ fn borne(bandwidth: f64, rate: f64) -> f64 {
 
 /// The recordings to advise on, and limits on what a scheme may cost, for [`advise`].
 pub struct AdviseRequest {
-    /// The recordings, one for each channel; each channel is also judged by itself.
+    /// The recordings, one for each channel. Each channel gets an [`Advice`] of its own.
     pub recordings: Vec<Recording>,
     /// Sample type of the codecs.
     pub sample: SampleType,
-    /// Largest RMSE that the control loop tolerates, in the signal's unit; a fifth of the standard deviation if `None`.
+    /// Largest RMSE that the control loop tolerates, in the signal's unit. `None` stands for a fifth of the signal's
+    /// standard deviation.
     pub max_rmse: Option<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
-    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate.
-    /// Codes that are too late for the loop, or that cannot keep up with the signal, are not advised.
+    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
+    /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
     pub loop_bandwidth: Option<f64>,
-    /// Share of frames that the link loses, in percent, 0 to 10. With a control loop, a code is not advised if a
-    /// simulated drone flew badly on it at this loss.
+    /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, a code is not advised
+    /// with which a simulated drone flew badly at this loss.
     pub frame_loss: f64,
     /// Processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
-    /// Seconds after which the search stops; the advice then depends on the machine's speed.
+    /// Seconds after which the search stops. If this limit ends the search, the advice depends on the machine's speed.
     pub seconds: Option<f64>,
     /// Seed of the search.
     pub seed: u64,
@@ -98,14 +99,14 @@ impl AdviseRequest {
 #[derive(Debug, Serialize)]
 pub struct Advice {
     look: ChannelSummary,
-    /// The reason that no scheme is advised, if none is.
+    /// The reason that no scheme is advised; `None` if a scheme is advised.
     objection: Option<String>,
     max_rmse: f64,
-    /// The schemes that reach the allowed RMSE, the advised one first.
+    /// The schemes that reach the allowed RMSE. The advised scheme comes first.
     reaching: Vec<Candidate>,
-    /// The schemes that miss the allowed RMSE or break a limit, each with the reason.
+    /// For each scheme that misses the allowed RMSE or breaks a limit, its name and the reason.
     others: Vec<String>,
-    /// The schemes among `others` that flew badly in the simulator; they are the same for every channel.
+    /// The schemes among `others` with which a simulated drone flew badly. They are the same for every channel.
     #[serde(skip)]
     unflown: Vec<String>,
     /// Whether a search stopped before it had scored all its settings.
@@ -118,7 +119,7 @@ pub struct Advice {
     sample: SampleType,
     #[serde(skip)]
     core: String,
-    /// Whether there are other channels, which must all use the same scheme as this one.
+    /// Whether the request has several channels, which must all use the same scheme.
     #[serde(skip)]
     is_one_of_many: bool,
 }
@@ -165,7 +166,7 @@ struct Candidate {
     scheme: Option<Scheme>,
 }
 
-/// Describes each recording, tunes all schemes on it, and ranks those that suit it.
+/// Describes each recording, tunes all schemes on it, and ranks the schemes that suit the recording.
 ///
 /// # Errors
 /// Returns an error if a recording is too short for a part of it to be held out, or if a field of the request is
@@ -219,7 +220,8 @@ impl Advice {
     }
 
     fn new(request: &AdviseRequest, recording: &Recording) -> Result<Self> {
-        /// Default RMSE as a share of the standard deviation: a signal-to-noise ratio of 14 dB.
+        /// Default of the allowed RMSE, as a share of the signal's standard deviation. The share gives a
+        /// signal-to-noise ratio of 14 dB.
         const PART: f64 = 0.2;
         let look = ChannelSummary::of(recording);
         let objection = look.objection().filter(|_| look.verdict != Verdict::Clipped);
@@ -260,8 +262,8 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme briefly, and adds it to the schemes that reach or miss the allowed RMSE. A scheme that flew badly
-    /// in the simulator is not tuned, and only the reason is added.
+    /// Tunes a scheme briefly, and adds it to the schemes that reach or miss the allowed RMSE. A scheme with which the
+    /// simulated drone flew badly is not tuned; only this reason is added.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -358,8 +360,8 @@ impl Advice {
         Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
     }
 
-    /// Returns the low-pass filter that came before the encoder when the scheme flew in the simulated control loop.
-    /// Returns `None` if no loop bandwidth was given, or if the filter is not possible at the recording's sample rate.
+    /// Returns the low-pass filter that stood before the scheme's encoder in the simulated flights. Returns `None` if
+    /// no loop bandwidth was given, or if the filter is not possible at the recording's sample rate.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;
@@ -372,7 +374,8 @@ impl Advice {
         own.map(|own| &own.row)
     }
 
-    /// Sorts the schemes by bytes a second, or by events if the rate is unknown; the fewest come first.
+    /// Sorts the schemes by bytes a second, or by number of events if the sample rate is unknown. The lowest number
+    /// comes first.
     fn rank(&mut self) {
         let cost =
             |one: &Candidate| one.link_bytes_per_second.unwrap_or(one.row.whole.spikes as f64);
@@ -495,7 +498,7 @@ impl Advice {
 }
 
 /// Returns the number of bytes that a trial's events take on the crate's link, in full frames. A scheme whose decoder
-/// needs keyframes sends one a second.
+/// needs keyframes sends one keyframe a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.

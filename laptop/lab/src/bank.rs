@@ -5,8 +5,8 @@ use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use catalogue::run::{Codec, Event, Settings};
 
-/// Codecs of one scheme, one for each channel. Neurons are numbered through: those of channel 1 follow those of channel
-/// 0.
+/// Codecs of one scheme, one for each channel. Neurons are numbered across all channels: the neurons of channel 1
+/// follow the neurons of channel 0.
 pub struct Bank {
     codecs: Vec<Codec>,
     neurons: u16,

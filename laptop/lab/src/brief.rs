@@ -1,9 +1,9 @@
-//! Formats parameters in short, for tables and pictures.
+//! Formats parameters in a short form, for tables and pictures.
 
 use catalogue::run::Value;
 
-/// Formats parameters as `threshold=0.1, start=0.001`. Taps are given by their number and sum, other lists of over four
-/// numbers by their ends and length.
+/// Formats parameters as `threshold=0.1, start=0.001`. Taps are shortened to their number and sum. Any other list of
+/// more than four numbers is shortened to its first number, last number and length.
 pub fn brief(parameters: &[(&'static str, Value)]) -> String {
     let words = parameters.iter().map(|(key, value)| match list(value) {
         Some(taps) if *key == "taps" => {

@@ -1,4 +1,4 @@
-//! A choice of scheme, sample type and parameters, and its TOML file, which tuning writes.
+//! A choice of scheme, sample type and parameters. Reads and writes the choice as a TOML file, as tuning does.
 
 use crate::error::At;
 use crate::scheme::Scheme;
@@ -17,7 +17,7 @@ pub struct Coding {
     pub scheme: Scheme,
     /// The sample type.
     pub sample: SampleType,
-    /// The parameters that were set; the others have their defaults or come from a recording.
+    /// The parameters that were set. All other parameters have their defaults or come from a recording.
     pub asked: Asked,
 }
 
@@ -105,8 +105,8 @@ impl Coding {
         Ok(coding)
     }
 
-    /// Builds the scheme once, to report invalid values with their lines in the file. Does nothing if a parameter is
-    /// left to options or to a recording.
+    /// Builds the scheme once, to report invalid values with their lines in the file. Does nothing if a parameter must
+    /// still come from the options or from a recording.
     fn built_alone(&self) -> Result<()> {
         let Self { scheme, sample, asked } = self;
         let is_open = |own: &Parameter| {
@@ -152,7 +152,7 @@ impl Coding {
     }
 }
 
-/// Converts a TOML value to a value of `parameter`; `None` for a flag that is off.
+/// Converts a TOML value to a value of `parameter`. Returns `None` if the parameter is a flag and the value is `false`.
 fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>> {
     let number = |value: &DeValue| -> Result<f64> {
         let number = match value {

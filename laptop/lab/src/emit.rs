@@ -29,7 +29,7 @@ pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
     Ok(emit::toml(comments, coding.scheme, &settings(coding)?))
 }
 
-/// Completes a coding's parameters to settings; an error if a parameter must be found in a signal.
+/// Completes a coding's parameters to settings. Returns an error if a parameter must be found in a signal.
 fn settings(coding: &Coding) -> Result<Settings> {
     let Coding { scheme, sample, asked } = coding;
     let past = vec![0.0; scheme.looks_back(asked)];
@@ -50,8 +50,8 @@ pub struct Codec {
     pub coding: Coding,
 }
 
-/// Writes a crate into a new directory that builds a C library of exactly these codecs, with their parameters in flash.
-/// The crate depends on the checkout at `spikewire`, or on the published crates if `None`.
+/// Writes a crate that builds a C library of these codecs, with their parameters in flash. The crate is written into
+/// the new directory `directory`. It depends on the checkout at `spikewire`, or on the published crates if `None`.
 ///
 /// # Errors
 /// Returns an error if a parameter is missing or invalid, if the library has no such scheme, if two codecs share a
@@ -73,8 +73,9 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     write(directory, "codecs", &files, spikewire).map_err(unwritten)
 }
 
-/// Writes a crate into a new directory that builds a C library of sender and receiver of each flight, under the name
-/// given with the flight. The crate depends on the checkout at `spikewire`, or on the published crates if `None`.
+/// Writes a crate that builds a C library with a sender and a receiver for each flight, named as given with the flight.
+/// The crate is written into a new directory. It depends on the checkout at `spikewire`, or on the published crates if
+/// `None`.
 ///
 /// # Errors
 /// Returns an error if a scheme has no constant, if two flights share a name, or if the directory exists.
@@ -134,8 +135,8 @@ fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Const
     )
 }
 
-/// Writes a crate into a new directory: the manifest, a library that contains the module `module`, and `files`, each
-/// given by path and text.
+/// Writes a crate into a new directory: its manifest, a library with the module `module`, and `files`. Each file is
+/// given by its path and its text.
 fn write(
     directory: &Path,
     module: &str,

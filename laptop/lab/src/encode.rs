@@ -52,22 +52,22 @@ pub fn encode(
 /// A function that opens the recording at its start, each time it is called.
 pub(crate) type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
 
-/// What a writer of spikes is made from.
+/// Properties of a recording that a writer of spikes needs at its start.
 pub(crate) struct Start<'a> {
     pub header: &'a Header,
     /// Names of the channels.
     pub names: Vec<&'a str>,
     /// Whether the samples have times.
     pub is_timed: bool,
-    /// Number of samples from which the usual step was taken.
+    /// Number of first samples from which the usual time between samples was measured.
     pub first: usize,
-    /// Returns the smallest and largest sample of each channel, after a pass over the recording.
+    /// Reads the whole recording, and returns the smallest and largest sample of each channel.
     pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,
 }
 
 /// The outcome of encoding a recording.
 pub(crate) struct Encoded {
-    /// The output, still to be finished.
+    /// The output, which the caller must finish.
     pub output: Output,
     /// Names of the channels.
     pub names: Vec<String>,
@@ -75,7 +75,7 @@ pub(crate) struct Encoded {
     pub spikes: Vec<u64>,
     pub summary: Summary,
     pub clock: Clock,
-    /// Notes of the reader, and then those of the encoder, a line each.
+    /// Notes of the reader, followed by notes of the encoder, a line each.
     pub notes: Vec<Words>,
 }
 
@@ -102,7 +102,8 @@ fn encode_to(
     Ok((encoded.output, encoded.notes))
 }
 
-/// Encodes channels of a recording to the writer that `write` makes, once recording and parameters are known to be valid.
+/// Encodes channels of a recording to the writer that `write` makes. The writer is made once recording and parameters
+/// are known to be valid.
 ///
 /// # Errors
 /// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.
@@ -205,7 +206,7 @@ pub(crate) fn encode_from(
     Ok(Encoded { output, names, spikes, summary, clock, notes })
 }
 
-/// Reads the start of a recording: at least `enough` finite samples, or all samples if fewer are finite.
+/// Reads the start of a recording until `enough` samples are finite, or to the end of the recording.
 fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     let (mut all, mut chunk) = (Chunk::default(), Chunk::default());
     let mut finite = 0;

@@ -1,5 +1,5 @@
-//! The library's errors, as values. A program matches on their kind; each front end (command line, Python, web page)
-//! words them with its own spelling of the settings.
+//! The library's errors, as values. A program matches on an error's kind. Each front end (command line, Python, web
+//! page) formats errors with its own spelling of the settings.
 
 use crate::events::EventsKind;
 #[cfg(feature = "frames")]
@@ -103,12 +103,12 @@ pub enum ErrorKind {
     Open(io::Error),
     /// A file, stream or device cannot be read or written.
     Io(io::Error),
-    /// An error of a library that this one uses, with that library's message.
+    /// An error of another library that this library uses, with the other library's message.
     Other(Box<dyn error::Error + Send + Sync>),
 }
 
-/// Implements the conversions from `$kinds`, an enum of a module's error kinds, to [`Error`], by way of a variant of
-/// [`ErrorKind`].
+/// Implements the conversions from `$kinds`, the error kinds of one module, to [`Error`]. The kind becomes the variant
+/// `$variant` of [`ErrorKind`].
 macro_rules! room {
     ($kinds:ty, $variant:ident) => {
         impl From<$kinds> for $crate::Error {
@@ -185,7 +185,7 @@ impl Error {
         }
     }
 
-    /// Removes the setting and its value, for a front end that has named them already.
+    /// Removes the setting at fault from the error, for a front end that has already named the setting and its value.
     #[must_use]
     pub fn without_subject(self) -> Self {
         Self { parameter: None, ..self }
@@ -215,7 +215,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the error is a broken pipe: the program that read the output closed it.
+    /// Returns whether the error is a broken pipe, because the program that read the output has closed it.
     pub fn is_closed_pipe(&self) -> bool {
         matches!(&*self.kind, ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -406,7 +406,7 @@ impl From<io::Error> for Error {
     }
 }
 
-/// Implements the conversions from other libraries' errors to [`ErrorKind::Other`], which keeps their messages.
+/// Implements the conversions from other libraries' errors to [`ErrorKind::Other`]. The messages are kept.
 macro_rules! foreign {
     ($($(#[$when:meta])* $error:ty),* $(,)?) => {$(
         $(#[$when])*

@@ -8,7 +8,8 @@ use crate::tune::RequestKind;
 use catalogue::run::{SampleType, Settings};
 use std::fmt::Write;
 
-/// A channel's range, resolution, and numbers of samples that the sample type cannot hold or the code cannot reach.
+/// Statistics of a channel: the range, the resolution, the number of samples that the sample type cannot hold, and the
+/// number of samples that the code cannot reach.
 pub struct Fit {
     scheme: Scheme,
     sample: SampleType,
@@ -67,7 +68,8 @@ impl Fit {
     }
 
     fn write(&self, notes: &mut String, settings: &Settings, spikes: u64) -> std::fmt::Result {
-        /// Fewest quantisation steps in a signal's range. A signal of fewer steps is mostly rounding noise.
+        /// Smallest number of quantisation steps that a signal's range should span. A signal that spans fewer steps is
+        /// mostly rounding noise.
         const STEPS: f64 = 16.0;
         let Self { sample, min, max, samples, saturated, .. } = *self;
         if samples == 0 {
@@ -109,19 +111,19 @@ impl Fit {
     }
 }
 
-/// Returns the threshold, if the code is one that spikes on changes.
+/// Returns the threshold if the code spikes on changes, otherwise `None`.
 fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
     settings.number("threshold").ok().filter(|_| scheme.info().has_first_value())
 }
 
-/// Returns a sentence that says how many samples the sample type clamped; `None` if `count` is 0.
+/// Returns a sentence which says that the sample type clamped `count` samples, or `None` if `count` is 0.
 pub fn cut(sample: SampleType, count: u64) -> Option<String> {
     let (low, high) = sample.range();
     (count > 0)
         .then(|| format!("{count} samples were cut to the range of {sample}, {low} to {high}"))
 }
 
-/// Returns a sentence that says which parameters the sample type rounded; `None` if it rounded none.
+/// Returns a sentence that names the parameters which the sample type rounded, or `None` if it rounded no parameter.
 pub fn rounding(settings: &Settings) -> Option<String> {
     let (mut words, mut lists) = (Vec::new(), Vec::new());
     for (name, asked) in &settings.rounded {
@@ -142,7 +144,8 @@ pub fn rounding(settings: &Settings) -> Option<String> {
     (!words.is_empty()).then(|| format!("in {}, {}", settings.sample, words.join(", ")))
 }
 
-/// Adds a reason to an error about settings, if the sample type cannot hold the steps of the column `values`.
+/// Adds the reason to an error about settings if the sample type cannot hold the steps from sample to sample in
+/// `values`.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

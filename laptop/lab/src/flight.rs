@@ -1,4 +1,4 @@
-//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the frames of its link to
+//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the flight's link frames to
 //! values.
 
 use crate::Result;
@@ -31,8 +31,8 @@ impl Coding {
     }
 }
 
-/// Makes a [`Flight`] of tuned channels, each with its name, scheme and settings, for samples of this type and rate.
-/// The flight sends 20 keyframes a second.
+/// Makes a [`Flight`] of tuned channels, each with its name, scheme and settings, for samples of the type `sample` at
+/// `rate` samples a second. The flight sends 20 keyframes a second.
 ///
 /// # Errors
 /// Returns an error if there are no channels, if they differ in scheme or in a parameter that is not a plain number,
@@ -99,7 +99,7 @@ pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     own
 }
 
-/// A recording as the flight's sender reads it: in the sensor's counts, and filtered.
+/// A recording whose samples are converted to the sensor's counts and filtered, as in the flight's sender.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,
@@ -144,7 +144,7 @@ impl Source for Sampled<'_> {
 /// Makes the receiver of a flight and passes it to `then`. The decoded values are in the channels' units.
 ///
 /// # Errors
-/// Returns an error if `then` returns one, or if the flight's settings make no receiver.
+/// Returns an error if `then` returns an error, or if no receiver can be made with the flight's settings.
 pub fn with_receiver<'a>(
     flight: &'a Flight,
     then: impl FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a,

@@ -1,5 +1,5 @@
-//! The library of the laptop programs: reads recordings, and makes spikes, scores, parameters, advice, pictures and
-//! networks of them.
+//! The library of the laptop programs. Encodes recordings to spikes, scores codes, tunes parameters, gives advice,
+//! draws pictures, and puts trained networks on chips.
 //!
 //! The library has no command line and prints nothing. The program `spikewire` and the Python bindings are built on it.
 

@@ -19,7 +19,7 @@ pub struct ChannelSummary {
     pub seconds: Option<f64>,
     /// Sample rate in Hz, if known.
     pub rate: Option<f64>,
-    /// Standard deviation of the time between samples, in ms, gaps left out.
+    /// Standard deviation of the time between samples, in ms. Gaps are left out.
     pub jitter_ms: Option<f64>,
     /// Number of gaps: steps in time above one and a half usual steps.
     pub gaps: usize,
@@ -33,11 +33,11 @@ pub struct ChannelSummary {
     pub noise: f64,
     /// Frequency in Hz below which 99 % of the power around the mean lies.
     pub bandwidth: Option<f64>,
-    /// Percentage of samples at the lowest or highest value, in runs of three or more.
+    /// Percentage of samples that have the lowest or the highest value and stand in runs of three or more.
     pub clipped: f64,
-    /// Lowest and highest sample while the channel is quiet; `None` if it is always or never quiet.
+    /// Lowest and highest sample while the channel is quiet. `None` if the channel is always or never quiet.
     pub rest: Option<[f64; 2]>,
-    /// Lowest and highest sample while the channel is not quiet; `None` if it is always or never quiet.
+    /// Lowest and highest sample while the channel is not quiet. `None` if the channel is always or never quiet.
     pub flight: Option<[f64; 2]>,
     /// Percentage of samples during which the channel is quiet.
     pub resting: f64,
@@ -55,21 +55,20 @@ pub enum Verdict {
     TooShort,
     /// All samples are equal.
     Constant,
-    /// The channel moves no more than its own noise, which is white: the drone never flew, or there is no signal at
-    /// all.
+    /// The channel moves no more than its own white noise. The drone never flew, or there is no signal at all.
     OnlyNoise,
     /// More than a fifth of the samples are missing.
     FullOfHoles,
-    /// More than a fiftieth of the samples stand at an end of the range, in runs of three or more.
+    /// More than a fiftieth of the samples have the lowest or the highest value, in runs of three or more samples.
     Clipped,
 }
 
 /// Fewest samples of a channel that is fit for tuning.
 const FEWEST: usize = 200;
-/// Smallest deviation of a white signal that is not taken for noise, in multiples of its noise.
+/// Smallest standard deviation of a white signal that is not taken for noise, in multiples of the noise in it.
 const ABOVE_NOISE: f64 = 2.0;
-/// Spectral flatness from which a channel counts as white: sensors at rest have 0.67 to 0.95, flights with vibration
-/// 0.2 to 0.33.
+/// Smallest spectral flatness of a channel that counts as white. Sensors at rest have a flatness of 0.67 to 0.95, and
+/// flights with vibration have 0.2 to 0.33.
 const WHITE: f64 = 0.6;
 /// Number of samples in a window over which noise and movement are measured.
 const WINDOW: usize = 64;
@@ -162,7 +161,7 @@ impl ChannelSummary {
     }
 }
 
-/// Returns the unit of a field of PX4 logs by its name, if the name shows it.
+/// Returns the unit of a field of PX4 logs, if the field's name shows the unit.
 pub fn known_unit(name: &str) -> Option<&'static str> {
     let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
     units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
@@ -174,7 +173,8 @@ fn deviation(values: &[f64]) -> f64 {
 }
 
 /// Estimates the standard deviation of the noise from second differences, as the tenth percentile of all windows. The
-/// second differences of a slow signal are near 0; those of white noise have √6 times its deviation.
+/// second differences of a slow signal are near 0. The second differences of white noise have √6 times the standard
+/// deviation of the noise.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));
@@ -208,8 +208,8 @@ fn flatness(values: &[f64]) -> f64 {
     if arithmetic > 0.0 { logarithm.exp() / arithmetic } else { 1.0 }
 }
 
-/// Returns for each window whether the channel is quiet there: whether its deviation is at most four times the fifth
-/// percentile of all windows.
+/// Returns for each window whether the channel is quiet. It is quiet if the window's standard deviation is at most four
+/// times the fifth percentile of all windows.
 fn quiet(values: &[f64]) -> Vec<bool> {
     const QUIET: f64 = 4.0;
     let deviations: Vec<f64> = values.chunks(WINDOW).map(deviation).collect();
@@ -219,7 +219,7 @@ fn quiet(values: &[f64]) -> Vec<bool> {
     deviations.into_iter().map(|own| own <= QUIET * least).collect()
 }
 
-/// Returns the percentage of samples at an end of the range, in runs of three or more.
+/// Returns the percentage of samples that equal `min` or `max` and stand in runs of three or more.
 fn clipped(values: &[f64], min: f64, max: f64) -> f64 {
     let is_same_end = |a: &f64, b: &f64| a == b && (*a == min || *a == max);
     let runs = values.chunk_by(is_same_end).map(<[f64]>::len).filter(|length| *length >= 3);
@@ -240,8 +240,8 @@ fn bandwidth(values: &[f64]) -> f64 {
     bin.unwrap_or_default() as f64 / values.len() as f64
 }
 
-/// Returns the standard deviation, in ms, of the steps in `times` that are no gaps, and the number of gaps. `times` are
-/// in µs.
+/// Returns the standard deviation, in ms, of the time between samples, without gaps, and the number of gaps. `times`
+/// are in µs.
 fn steps(times: &[i64]) -> (Option<f64>, usize) {
     let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
     let mut sorted = steps.clone();

@@ -27,7 +27,7 @@ pub struct Port {
 
 /// The outcome of [`Port::read`].
 pub enum Bytes {
-    /// Bytes were read, as many as the number says.
+    /// The given number of bytes were read.
     Some(usize),
     /// No bytes have arrived yet.
     NotYet,
@@ -36,7 +36,7 @@ pub enum Bytes {
 }
 
 impl Port {
-    /// Opens a serial port at `baud` baud, or a file if `baud` is `None`; the path `-` is standard input.
+    /// Opens a serial port at `baud` baud, or a file if `baud` is `None`. The path `-` stands for standard input.
     ///
     /// # Errors
     /// Returns an error if the source cannot be opened.

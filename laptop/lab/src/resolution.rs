@@ -1,10 +1,11 @@
-//! Checks whether a sample type can resolve a column's steps, and finds the types that can.
+//! Checks whether a sample type can resolve a column's steps from sample to sample, and finds the sample types that
+//! can.
 
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Largest mean error that a sample type's rounding may cause in a column's steps from sample to sample, as a share of
-/// their mean size. A sample type that causes more is said to lose the steps.
+/// Largest mean error that rounding to a sample type may cause in a column's steps from sample to sample, as a share of
+/// the steps' mean size. A sample type with a larger error is said to lose the steps.
 const PART: f64 = 0.1;
 
 /// The steps of a column from sample to sample, and the errors that rounding to a sample type causes in them.
@@ -70,8 +71,8 @@ impl Resolution {
         self.off > 0.0
     }
 
-    /// Returns a sentence that describes the steps which the sample type loses, and names the types that hold them;
-    /// `None` if the type loses none.
+    /// Returns a sentence that describes the lost steps, and names the sample types that hold them. Returns `None` if
+    /// the sample type loses no steps.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -85,7 +86,8 @@ impl Resolution {
         })
     }
 
-    /// Returns words that name the types which hold the steps, or say that no type does.
+    /// Returns words that name the sample types which hold the steps, or words which say that no sample type holds
+    /// them.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()
@@ -111,8 +113,8 @@ impl Resolution {
         (self.off_single <= PART * self.moved).then_some(SampleType::F32)
     }
 
-    /// Returns the fixed-point type of the fewest bits whose range holds the column and whose resolution holds its
-    /// steps; a column of whole numbers needs a type that holds them exactly.
+    /// Returns the fixed-point type with the fewest bits whose range holds the column and whose resolution holds the
+    /// column's steps. If the column consists of whole numbers, the type must hold them exactly.
     fn fixed(&self) -> Option<SampleType> {
         let holds = |own: &SampleType| {
             let (low, high) = own.range();
@@ -128,8 +130,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column's steps survive rounding to multiples of `step`. The mean error that rounding causes
-    /// in a step of the column is a third of `step`; half of `step` is allowed for.
+    /// Returns whether the column's steps survive rounding to multiples of `step`. Rounding causes a mean error of a
+    /// third of `step` in a step of the column. For a margin, half of `step` is assumed.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }
@@ -166,8 +168,7 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// Whatever the size and steps of a column, the sample types that are suggested in place of one that loses the
-    /// steps lose none.
+    /// For columns of all sizes and steps, the suggested sample types hold the steps that the given sample type loses.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {

@@ -26,7 +26,8 @@ pub struct Figures {
     pub spikes_per_second: Option<f64>,
     /// The parameters that were used, by their keys.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// The signal's slope compared with the largest that the code can follow; `None` if the code can follow any slope.
+    /// The signal's largest slope, compared with the largest slope that the code can follow. `None` if the code can
+    /// follow any slope.
     pub slope: Option<Slope>,
     /// Notes for the user.
     pub notes: Vec<String>,

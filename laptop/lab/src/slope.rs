@@ -1,4 +1,5 @@
-//! Checks whether a step code keeps up with a recording: such a code climbs by at most one step for each sample.
+//! Checks whether a step code keeps up with a recording. The decoded value of a step code moves by at most one step for
+//! each sample.
 
 use crate::brief::short;
 use crate::scheme::Scheme;
@@ -6,7 +7,7 @@ use crate::trial::Recording;
 use catalogue::run::Settings;
 use serde::Serialize;
 
-/// The largest slope of a recording, compared with the largest that a code can follow.
+/// The largest slope of a recording, compared with the largest slope that a code can follow.
 #[derive(Clone, Debug, Serialize)]
 pub struct Slope {
     /// Name of the scheme.
@@ -18,7 +19,8 @@ pub struct Slope {
     steps_above_threshold: usize,
     /// `steps_above_threshold` as a share of the samples.
     part: f64,
-    /// Largest slope that the code follows: threshold times rate, or the threshold if no rate is known.
+    /// Largest slope that the code can follow: the threshold times the sample rate, or the threshold if the rate is
+    /// unknown.
     fastest: f64,
     /// Largest slope of the signal, in the unit of `fastest`.
     steepest: f64,
@@ -27,7 +29,7 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// Measures the slopes; returns `None` for a code that can climb by more than one step a sample.
+    /// Measures the slopes. Returns `None` for a code whose decoded value can move by more than one step a sample.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;
         let segments = recording.segments.iter().map(|own| &recording.values[own.clone()]);

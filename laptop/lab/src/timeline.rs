@@ -1,8 +1,8 @@
-//! Interpolates the unknown times of samples between known ones.
+//! Interpolates the unknown times of samples between known times.
 
 use std::collections::VecDeque;
 
-/// The times of consecutive samples; unknown ones are spaced evenly between known ones.
+/// The times of consecutive samples. Unknown times are spaced evenly between known times.
 pub struct Timeline {
     /// Usual time between samples, in µs.
     step: f64,
@@ -11,8 +11,8 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// Starts without known times. Samples before the first known time and after the last will be spaced by `rate`, in
-    /// samples a second.
+    /// Makes a timeline without known times. Samples before the first known time and after the last known time will be
+    /// spaced by `rate`, in samples a second.
     pub fn new(rate: Option<f64>) -> Self {
         Self { step: rate.map_or(0.0, |rate| 1e6 / rate), before: None, ahead: VecDeque::new() }
     }
@@ -24,8 +24,7 @@ impl Timeline {
         }
     }
 
-    /// Returns the number of known times that lie ahead: those of samples later than the last one passed to
-    /// [`at`](Self::at).
+    /// Returns the number of known times of samples after the sample that was last passed to [`at`](Self::at).
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }

@@ -1,4 +1,4 @@
-//! Encodes and decodes recordings in memory, for pictures and scores.
+//! Encodes and decodes recordings in memory, in order to draw and score the results.
 
 use crate::Result;
 use crate::brief::short;
@@ -14,8 +14,8 @@ use std::ops::Range;
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// The samples' times in µs; empty if no times were recorded. Where the recorder's clock restarted, the later
-    /// segment is moved to follow the earlier one after a usual step.
+    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, the times after
+    /// the restart are shifted to follow the times before it after a usual step.
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
@@ -33,8 +33,8 @@ pub struct Recording {
 impl Recording {
     /// Makes a recording of evenly spaced samples, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// Longest step in time that is no gap, in usual steps. Any value serves, because all steps of this recording
-        /// are equal.
+        /// Longest step in time that does not count as a gap, in usual steps. Any value serves, because all steps of
+        /// this recording are equal.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -51,7 +51,7 @@ impl Recording {
         Self::read_all(input)?.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
     }
 
-    /// Reads a recording of every chosen channel, without the rows that are not finite in all channels.
+    /// Reads a recording of every chosen channel. Rows in which any channel is not finite are left out.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read, or if no row is finite in all columns.
@@ -131,7 +131,7 @@ impl Recording {
         self.rejected
     }
 
-    /// Returns the duration in seconds, if it is known; the unknown time between segments does not count.
+    /// Returns the duration in seconds, if it is known. The unknown time between segments is left out.
     pub fn seconds(&self) -> Option<f64> {
         if self.times.is_empty() {
             return Some(self.values.len() as f64 / self.rate?);
@@ -140,8 +140,8 @@ impl Recording {
     }
 }
 
-/// Splits `samples` samples into segments; `bounds` holds the index of the first sample of each segment after the
-/// first.
+/// Splits `samples` samples into segments. For each segment except the first, `bounds` holds the index of its first
+/// sample.
 fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.insert(0, 0);
     bounds.push(samples);

@@ -13,13 +13,13 @@ use std::any::Any;
 /// Maximum number of channels of a code with one neuron a channel.
 const MOST: usize = 256;
 
-/// Maximum number of channels of a code with several neurons a channel: 64 channels of 1024 neurons fill all addresses.
+/// Maximum number of channels of a code with several neurons a channel. 64 channels of 1024 neurons fill all addresses.
 const FEWER: usize = 64;
 
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function that is passed the receiver, as a decoder of frames to values, and is called once.
+/// A function that is called once, with the receiver as a decoder of frames to values.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
 /// Properties of a link's sender besides its schemes.
@@ -28,11 +28,11 @@ pub struct Link {
     /// Length of the sub-timesteps in µs, if the code has any.
     pub slot_ticks: Option<u32>,
     /// Fingerprint that the sender's frames carry. If `None`, the fingerprint is computed from the channels' schemes.
-    /// If a single scheme stands for an unknown number of channels, the number is chosen whose fingerprint matches the
-    /// received one.
+    /// If a single scheme stands for an unknown number of channels, the number of channels is found by trying: its
+    /// fingerprint must match the received fingerprint.
     pub fingerprint: Option<Fingerprint>,
-    /// Largest deviation of the sample period from its nominal length, in parts per million; the receiver's default if
-    /// `None`.
+    /// Largest deviation of the sample period from its nominal length, in parts per million. `None` stands for the
+    /// receiver's default.
     pub clock_ppm: Option<u32>,
 }
 
@@ -46,7 +46,7 @@ impl From<Option<u32>> for Link {
 /// channels.
 ///
 /// # Errors
-/// Returns an error if a parameter is out of its range, if there are too many channels, or if `then` returns one.
+/// Returns an error if a parameter is outside its range, if there are too many channels, or if `then` returns an error.
 pub fn with_receiver<'a>(
     scheme: Chosen,
     sample: SampleType,
@@ -156,7 +156,7 @@ impl<S: Sample> Visit<S> for Boxed {
 /// A scheme whose decoders start from the value `start`, if there is one. Serves only for decoding.
 struct Started<P: Scheme> {
     scheme: P,
-    /// Whether the channel exists; false for the placeholder that fills the array after the last channel.
+    /// Whether the channel exists. False for a placeholder that fills the array after the last channel.
     is_given: bool,
     start: Option<P::Sample>,
 }
@@ -225,14 +225,14 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     channels: usize,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Whether each channel has a value: from the start if keyframes resynchronize the code, otherwise from the
-    /// channel's first event on.
+    /// Whether each channel has a value. If keyframes resynchronize the code, all channels have a value from the start.
+    /// Otherwise, a channel has a value from its first event on.
     has_fired: [bool; N],
     /// Tick one sample period after the last received event, at which the event's sample is over.
     end: Option<Tick>,
     /// Number of keyframes received although the code uses none.
     unused_keyframes: u64,
-    /// The number by which the decoders represent 1.0; decoded numbers are divided by it.
+    /// The decoders' number for the value 1.0. Decoded numbers are divided by this number.
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
@@ -243,7 +243,7 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     slot_ticks: u32,
     /// Fingerprint of the sender, if the caller gave it.
     known: Option<Fingerprint>,
-    /// Fingerprint of each channel's scheme, or of the one scheme that all channels share, whatever their number.
+    /// Fingerprint of each channel's scheme, or a single fingerprint if one scheme stands for any number of channels.
     schemes: Vec<Fingerprint>,
     /// Whether any value so far was exact.
     has_exact: bool,
@@ -251,9 +251,9 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels keyframes of the sender's sample type with the decoders' type, which stands for all fixed-point types
-    /// of one width. Keyframes labelled with the decoders' type, if the sender has a different one, are relabelled too,
-    /// which makes the receiver count them as misfits.
+    /// Relabels the sender's keyframes with the decoders' sample type, which stands for all fixed-point types of one
+    /// width. If the sender's type differs from the decoders', keyframes labelled with the decoders' type are
+    /// relabelled too. The receiver then counts them as misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -272,7 +272,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         std::array::from_fn(|channel| channel < self.channels && is_exact(channel))
     }
 
-    /// Notes which channels fire in a frame, and the tick at which the frame's last sample is over.
+    /// Records which channels fire in a frame, and the tick at which the frame's last sample is over.
     fn observe(&mut self, received: &Received<'_>) {
         for event in received.frame.events() {
             if let Some(has_fired) =
@@ -284,11 +284,11 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Turns the decoded values into items and appends these; the first `keyframes` values are keyframes. `before` says
-    /// which channels were exact before the frame.
+    /// Converts the decoded values to items, and appends these to `items`. The first `keyframes` values come from
+    /// keyframes. `before` says which channels were exact before the frame.
     ///
     /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on,
-    /// which keeps every estimate unmarked.
+    /// which ensures that no estimate is marked exact.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
@@ -312,8 +312,9 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Returns the fingerprint that a sender with these schemes has in its sample type. If one scheme stands for all
-    /// channels, their number is unknown; each number is tried until one gives the fingerprint `sender`.
+    /// Returns the fingerprint of a sender with these schemes, in the sender's sample type. If one scheme stands for
+    /// all channels, the number of channels is unknown. Each number is then tried until one gives the fingerprint
+    /// `sender`.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {

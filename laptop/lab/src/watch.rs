@@ -1,8 +1,8 @@
-//! Progress reports of long work, and requests to end it.
+//! Progress reports of long work, and requests to end the work.
 
 /// Callbacks through which a caller follows long work, and can end it.
 pub struct Watch<'a> {
-    /// Called from time to time; if it returns true, the work ends with the best result so far.
+    /// Called from time to time. If the function returns true, the work ends with the best result so far.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
     /// Called from time to time with the progress, from any thread.
     pub tell: &'a (dyn Fn(&Progress) + Sync),

@@ -1,4 +1,4 @@
-//! Advice on a whole bank: one scheme for all channels, ranked by bytes a second on the link.
+//! Advice on one scheme for all channels together. The schemes are ranked by bytes a second on the link.
 
 use super::flown::{Error, Flown, flown};
 use super::{Advice, AdviseRequest, Tuning};
@@ -28,13 +28,13 @@ const KEYFRAMES: f64 = 1.0;
 /// The advice on all channels together.
 #[derive(Debug, Serialize)]
 pub struct BankAdvice {
-    /// The schemes that can serve all channels, with their settings; the advised one comes first.
+    /// The schemes that can serve all channels, with their settings. The advised scheme comes first.
     banks: Vec<Bank>,
     /// The schemes that cannot serve all channels, each with the reason.
     others: Vec<String>,
-    /// The names of the channels that are unfit for tuning; each channel's own advice says why.
+    /// The names of the channels that are unfit for tuning. The [`Advice`] on each such channel gives the reason.
     left_out: Vec<String>,
-    /// Remarks on facts that neither the log nor the simulator can show.
+    /// Remarks on what neither the log nor the simulator can show.
     unknown: Vec<String>,
     /// Share of frames that the link loses, in percent.
     frame_loss: f64,
@@ -52,7 +52,8 @@ struct Bank {
     keyframe_every: u32,
     /// Whether the scheme's simulated flights used a filter that is not possible at the recordings' sample rate.
     lacks_filter: bool,
-    /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code, if it flew.
+    /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code. `None` if no
+    /// flights with the code were simulated.
     flown: Option<Error>,
     channels: Vec<BankChannel>,
     #[serde(skip)]
@@ -115,7 +116,7 @@ impl BankAdvice {
         self.banks.first().map(|bank| bank.scheme)
     }
 
-    /// Returns the comments for `flight.toml`: how the advice was found, and what remains unknown.
+    /// Returns the comments for `flight.toml`. They say how the advice was found and what remains unknown.
     pub fn comments(&self) -> Vec<String> {
         self.lines().map(|line| line.trim_start().to_owned()).collect()
     }
@@ -184,7 +185,8 @@ impl BankAdvice {
     }
 }
 
-/// Makes a bank, that is one scheme for all channels. The inner error is the reason that the scheme cannot serve them.
+/// Makes a bank: one scheme, with settings for all channels. The inner error is the reason that the scheme cannot serve
+/// all channels.
 fn bank(
     request: &AdviseRequest,
     scheme: Scheme,
@@ -262,7 +264,7 @@ fn bank(
     }))
 }
 
-/// Lists facts that neither the log nor the simulator can show.
+/// Lists remarks on what neither the log nor the simulator can show.
 fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     let mut all = Vec::new();
     if request.loop_bandwidth.is_none() {
@@ -293,8 +295,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// Returns the parameters that all channels of a bank must share: for a count, the largest of the channels' values;
-/// otherwise the first channel's value.
+/// Returns the values of the parameters that all channels of a bank must share. A count gets the largest of the
+/// channels' values, and any other parameter gets the first channel's value.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;
@@ -313,7 +315,7 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
 }
 
 /// Returns the total number of events of all channels, and the number of bytes that the link sends, including
-/// keyframes. With `in_loop`, a frame is sent for each sample; otherwise frames are filled first.
+/// keyframes. If `in_loop`, a frame is sent for each sample; otherwise, a frame is sent once it is full.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

@@ -1,5 +1,5 @@
-//! Results of flying simulated drones, whose rotors shake the sensor, on each code: the figures of `docs/loop.md`,
-//! measured by `cargo xtask write loop`.
+//! Results of simulated flights with each code in the control loop. The rotors of the simulated drones shake the
+//! sensor. `cargo xtask write loop` measures the results, which `docs/loop.md` shows.
 
 use crate::flight::Filter;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ struct Figures {
     banks: BTreeMap<String, Flown>,
 }
 
-/// Results of simulated flights on a code, and the settings with which the code was flown.
+/// Results of the simulated flights with a code, and the settings of these flights.
 #[derive(Deserialize)]
 pub(crate) struct Flown {
     /// Corner frequency of the low-pass before the code, in Hz; `None` without a low-pass.
@@ -99,7 +99,7 @@ pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
 }
 
 impl Flown {
-    /// Returns the filter that the flights had before the code.
+    /// Returns the filter that stood before the code in the flights.
     pub(crate) fn filter(&self) -> Option<Filter> {
         self.low_pass.map(|corner| Filter::LowPass { corner })
     }
@@ -117,8 +117,8 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of this code's attitude errors to those of `other`, over the entries of `everywhere` in
-    /// which both have an error.
+    /// Returns the mean ratio of this code's attitude errors to the errors of the code `other`. Only entries of
+    /// `everywhere` in which both codes have an error count.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

@@ -1,4 +1,5 @@
-//! The benchmark of the paper that compares the codes: runs the cases of its Tables I and II, cell by cell.
+//! The benchmark of the paper: measures the efficiency and error of each code, for the cases of the paper's Tables I
+//! and II.
 
 pub mod paper;
 mod recipe;
@@ -14,7 +15,7 @@ use recipe::{COLUMNS, Outcome};
 use signal::Waveform;
 use statistics::Statistics;
 
-/// Maximum number of signals in a case. Each has its own random generator.
+/// Maximum number of signals in a case. Each signal has its own random generator.
 pub const MOST_TESTS: usize = 1_000_000;
 
 /// The results of all tests of one case, by scheme.

@@ -13,16 +13,17 @@ pub const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
 pub struct Table {
     /// Title of the table.
     pub title: &'static str,
-    /// Means, by case and scheme.
+    /// Means, indexed by case and then by scheme.
     pub means: [[f64; 6]; 5],
-    /// Standard deviations, by case and scheme.
+    /// Standard deviations, indexed by case and then by scheme.
     pub deviations: [[f64; 6]; 5],
     /// Number of decimals that the paper prints.
     pub decimals: usize,
 }
 
 impl Table {
-    /// Returns the largest difference between a printed figure and the unrounded figure: half of the last decimal.
+    /// Returns the largest difference between a printed figure and the unrounded figure, which is half a unit of the
+    /// last decimal.
     pub fn rounding(&self) -> f64 {
         0.5 * 10_f64.powi(-(self.decimals as i32))
     }
@@ -70,5 +71,5 @@ pub const RMSE: Table = Table {
     decimals: 2,
 };
 
-/// Case and scheme of the one deviation in [`RMSE`] that is a misprint.
+/// Indices of the case and the scheme of the one standard deviation in [`RMSE`] that is a misprint.
 pub const MISPRINT: (usize, usize) = (2, 5);

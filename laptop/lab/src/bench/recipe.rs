@@ -1,13 +1,13 @@
-//! Runs each scheme over a signal as the paper's toolbox does: with its parameters, the start of its encoders, and its
-//! treatment of the first spike and the last sample.
+//! Runs each scheme over a signal as the paper's toolbox does: with the toolbox's parameters, the toolbox's start
+//! values, and the toolbox's treatment of the first spike and the last sample.
 
 use spikewire::population::{Gaussian, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
 use spikewire::{Calibration, Code, ConfigError, Output, Spike, Start};
 
-/// Number of columns: the schemes of the paper's tables, then GRF and GRF with slots, for which the paper gives no
-/// figures.
+/// Number of columns: one for each scheme of the paper's tables, one for GRF, and one for GRF with slots. The paper
+/// gives no figures for the last two.
 pub(super) const COLUMNS: usize = 8;
 
 /// The efficiency and error of a scheme on a signal.
@@ -81,8 +81,8 @@ fn first(signal: &[f32]) -> f32 {
     signal.first().copied().unwrap_or_default()
 }
 
-/// Runs a step code as the toolbox does: the encoder is primed with `past`, the first decoded value is `start`, and
-/// steps are added from the second spike on.
+/// Runs a step code as the toolbox does. The encoder is primed with `past`. The first decoded value is `start`, and the
+/// decoder adds the steps from the second sample on.
 fn step_outcome<P>(signal: &[f32], scheme: &P, past: &[f32], start: f32) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Spike>,
@@ -106,8 +106,8 @@ where
     outcome(signal, count(&spikes), error)
 }
 
-/// Runs a rate code as the toolbox does, whose loops end one sample early: no window contains the last sample, and the
-/// last spike is set to `last`.
+/// Runs a rate code as the toolbox does. The toolbox's loops end one sample early: no window contains the last sample,
+/// and the code of the last sample is `last`.
 fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,

@@ -7,10 +7,10 @@ use serde::Serialize;
 use serde_json::{Value, json as object};
 use std::fmt::Write;
 
-/// Largest difference of a measured mean from the paper's that counts as agreement, in standard errors.
+/// Largest difference between a measured mean and the paper's mean that counts as agreement, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
-/// Largest difference of a measured standard deviation from the paper's that counts as agreement, as a share of the
-/// paper's.
+/// Largest difference between a measured standard deviation and the paper's that counts as agreement, as a share of the
+/// paper's standard deviation.
 const DEVIATION_PART: f64 = 0.15;
 
 /// A measured cell, and the paper's figures for it.
@@ -19,7 +19,8 @@ struct Cell {
     ours: Statistics,
     paper_mean: f64,
     paper_deviation: f64,
-    /// Difference of the means beyond the paper's rounding, in standard errors of the difference.
+    /// Difference between the measured mean and the paper's mean beyond the paper's rounding, in standard errors of
+    /// that difference.
     standard_errors: f64,
     mean_agrees: bool,
     deviation_agrees: bool,
@@ -50,7 +51,7 @@ impl Cell {
     }
 }
 
-/// Compares all cells of a table with the paper's, by case and scheme.
+/// Compares each measured cell of a table with the paper's. The result is indexed by case and then by scheme.
 fn cells(table: &Table, cases: &[CaseResult]) -> Vec<Vec<Cell>> {
     let is_rmse = table.title == RMSE.title;
     let of = |case: &CaseResult| if is_rmse { case.rmse } else { case.efficiency };
@@ -96,8 +97,8 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// Returns the largest difference that sampling error could hide, as a share of the paper's mean, and the name of its
-/// cell.
+/// Returns the largest difference between two means that sampling error could hide, as a share of the paper's mean, and
+/// the name of the cell with this difference.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {
@@ -110,7 +111,7 @@ fn unseen(cases: &[CaseResult]) -> (f64, String) {
     all.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
-/// Lists the cells that differ from the paper's, except for the paper's misprint.
+/// Lists the measured cells that differ from the paper's cells. The paper's misprint is left out.
 pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     let mut names = Vec::new();
     for (table, quantity) in [(&EFFICIENCY, "efficiency"), (&RMSE, "RMSE")] {

@@ -1,4 +1,4 @@
-//! Mean and standard deviation of a figure over the tests of a case.
+//! Mean and standard deviation of a measured figure over the tests of a case.
 
 use serde::Serialize;
 
@@ -22,8 +22,8 @@ impl Statistics {
         Self { mean, deviation: (squares / (count as f64 - 1.0)).sqrt(), count }
     }
 
-    /// Returns the standard error of the difference between this mean and the mean of `others` tests with the same
-    /// deviation.
+    /// Returns the standard error of the difference between this mean and the mean of `others` further tests. The
+    /// further tests are assumed to have the same standard deviation.
     pub fn error_against(&self, others: usize) -> f64 {
         self.deviation * (1.0 / self.count as f64 + 1.0 / others as f64).sqrt()
     }

@@ -1,4 +1,4 @@
-//! Reasons that many logs cannot be encoded together.
+//! Reasons that a data set cannot be made or read.
 
 use crate::error::room;
 use catalogue::kinds;

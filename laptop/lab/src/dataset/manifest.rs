@@ -1,4 +1,4 @@
-//! The manifest of a data set: a row for each log, as JSON lines.
+//! The manifest of a data set: a JSON line for each log.
 
 use super::{DatasetKind, Flights, unwritten};
 use crate::input::Clock;
@@ -14,13 +14,13 @@ use std::time::UNIX_EPOCH;
 
 /// Name of the manifest in the directory of a data set.
 pub(super) const MANIFEST: &str = "manifest.jsonl";
-/// Name of the file with the settings.
+/// Name of the file with the settings of a data set.
 const SETTINGS: &str = "dataset.json";
-/// Directories of the parts: spikes, and samples.
+/// Names of the directories of spike files (`EVENTS`) and of sample files (`VALUES`).
 const EVENTS: &str = "events";
 const VALUES: &str = "values";
 
-/// The side of the split on which a flight is.
+/// The side of the split between training and testing on which a flight is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Split {
@@ -30,7 +30,7 @@ pub enum Split {
     Test,
 }
 
-/// A row of the manifest: one log, and what became of it.
+/// A row of the manifest: one log, and the outcome of encoding it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Full path of the log.
@@ -41,23 +41,24 @@ pub struct Row {
     pub bytes: u64,
     /// Time of the log's last change, in µs since 1970.
     pub modified_us: u64,
-    /// SHA-256 of the log; of a directory, of its files one after the other, by name.
+    /// SHA-256 of the log. If the log is a directory, SHA-256 of the contents of its files, joined in the order of
+    /// their names.
     pub sha256: String,
     /// SHA-256 of the settings, as in `dataset.json`.
     pub settings: String,
-    /// Side of the split; `None` before the run ends, and for a log that was refused.
+    /// Side of the split. `None` before the run ends, or if the log was refused.
     pub split: Option<Split>,
     /// Reason that the log was refused, if it was.
     pub refused: Option<String>,
-    /// The kind of that reason, for programs.
+    /// Name of the kind of error for which the log was refused, for programs.
     pub refused_kind: Option<String>,
-    /// File of the spikes, from the directory of the data set.
+    /// Path of the file of spikes, relative to the directory of the data set.
     pub events: Option<String>,
-    /// Length of that file, in bytes.
+    /// Length of the file of spikes, in bytes.
     pub events_bytes: u64,
-    /// File of the samples.
+    /// Path of the file of samples, relative to the directory of the data set.
     pub values: Option<String>,
-    /// Length of that file, in bytes.
+    /// Length of the file of samples, in bytes.
     pub values_bytes: u64,
     /// Names of the channels.
     pub channels: Vec<String>,
@@ -77,7 +78,7 @@ pub struct Row {
     pub steps_back: u64,
     /// Number of times that the clock restarted.
     pub restarts: u64,
-    /// Notes of the reader, such as damaged places that were skipped, and of the encoder.
+    /// Notes of the reader (such as skipped damage) and of the encoder.
     pub notes: Vec<String>,
 }
 
@@ -110,7 +111,7 @@ impl Row {
         }
     }
 
-    /// Notes why the log was refused.
+    /// Records the reason `why` the log was refused, and the kind of that reason.
     pub(super) fn refuse(&mut self, kind: &str, why: String) {
         (self.refused, self.refused_kind) = (Some(why), Some(kind.to_owned()));
     }
@@ -129,7 +130,8 @@ impl Row {
         Ok(())
     }
 
-    /// Takes the figures of a clock. They are rounded, so that they are written as they were read.
+    /// Copies the rate, the duration and the counts of `clock` to the row. Rate and duration are rounded to 6 decimals,
+    /// which survive writing and reading unchanged.
     pub(super) fn take(&mut self, clock: &Clock) {
         let rounded = |number: f64| (number * 1e6).round() / 1e6;
         self.rate = clock.rate().map(rounded);
@@ -139,7 +141,7 @@ impl Row {
         self.restarts = clock.restarts();
     }
 
-    /// Returns the paths of the log's parts, from the directory of the data set: spikes, and samples.
+    /// Returns the paths of the log's spike file and sample file, relative to the directory of the data set.
     pub(super) fn parts(&self) -> (String, String) {
         const LONGEST: usize = 60;
         let stem = Path::new(&self.log).file_stem().unwrap_or_default().to_string_lossy();
@@ -151,7 +153,7 @@ impl Row {
         (part(EVENTS), part(VALUES))
     }
 
-    /// Returns whether the files of the row are there, whole.
+    /// Returns whether the row's files of spikes and samples exist and have their full lengths.
     fn is_there(&self, directory: &Path) -> bool {
         let is_whole = |part: &Option<String>, bytes: u64| match part {
             None => true,
@@ -160,13 +162,13 @@ impl Row {
         is_whole(&self.events, self.events_bytes) && is_whole(&self.values, self.values_bytes)
     }
 
-    /// Returns whether the log was refused for a reason that may have passed, such as a disk that was not there.
+    /// Returns whether the log was refused for a reason that may be gone in a later run, such as a missing disk.
     fn may_pass(&self) -> bool {
         self.refused_kind.as_deref().is_some_and(|kind| ["Open", "Io"].contains(&kind))
     }
 }
 
-/// A log as a file: what shows whether it has changed.
+/// The length and the modification time of a log, which show whether the log has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct File {
     bytes: u64,
@@ -174,8 +176,10 @@ pub(super) struct File {
 }
 
 impl File {
+    /// Reads the length and the modification time of a log.
+    ///
     /// # Errors
-    /// Returns an error if the log is missing.
+    /// Returns an error if the log is missing, or can be read only once.
     pub(super) fn of(log: &Path) -> Result<Self> {
         let mut own = Self { bytes: 0, modified_us: 0 };
         for file in files(log)? {
@@ -196,7 +200,7 @@ impl File {
     }
 }
 
-/// Returns the files of a log: itself, or all files of a directory, by name.
+/// Returns the files of a log: the log itself or, if the log is a directory, all its files, sorted by name.
 fn files(log: &Path) -> Result<Vec<PathBuf>> {
     if !log.is_dir() {
         return Ok(vec![log.to_owned()]);
@@ -229,16 +233,17 @@ impl Settings {
 /// A manifest that is being completed.
 pub(super) struct Manifest {
     directory: PathBuf,
-    /// The open file, which is locked.
+    /// The open file of the manifest, locked for this run.
     file: fs::File,
     rows: BTreeMap<String, Row>,
 }
 
 impl Manifest {
-    /// Opens the manifest of a data set, and deletes what a run that was killed left unfinished.
+    /// Opens the manifest of a data set, and deletes the unfinished files of a killed run.
     ///
     /// # Errors
-    /// Returns an error if the directory cannot be written, is in use, or has other settings.
+    /// Returns an error if the directory cannot be written, if another run uses it, or if its data set has other
+    /// settings.
     pub(super) fn open(directory: &Path, settings: &Settings) -> Result<Self> {
         let at = || directory.display().to_string();
         let failed = |error| OutputKind::Unwritten { error }.at(at());
@@ -272,7 +277,7 @@ impl Manifest {
         Ok(Self { directory: directory.to_owned(), file, rows })
     }
 
-    /// Returns whether the manifest has a row for a log, as it is now.
+    /// Returns whether the manifest has a valid row for a log in its present state `file`.
     pub(super) fn has(&self, log: &Path, file: &File) -> bool {
         let File { bytes, modified_us } = *file;
         self.rows.get(&log.display().to_string()).is_some_and(|row| {
@@ -280,7 +285,7 @@ impl Manifest {
         })
     }
 
-    /// Appends a row, whose parts must be in their places.
+    /// Appends a row. The files of spikes and samples that it names must already be complete.
     ///
     /// # Errors
     /// Returns an error if the manifest cannot be written.
@@ -296,8 +301,8 @@ impl Manifest {
         self.directory.join(MANIFEST)
     }
 
-    /// Splits the flights, and writes the manifest anew: a row for each log, sorted by path. The same logs and settings
-    /// give the same bytes, whatever the order in which they were encoded.
+    /// Splits the flights into training and testing, and rewrites the manifest: a row for each log, sorted by path. The
+    /// same logs and settings give the same bytes, whatever the order of encoding.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.
@@ -326,8 +331,8 @@ impl Manifest {
     }
 }
 
-/// Puts each flight on a side of the split: those with the smallest hashes are for testing. Copies of one log are one
-/// flight.
+/// Puts each flight on a side of the split. The flights with the smallest hashes are for testing. Copies of one log
+/// count as one flight.
 fn split(rows: &mut [Row], test: f64, flights: Flights) {
     let flight = |row: &Row| match flights {
         Flights::Logs => row.sha256.clone(),
@@ -365,7 +370,7 @@ fn split(rows: &mut [Row], test: f64, flights: Flights) {
 /// Reads the manifest of a data set.
 ///
 /// # Errors
-/// Returns an error if there is no manifest, or if a line is no row.
+/// Returns an error if the manifest is missing, or if a line of it is not a valid row.
 pub fn rows(directory: &Path) -> Result<Vec<Row>> {
     let path = directory.join(MANIFEST);
     let text = fs::read_to_string(&path)
@@ -387,7 +392,7 @@ fn described_as(settings: &Settings, split: &serde_json::Value) -> String {
     format!("{:#}\n", serde_json::json!({ "settings": json, "sha256": sha256, "split": split }))
 }
 
-/// Writes a file that appears complete or not at all.
+/// Writes a text file. The file appears once it is complete, or not at all.
 fn write(path: &Path, text: &str) -> Result<()> {
     let all = || -> Result<()> {
         let mut output = Output::to(Some(path))?;
@@ -397,7 +402,7 @@ fn write(path: &Path, text: &str) -> Result<()> {
     all().map_err(unwritten)
 }
 
-/// Deletes files that a killed run was writing.
+/// Deletes the unfinished files of a killed run.
 fn delete_unfinished(directory: &Path) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let entry = entry?;
@@ -408,20 +413,20 @@ fn delete_unfinished(directory: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Locks a file for this run.
+/// Locks a file until it is closed, to keep other runs out.
 #[cfg(unix)]
 fn lock(file: &fs::File) -> io::Result<()> {
     use rustix::fs::{FlockOperation, flock};
     Ok(flock(file, FlockOperation::NonBlockingLockExclusive)?)
 }
 
-/// Locks nothing: the least Rust of this crate has locks on Unix only.
+/// Locks nothing. On systems other than Unix, the oldest Rust version that this crate supports has no file locks.
 #[cfg(not(unix))]
 fn lock(_: &fs::File) -> io::Result<()> {
     Ok(())
 }
 
-/// A hash that is written to.
+/// A SHA-256 hash of the bytes that are written to it.
 struct Hash(Sha256);
 
 impl Write for Hash {

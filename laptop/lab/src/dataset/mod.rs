@@ -1,8 +1,8 @@
-//! Encodes many logs to Parquet files: in parallel, in constant memory, and again from where a run was ended.
+//! Encodes many logs to Parquet files, in parallel and in constant memory. A run that was ended early can be continued.
 //!
 //! Each log gets two files, one of spikes and one of samples, and a row of the manifest. A file appears under its name
-//! once it is complete, and the row is written after both files. A run that is killed thus leaves complete rows, and
-//! the next run encodes the logs without one.
+//! once it is complete, and the row is written after both files. A killed run thus leaves only complete rows, and the
+//! next run encodes the logs that have no row.
 
 mod kinds;
 mod manifest;
@@ -35,17 +35,18 @@ use std::thread;
 /// A data set to make, or to complete.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// Files, directories and patterns such as `logs/*.ulg`.
+    /// The logs to encode: files, directories and patterns such as `logs/*.ulg`.
     pub logs: Vec<PathBuf>,
     /// The code of all logs.
     pub code: Code,
-    /// How the logs are read. An option that a kind of log does not take is ignored for that kind.
+    /// Options for reading the logs. An option that does not apply to a kind of log is ignored for logs of that kind.
     pub channel: ChannelOptions,
-    /// Channels of single kinds of logs; of several for one kind, the first that a log has is taken.
+    /// Channels to read from logs of certain kinds. If a kind has several entries, a log uses the first entry whose
+    /// channels it has.
     pub channels_of: Vec<ChannelsOf>,
     /// Directory of the data set.
     pub output: PathBuf,
-    /// Share of the flights that is for testing, 0 to 1.
+    /// Share of the flights that are for testing, 0 to 1.
     pub test: f64,
     /// What counts as one flight for the split.
     pub flights: Flights,
@@ -58,16 +59,16 @@ pub struct Request {
 pub enum Code {
     /// One scheme for all channels.
     Coding(Box<Coding>),
-    /// A flight's file: its channels, coded as the flight's sender does.
+    /// The channels and the scheme of a `flight.toml`, coded as the flight's sender codes them.
     Flight(Box<Flight>),
 }
 
-/// What counts as one flight, whose logs are on one side of the split.
+/// What counts as one flight. All logs of a flight are on the same side of the split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flights {
-    /// Each log; copies of one log are one flight.
+    /// Each log is a flight. Copies of one log count as one flight.
     Logs,
-    /// All logs of a directory.
+    /// All logs in a directory are one flight.
     Directories,
 }
 
@@ -76,7 +77,7 @@ pub enum Flights {
 pub struct ChannelsOf {
     /// Name of the kind, one of [`NAMES`].
     pub kind: &'static str,
-    /// Columns, or for a log `TOPIC.FIELD`.
+    /// Names of the channels: columns of a table, or `TOPIC.FIELD` of a log.
     pub names: Vec<String>,
 }
 
@@ -84,7 +85,7 @@ pub struct ChannelsOf {
 pub const NAMES: [&str; 8] =
     ["table", "ulog", "ardupilot", "mavlink", "bag", "ros2", "mcap", "blackbox"];
 
-/// Returns the name of a kind of log; `None` is a table.
+/// Returns the name of a kind of log. `None` stands for a table.
 pub fn name(kind: Option<Kind>) -> &'static str {
     match kind {
         None => "table",
@@ -109,32 +110,32 @@ impl FromStr for ChannelsOf {
     }
 }
 
-/// The number of logs in a data set, by what became of them.
+/// The numbers of logs in a data set by their outcome, and of their samples and spikes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Outcome {
-    /// Logs that were asked for.
+    /// Number of requested logs.
     pub logs: usize,
-    /// Logs among them that an earlier run had done.
+    /// Number of requested logs that an earlier run had already encoded or refused.
     pub done_before: usize,
-    /// Logs among them that cannot be read or encoded; the manifest has the reasons.
+    /// Number of requested logs that cannot be read or encoded. The manifest has the reasons.
     pub refused: usize,
-    /// Files in directories that are neither logs nor tables.
+    /// Number of files in the requested directories that are neither logs nor tables.
     pub passed_over: usize,
-    /// Samples of each channel, over all logs.
+    /// Number of samples of each channel, over all logs.
     pub samples: u64,
-    /// Spikes of all channels, over all logs.
+    /// Number of spikes of all channels, over all logs.
     pub events: u64,
-    /// Logs for training.
+    /// Number of logs for training.
     pub train: usize,
-    /// Logs for testing.
+    /// Number of logs for testing.
     pub test: usize,
 }
 
 /// Makes a data set, or completes one that an earlier run began with the same settings.
 ///
 /// # Errors
-/// Returns an error if there are no logs, if the directory holds other settings, or if a file cannot be written. A log
-/// that cannot be read or encoded is no error: its row of the manifest has the reason.
+/// Returns an error if there are no logs, if the directory holds a data set with other settings, or if a file cannot be
+/// written. A log that cannot be read or encoded is not an error: the log's row in the manifest gives the reason.
 pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome> {
     request.check()?;
     let settings = request.settings();
@@ -191,11 +192,13 @@ pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome
     Ok(outcome)
 }
 
-/// Returns the recordings among files, directories and patterns. A data set, by its directory or its manifest, stands for
-/// the samples of its flights for training; standard input and names of missing files are returned as they are.
+/// Returns the recordings among files, directories and patterns. The directory or the manifest of a data set is
+/// replaced by the sample files of its training flights. Standard input and names of missing files are returned
+/// unchanged.
 ///
 /// # Errors
-/// Returns an error if a directory cannot be read, or holds nothing, or if a manifest is invalid.
+/// Returns an error if a directory cannot be read, if a directory or a pattern gives no recordings, or if a manifest is
+/// invalid.
 pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut all = Vec::new();
     for path in given {
@@ -226,6 +229,8 @@ pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
 }
 
 impl Request {
+    /// Checks the settings of the request.
+    ///
     /// # Errors
     /// Returns an error if a setting is invalid.
     fn check(&self) -> Result<()> {
@@ -246,7 +251,7 @@ impl Request {
         }
     }
 
-    /// Returns all that decides the content of the parts.
+    /// Returns the settings that determine the content of the files of spikes and samples.
     fn settings(&self) -> Settings {
         let (code, paper) = match &self.code {
             Code::Coding(coding) => (coding.to_toml(&[]), coding.asked.paper),
@@ -267,10 +272,10 @@ impl Request {
         }))
     }
 
-    /// Encodes a log, and returns its row.
+    /// Encodes a log, and returns its row of the manifest.
     ///
     /// # Errors
-    /// Returns an error if a part cannot be written.
+    /// Returns an error if the file of spikes or of samples cannot be written.
     fn row(&self, log: &Path, file: &Result<File>, settings: &Settings) -> Result<Row> {
         let mut row = Row::new(log, settings);
         match file.as_ref().map_err(ToString::to_string) {
@@ -288,7 +293,7 @@ impl Request {
         Ok(row)
     }
 
-    /// Encodes a log to its parts, and adds to its row what came of it.
+    /// Encodes a log to its files of spikes and samples, and adds the results to the log's row.
     fn encoded(&self, log: &Path, row: &mut Row) -> Result<()> {
         let kind = Kind::of(log)?;
         name(kind).clone_into(&mut row.kind);
@@ -312,7 +317,7 @@ impl Request {
         last.map_or(Ok(()), Err)
     }
 
-    /// Returns the options that read a log, without those that its kind does not take.
+    /// Returns the options for reading a log, without options that do not apply to its kind.
     fn input(&self, log: &Path, kind: Option<Kind>, names: Option<&[String]>) -> InputOptions {
         let mut channel = self.channel.clone();
         let own;
@@ -380,7 +385,7 @@ impl Request {
     }
 }
 
-/// Returns whether a log lacks the channels that were asked for, so that others may be tried.
+/// Returns whether the error says that a log lacks the requested channels. In that case, other channels may be tried.
 fn is_channel_missing(error: &Error) -> bool {
     matches!(
         &*error.kind,
@@ -391,7 +396,7 @@ fn is_channel_missing(error: &Error) -> bool {
     )
 }
 
-/// Turns an error of writing into one that ends the run, unlike the errors of a single log.
+/// Converts an error in writing a file into an error that ends the run. Errors in reading a log do not end the run.
 fn unwritten(error: Error) -> Error {
     match *error.kind {
         ErrorKind::Io(error) => OutputKind::Unwritten { error }.into(),

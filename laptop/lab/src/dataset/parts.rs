@@ -19,18 +19,18 @@ use std::collections::{HashSet, VecDeque};
 use std::io::{self, Write};
 use std::sync::Arc;
 
-/// Name of the column of times.
+/// Name of the column that holds the times.
 pub(super) const TIME: &str = "time_us";
-/// Keys of a file's metadata: the header of a file of spikes, the number of samples from which the usual step was taken,
-/// and the options that decide what is a gap.
+/// Keys of a Parquet file's metadata. `HEADER` has the header of the spikes; `FIRST`, `GAP` and `RATE` have the
+/// arguments of the [`Clock`](crate::input::Clock).
 pub(super) const HEADER: &str = "spikewire";
 pub(super) const FIRST: &str = "spikewire.first";
 pub(super) const GAP: &str = "spikewire.gap";
 pub(super) const RATE: &str = "spikewire.rate";
 
-/// Number of bytes in a group of rows. A file that is being written holds one in memory.
+/// Number of bytes in a row group. Each file that is being written keeps one row group in memory.
 const GROUP: usize = 1 << 21;
-/// Maximum number of rows in a group.
+/// Maximum number of rows in a row group.
 const MOST_ROWS: usize = 1 << 17;
 
 impl From<ParquetError> for Error {
@@ -39,7 +39,7 @@ impl From<ParquetError> for Error {
     }
 }
 
-/// The two files of a log that are being written.
+/// A log's file of spikes and file of samples, while they are being written.
 pub(super) struct Parts {
     events: Part,
     values: Part,
@@ -48,16 +48,16 @@ pub(super) struct Parts {
     neurons: u16,
     /// Usual time between samples in µs, as far as it is known.
     period: u64,
-    /// Finite samples that may still get events: their index and time.
+    /// Index and time of each finite sample that may still get events.
     pending: VecDeque<(u64, i64)>,
-    /// Number of the first sample in `pending`, counted by finite samples.
+    /// Number of finite samples before the first one in `pending`.
     first_pending: u64,
     rows: Rows,
     samples: Chunk,
     summary: Summary,
 }
 
-/// Events that wait for their group of rows.
+/// Events that are not yet written as a row group.
 #[derive(Default)]
 struct Rows {
     index: Vec<i64>,
@@ -68,10 +68,10 @@ struct Rows {
 }
 
 impl Parts {
-    /// Starts the files of spikes and of samples.
+    /// Starts a file of spikes and a file of samples.
     ///
     /// # Errors
-    /// Returns an error if they cannot be written.
+    /// Returns an error if a file cannot be written.
     pub(super) fn new(
         [events, values]: [Output; 2],
         start: &Start<'_>,
@@ -118,7 +118,7 @@ impl Parts {
         })
     }
 
-    /// Writes the samples that wait, as a group of rows.
+    /// Writes the collected samples as a row group.
     fn write_samples(&mut self) -> Result<()> {
         let Chunk { columns, times } = &self.samples;
         let times = (!times.is_empty()).then_some(Column::Long(times));
@@ -129,7 +129,7 @@ impl Parts {
         Ok(())
     }
 
-    /// Writes the events that wait, as a group of rows.
+    /// Writes the collected events as a row group.
     fn write_events(&mut self) -> Result<()> {
         let Rows { index, channel, neuron, polarity, time } = &self.rows;
         let neuron = (self.neurons > 1).then_some(Column::Int(neuron));
@@ -214,7 +214,8 @@ struct Part {
     file: SerializedFileWriter<Pipe>,
 }
 
-/// Bytes on their way from the Parquet writer to an output, which another thread must not have.
+/// Bytes that the Parquet writer has produced, before they go to the output. The Parquet writer must be `Send`, and the
+/// output is not.
 #[derive(Default)]
 struct Pipe(Vec<u8>);
 
@@ -260,7 +261,7 @@ impl Part {
         Ok(Self { output, file })
     }
 
-    /// Writes a group of rows.
+    /// Writes a row group.
     fn group<'a>(&mut self, columns: impl Iterator<Item = Column<'a>>) -> Result<()> {
         let mut group = self.file.next_row_group()?;
         for column in columns {
@@ -284,7 +285,7 @@ impl Part {
         Ok(())
     }
 
-    /// Writes the end, and returns the output.
+    /// Writes the end of the file, and returns the output.
     fn finish(mut self) -> Result<Output> {
         self.file.finish()?;
         self.file.flush()?;
@@ -312,7 +313,7 @@ fn column(name: &str, physical: Physical, logical: Option<LogicalType>) -> Resul
     Ok(column.build()?)
 }
 
-/// Returns a name that no column has yet.
+/// Returns `name` or, if a column has this name already, `name` with a number appended.
 fn apart(name: &str, taken: &mut HashSet<String>) -> String {
     let numbered = (2..).map(|number| format!("{name}_{number}"));
     let name = std::iter::once(name.to_owned()).chain(numbered).find(|own| !taken.contains(own));

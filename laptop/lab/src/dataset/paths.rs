@@ -8,13 +8,13 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Endings of tables, by which they are recognised in a directory.
+/// Endings of file names by which tables in a directory are recognised.
 const TABLES: [&str; 8] = ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
-/// Endings of compressed files.
+/// Endings of the names of compressed files.
 const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
-/// Returns the logs by their full paths, each once and in order, and the number of other files in directories. Files
-/// that are given by name are always taken.
+/// Returns the full paths of the logs, sorted and without repetitions, and the number of other files in the
+/// directories. A file that is given by name always counts as a log.
 ///
 /// # Errors
 /// Returns an error if a file is missing, or if a directory cannot be read.
@@ -49,7 +49,7 @@ struct Found {
 }
 
 impl Found {
-    /// Takes a log, or all logs of a directory.
+    /// Adds a log, or all logs in a directory.
     fn take(&mut self, path: &Path) -> Result<()> {
         // A directory that is a log, as ROS 2 writes it.
         let is_log = !path.is_dir() || Kind::of(path).is_ok();

@@ -1,4 +1,4 @@
-//! Writes the file of spikes that `encode` would have written, from the parts of a log.
+//! Restores the text file of spikes that `encode` would have written for a log of a data set.
 
 use super::DatasetKind;
 use super::parts::{FIRST, GAP, HEADER, RATE, TIME};
@@ -14,11 +14,11 @@ use spikewire::Polarity;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// Writes a log's spikes as `encode` does, byte for byte, from the file of its spikes and that of its samples beside it.
-/// Returns the output, still to be finished.
+/// Writes a log's spikes byte for byte as `encode` does. `part` is the log's Parquet file of spikes in a data set,
+/// whose file of samples must exist too. Returns the output, which the caller must finish.
 ///
 /// # Errors
-/// Returns an error if the parts are not those of a data set, or if the output cannot be written.
+/// Returns an error if the files are not those of a data set, or if the output cannot be written.
 pub fn restore(part: &Path, output: impl FnOnce() -> Result<Output>) -> Result<Output> {
     let name = part.display().to_string();
     restore_from(part, output).at(|| name)
@@ -81,7 +81,7 @@ fn other(what: &str) -> Error {
     DatasetKind::NoPart { what: what.to_owned() }.into()
 }
 
-/// Returns the file of samples that belongs to a file of spikes.
+/// Returns the path of the file of samples that belongs to the file of spikes `part`.
 fn beside(part: &Path) -> Option<PathBuf> {
     let part = part.canonicalize().ok()?;
     let events = part.parent().filter(|own| own.ends_with("events"))?;
@@ -111,7 +111,7 @@ impl Part {
         columns.iter().position(|own| own.name() == name)
     }
 
-    /// Makes the clock that watched the samples, from as many of them as then.
+    /// Makes the clock with which the log was encoded, from the same number of first samples.
     fn clock(&self, is_timed: bool) -> Result<Clock> {
         let number = |key| self.about(key).and_then(|own| own.parse::<f64>().ok());
         let first = number(FIRST).ok_or_else(|| other("no number of first samples"))? as usize;
@@ -127,7 +127,7 @@ impl Part {
         Ok(Clock::new(&times, number(RATE), gap))
     }
 
-    /// Reads a group of samples.
+    /// Reads a row group of samples.
     fn chunk(&self, group: usize, is_timed: bool) -> Result<Chunk> {
         let rows = self.file.get_row_group(group)?;
         let count = rows.metadata().num_rows() as usize;
@@ -177,7 +177,7 @@ impl Part {
     }
 }
 
-/// A spike, as in its row.
+/// A row of a Parquet file of spikes.
 #[derive(Clone, Copy)]
 struct Spike {
     index: u64,
@@ -186,10 +186,10 @@ struct Spike {
     polarity: i32,
 }
 
-/// The rows of a file of spikes, of which one group is in memory.
+/// A reader of the rows of a Parquet file of spikes. One row group is in memory at a time.
 struct Rows<'a> {
     part: &'a Part,
-    /// The next group to read.
+    /// Index of the next row group to read.
     group: usize,
     spikes: std::vec::IntoIter<Spike>,
     next: Option<Spike>,

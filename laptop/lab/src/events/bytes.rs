@@ -13,11 +13,11 @@ pub(super) struct Reader<D> {
     hooks: Hooks<D>,
 }
 
-/// Steps of reading that only some formats need.
+/// Functions of a decoder that only some formats have.
 pub(super) struct Hooks<D> {
-    /// Returns an error if the bytes read were of a format other than the decoder's.
+    /// Returns an error if the bytes read so far belong to a format other than the decoder's.
     pub check: fn(&D) -> Result<()>,
-    /// Sets the time of the following events, for a format whose events have none.
+    /// Sets the time of the following events, for a format whose events have no times.
     pub set_arrival: Option<fn(&mut D, Tick)>,
 }
 
@@ -48,7 +48,7 @@ impl<D: EventDecoder> EventReader for Reader<D> {
     }
 }
 
-/// Writes events with the encoder of one format, and reads them back to count those whose time the format changes.
+/// Writes events with the encoder of one format, and reads them back to count the events whose time the format changes.
 pub(super) struct Writer<E, D> {
     encoder: E,
     decoder: D,
@@ -59,8 +59,8 @@ pub(super) struct Writer<E, D> {
 }
 
 impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
-    /// Makes a writer that starts with `header`; `decoder` must be of the same format. An event that the format cannot
-    /// express is an error, or is dropped and counted if `drops`.
+    /// Makes a writer that starts with `header`. `decoder` must be of the same format. An event that the format cannot
+    /// express is dropped and counted if `drops`; otherwise it is an error.
     pub(super) fn new(encoder: E, decoder: D, header: &'static [u8], drops: bool) -> Self {
         Self { encoder, decoder, header, drops, events: 0, omitted: Omitted::default() }
     }

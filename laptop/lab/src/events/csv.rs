@@ -1,4 +1,5 @@
-//! Tables of events as CSV, `tick,address,polarity`. Comment lines hold all other items, such as keyframes.
+//! Tables of events as CSV, with the columns `tick,address,polarity`. Comment lines hold all other items, such as
+//! keyframes.
 
 use super::{EventReader, EventWriter, EventsKind, Item, Known, Tally};
 use crate::error::At;
@@ -48,7 +49,7 @@ impl Reader {
         }
     }
 
-    /// Reads a comment without its `#`. Returns the item in it, or `None` if it holds no item.
+    /// Reads a comment without its `#`. Returns the item in the comment, or `None` if the comment holds no item.
     fn note(&mut self, note: &str) -> Result<Option<Item>> {
         match note.split_once('=') {
             Some(("spikewire", _)) => self.is_file_of_spikes = true,
@@ -148,7 +149,7 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// Parses a comment without its `#`; returns `None` if it holds no item.
+/// Parses the text of a comment, without its `#`. Returns `None` if the comment holds no item.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     let text = || value.to_owned();

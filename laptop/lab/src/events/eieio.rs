@@ -1,5 +1,5 @@
-//! EIEIO, the datagrams of `SpiNNaker` boards: reads and writes their payloads one after the other, as recordings hold
-//! them.
+//! EIEIO, the datagrams of `SpiNNaker` boards. Reads and writes recordings, which consist of the payloads of the
+//! datagrams, one after the other.
 
 use super::omitted::Omitted;
 use super::{EventReader, EventWriter, EventsKind, Item, Tally};
@@ -33,7 +33,7 @@ impl Board {
         }
     }
 
-    /// Returns the event that `key` stands for at `tick`, or `None` if the key is not one of the board's.
+    /// Returns the event that `key` stands for at `tick`, or `None` if the board's mapping does not use the key.
     fn event(self, key: u32, tick: Tick) -> Option<Event> {
         let key = key.checked_sub(self.base)?;
         let (address, polarity) = match (self.is_signed, key & 1) {
@@ -115,7 +115,7 @@ impl EventReader for Reader {
     }
 }
 
-/// Writes a datagram for each time step; several if a step has more than [`MAX_KEYS`] events.
+/// Writes a datagram for each time step. A step with more than [`MAX_KEYS`] events gets several datagrams.
 pub(super) struct Writer {
     board: Board,
     drops: bool,

@@ -1,4 +1,4 @@
-//! Event formats by name: parses `evt2` or `edvs:e2,up=0`, and makes the format's reader and writer.
+//! Event formats by name. Parses a name such as `evt2` or `edvs:e2,up=0`, and makes a reader or writer of the format.
 
 use super::bytes::{self, Hooks};
 use super::eieio::{self, Board};
@@ -62,8 +62,8 @@ impl Format {
         }
     }
 
-    /// Makes a writer of the format. An event that the format cannot express is an error, or is dropped and counted if
-    /// `drops`.
+    /// Makes a writer of the format. An event that the format cannot express is dropped and counted if `drops`;
+    /// otherwise it is an error.
     pub fn writer(self, drops: bool) -> Box<dyn EventWriter> {
         match self {
             Self::Link(coding) => Box::new(link::Writer::new(coding)),
@@ -171,8 +171,8 @@ impl<'a> Settings<'a> {
         Ok(Self(pairs.collect::<Result<_, _>>()?))
     }
 
-    /// Removes the pair of `key`, and returns its value, a decimal number or a hexadecimal one with `0x`; returns
-    /// `otherwise` if the key is missing.
+    /// Removes the pair of `key`, and returns its value. The value is a decimal number, or a hexadecimal number that
+    /// starts with `0x`. Returns `otherwise` if the key is missing.
     fn number<N: TryFrom<u32>>(&mut self, key: &str, otherwise: N) -> Result<N> {
         let Some(place) = self.0.iter().position(|pair| pair.0 == key) else {
             return Ok(otherwise);
@@ -187,8 +187,8 @@ impl<'a> Settings<'a> {
         number.ok_or_else(|| EventsKind::OutOfRange { key, text }.into())
     }
 
-    /// Removes the pair of `key`, and returns whether its value is 1 rather than 0; returns `otherwise` if the key is
-    /// missing.
+    /// Removes the pair of `key`, and returns true for the value 1 and false for the value 0. Returns `otherwise` if
+    /// the key is missing.
     fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
         match self.number::<u32>(key, otherwise.into())? {
             bit @ 0..=1 => Ok(bit == 1),

@@ -8,23 +8,24 @@ use std::io::Write;
 
 /// A decoder of link frames to values.
 pub trait Values {
-    /// Decodes a frame, and appends to `items` a value for each keyframe and event, or for each sample that has ended.
+    /// Decodes a frame, and appends the decoded values to `items`: a value for each keyframe and event, or a value for
+    /// each sample that has ended.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
     /// Appends the values of the last sample. Call it after the last frame.
     fn finish(&mut self, items: &mut Vec<Item>);
 
-    /// Adds the decoders' counts to those of the link.
+    /// Adds the decoders' counts to the link's counts in `tally`.
     fn count(&self, tally: &mut LinkTally);
 
-    /// Returns the reason that a channel's value is not exact; `None` if it is.
+    /// Returns the reason that a channel's value is not exact, or `None` if the value is exact.
     fn withheld(&self, channel: u16) -> Option<Withheld>;
 }
 
 /// Reads link frames as events, or as decoded values.
 pub struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
-    /// Number of zeros that `finish` appended to the input and that the reader skipped.
+    /// Number of skipped zeros that `finish` had appended to the input.
     padding: u64,
     values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,
@@ -46,8 +47,8 @@ impl EventReader for LinkReader<'_> {
         }
     }
 
-    /// Appends zeros to the input. Without them, a frame whose length was damaged would hold back the frames after it,
-    /// because the reader would wait for the longest possible frame.
+    /// Appends zeros to the input. Without these zeros, a frame with a damaged length field would hold back the frames
+    /// after it, because the reader would wait for the longest possible frame.
     fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
         self.read(&[0; MAX_FRAME], items)?;
         self.padding = MAX_FRAME as u64;
@@ -155,7 +156,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Writes the frames that are full; with `with_last` also the last frame, which has room for more items.
+    /// Writes the frames that are full. If `with_last`, also writes the last frame, which still has room for items.
     fn frames(&mut self, with_last: bool, output: &mut dyn Write) -> Result<()> {
         let Self { framer, keyframes, events, owes_mark, is_fresh, .. } = self;
         let mut buffer = [0; MAX_FRAME];

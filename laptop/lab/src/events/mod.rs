@@ -1,7 +1,7 @@
 //! Reads and writes streams of events in every format, in constant memory.
 //!
-//! `spikewire` and `spikewire-cameras` have the formats' codecs; this module moves bytes through them, and counts what
-//! a format cannot hold.
+//! The codecs of the formats are in `spikewire` and `spikewire-cameras`. This module moves bytes through the codecs,
+//! and counts the items that a format cannot hold.
 
 mod bytes;
 mod csv;
@@ -46,7 +46,7 @@ pub enum Item {
         /// Certainty of the value.
         known: Known,
     },
-    /// Frames were lost on the link, as many as the number says.
+    /// The given number of frames were lost on the link.
     LostFrames(u32),
     /// The sender lost events before it could send them.
     LostEvents,
@@ -59,7 +59,7 @@ pub enum Item {
 pub enum Known {
     /// The value comes from a keyframe.
     Keyframe,
-    /// The value equals that of the sender's own decoder, bit for bit.
+    /// The value equals the value of the sender's own decoder, bit for bit.
     Exact,
     /// The value may differ from the sender's: events were lost since the last keyframe, or no keyframe has come yet.
     Estimate,
@@ -67,7 +67,8 @@ pub enum Known {
 
 /// Converts bytes of a format to items.
 pub trait EventReader {
-    /// Reads bytes, which may be cut anywhere, and appends the items that they complete.
+    /// Reads the next bytes of the input, and appends the items that they complete. The input may be split between any
+    /// two bytes.
     ///
     /// # Errors
     /// Returns an error if the bytes belong to a different format.
@@ -96,13 +97,13 @@ pub trait EventWriter {
     /// Returns an error if the format cannot express the item, or if the output cannot be written.
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()>;
 
-    /// Writes the items that were kept for later.
+    /// Writes the items that [`write`](Self::write) has kept for later.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.
     fn finish(&mut self, output: &mut dyn Write) -> Result<()>;
 
-    /// Returns notes on what the format could not hold.
+    /// Returns notes on the items that the format could not hold.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }

@@ -3,7 +3,7 @@
 use super::Item;
 use spikewire::Tick;
 
-/// Counts of items that a writer left out, and of events whose time the format changes.
+/// Counts of items that a writer left out, and of events whose time the format changed.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Omitted {
     dropped: u64,
@@ -19,7 +19,7 @@ impl Omitted {
         self.dropped += 1;
     }
 
-    /// Counts an event if `read`, its time when read back, differs from its time `event`.
+    /// Counts an event if its time `event` differs from its time `read` after writing and reading it.
     pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());
@@ -30,7 +30,7 @@ impl Omitted {
         self.others += u64::from(item != Item::Restart);
     }
 
-    /// Formats the counts as notes. `what` names the thing that dropped events lack in the format, such as a key.
+    /// Formats the counts as notes. `what` names the thing that the format lacks for the dropped events, such as a key.
     pub(super) fn notes(self, what: &str) -> Vec<String> {
         let Self { dropped, retimed, furthest, others } = self;
         let all = [

@@ -11,7 +11,7 @@ use std::io::Write;
 pub struct Stream<'a> {
     reader: Box<dyn EventReader + 'a>,
     writer: Box<dyn EventWriter>,
-    /// The tick that is subtracted from all ticks, if the output is to start at 0.
+    /// The tick that is subtracted from all ticks to make the output start at 0, if requested.
     zero: Zero,
     items: Vec<Item>,
     bytes: u64,
@@ -30,7 +30,7 @@ enum Zero {
 }
 
 impl<'a> Stream<'a> {
-    /// Connects a reader to a writer. Keeps ticks as they are or, with `from_zero`, shifts them so that the first is 0.
+    /// Connects a reader to a writer. If `from_zero`, all ticks are shifted such that the first tick is 0.
     pub fn new(
         reader: Box<dyn EventReader + 'a>,
         writer: Box<dyn EventWriter>,
@@ -50,8 +50,8 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Converts bytes, which may be cut anywhere. `arrival` is their time of arrival, for formats whose events have no
-    /// times.
+    /// Converts the next bytes of the input, which may be split between any two bytes. `arrival` is the bytes' time of
+    /// arrival, for formats whose events have no times.
     ///
     /// # Errors
     /// Returns an error if the bytes cannot be read, or if their items cannot be written.
@@ -61,7 +61,7 @@ impl<'a> Stream<'a> {
         arrival: Option<Tick>,
         output: &mut dyn Write,
     ) -> Result<()> {
-        /// Maximum number of bytes that are read at once, which bounds the memory of their items.
+        /// Maximum number of bytes that are read at once, which bounds the memory that the items take.
         const PIECE: usize = 1 << 14;
         if let Some(tick) = arrival {
             self.reader.set_arrival(tick);
@@ -152,7 +152,7 @@ impl<'a> Stream<'a> {
         self.bytes
     }
 
-    /// Checks whether the bytes read were of `format`; `file` is the input's name in the error.
+    /// Checks whether the bytes read belong to `format`. `file` is the input's name in the error.
     ///
     /// # Errors
     /// Returns an error if bytes were skipped and neither an event nor a frame was found.
@@ -168,7 +168,7 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Returns the sentence that says how many bytes were written, and how many for each item.
+    /// Returns a sentence with the number of bytes written, in total and for each item.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),

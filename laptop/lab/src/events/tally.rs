@@ -9,7 +9,7 @@ use std::fmt;
 pub struct Tally {
     /// Number of bytes that belong to no item.
     pub skipped: u64,
-    /// Whether the stream ends within an item.
+    /// Whether the stream ends in the middle of an item.
     pub is_cut: bool,
     /// Number of ticks of more than 32 bits.
     pub long_ticks: u64,
@@ -24,13 +24,13 @@ pub struct LinkTally {
     pub frames: u64,
     /// Number of frames that never arrived.
     pub lost: u64,
-    /// Number of gaps in the sequence of frames; each is one or more lost frames.
+    /// Number of gaps in the sequence of frames. A gap stands for one or more lost frames.
     pub gaps: u64,
     /// Number of frames whose checksum did not match.
     pub bad_checksums: u64,
     /// Number of frames that arrived twice.
     pub repeated: u64,
-    /// Number of frames that say that the sender lost events before them.
+    /// Number of frames in which the sender reports that it lost events before the frame.
     pub after_loss: u64,
     /// Number of times that the sender started.
     pub restarts: u64,
@@ -44,13 +44,13 @@ pub struct LinkTally {
     pub misfits: u64,
     /// Number of keyframes received although the scheme uses none.
     pub unused_keyframes: u64,
-    /// Comparison of keyframes with the values decoded just before them.
+    /// Comparison of the keyframes with the values decoded just before each keyframe.
     pub held: Held,
-    /// The reason that no value is exact, if values are decoded and none is.
+    /// The reason that no decoded value is exact. `None` if a value is exact, or if no values are decoded.
     pub withheld: Option<Withheld>,
 }
 
-/// Comparison of keyframes with the values that the decoder held when they came, for codes whose decoder should already
+/// Comparison of keyframes with the decoder's values just before each keyframe, for codes whose decoder should already
 /// hold the keyframe's value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {

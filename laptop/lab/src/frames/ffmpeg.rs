@@ -11,7 +11,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 use std::thread::JoinHandle;
 
 /// Pixel format that `ffmpeg` is asked for: 8 bits of full-range brightness. Grey and full-range sources pass
-/// unchanged; a limited range is expanded, as by [`Y4m`].
+/// unchanged. A limited range is expanded to the full range, as [`Y4m`] does.
 const GREY: &str = "gray";
 
 /// The frames into which `ffmpeg` converts a file.
@@ -69,8 +69,7 @@ impl Converted {
     }
 }
 
-/// Returns all messages of `ffmpeg`, joined to one line. Waits for the program's end; a second call returns an empty
-/// text.
+/// Waits for the end of `ffmpeg`, and returns all its messages in one line. A second call returns an empty text.
 fn words(said: &mut Option<JoinHandle<String>>) -> String {
     let text = said.take().and_then(|said| said.join().ok()).unwrap_or_default();
     text.lines().collect::<Vec<_>>().join("; ")

@@ -1,4 +1,4 @@
-//! Converts video frames to pixel events, and renders those events as pictures.
+//! Converts video frames to pixel events, and draws the events as pictures.
 
 mod ffmpeg;
 mod kinds;

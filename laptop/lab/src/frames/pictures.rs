@@ -1,4 +1,4 @@
-//! Reads a sequence of picture files as a video, a frame from each file.
+//! Reads a sequence of picture files as a video. Each file is a frame.
 
 use super::FramesKind;
 use super::video::{Rate, Video};

@@ -43,11 +43,11 @@ enum Kind {
 }
 
 impl Preview {
-    /// Opens the preview's file, `.png` or `.gif`. Each of `thresholds`, in grey levels, gets a panel; `last` is the
+    /// Opens the preview's file, `.png` or `.gif`. Each of `thresholds`, in grey levels, gets a panel. `last` is the
     /// index of the last frame to draw.
     ///
     /// # Errors
-    /// Returns an error if the file's name has a different ending, or if a threshold is 0 or 255.
+    /// Returns an error if the file's name ends in neither `.png` nor `.gif`, or if a threshold is 0 or 255.
     pub fn open(
         path: &Path,
         input: &Path,
@@ -86,7 +86,7 @@ impl Preview {
         Ok(Self { panels, size, scale, canvas, last, file })
     }
 
-    /// Draws frame `index` of the video, unless it is beyond the last one to draw.
+    /// Draws frame `index` of the video, unless it comes after the last frame to draw.
     ///
     /// # Errors
     /// Returns an error if the picture cannot be written.
@@ -163,7 +163,8 @@ impl Preview {
     }
 }
 
-/// Returns red, green and blue of each colour: the greys, then dark ink for brighter, red for darker, and white.
+/// Returns red, green and blue of each colour: first the greys, then dark ink for pixels that became brighter, red for
+/// pixels that became darker, and white.
 fn palette() -> Vec<u8> {
     let greys = (0..GREYS).flat_map(|grey| [(grey * 255 / (GREYS - 1)) as u8; 3]);
     greys.chain([0x2b, 0x2f, 0x36, 0xc2, 0x3b, 0x4e, 0xff, 0xff, 0xff]).collect()

@@ -11,7 +11,7 @@ use spikewire_cameras::frame::PixelEvent;
 use std::io::Write;
 use std::path::Path;
 
-/// A file of pixel events, in the format that the ending of its name says.
+/// A file of pixel events. The ending of the file's name selects the format.
 pub struct Sink {
     output: Output,
     format: Kind,

@@ -9,7 +9,7 @@ use std::str::FromStr;
 
 /// A sequence of grey frames of one size.
 pub trait Video {
-    /// Returns the number of columns and the number of rows.
+    /// Returns the width and height of a frame, in pixels.
     fn size(&self) -> (u16, u16);
 
     /// Returns the frame rate, if the file contains it.
@@ -21,7 +21,7 @@ pub trait Video {
     /// Reads the next frame into the buffer, row by row; returns false at the end.
     ///
     /// # Errors
-    /// Returns an error if the frame cannot be read, or if its size is not that of the first.
+    /// Returns an error if the frame cannot be read, or if its size differs from the first frame's.
     fn next(&mut self, frame: &mut Vec<u8>) -> Result<bool>;
 }
 
@@ -33,12 +33,12 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// Makes the rate of `frames` frames in `seconds` seconds; `None` if either is 0.
+    /// Makes the rate of `frames` frames in `seconds` seconds. Returns `None` if either number is 0.
     pub fn new(frames: u64, seconds: u64) -> Option<Self> {
         (frames > 0 && seconds > 0).then_some(Self { frames, seconds })
     }
 
-    /// Returns the time of a frame, counted from 0, in µs.
+    /// Returns the time in µs of the frame of index `frame`, counted from 0.
     pub fn micros(self, frame: u64) -> u64 {
         (u128::from(frame) * 1_000_000 * u128::from(self.seconds) / u128::from(self.frames)) as u64
     }

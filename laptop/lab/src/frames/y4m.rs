@@ -14,7 +14,7 @@ use y4m::{Decoder, Error};
 /// The first bytes of a YUV4MPEG2 file.
 pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
 
-/// Maximum length of the header in bytes; the decoder has the same limit.
+/// Maximum length of the header in bytes, the same as in the decoder.
 const LONGEST_HEADER: usize = 1024;
 
 /// A reader that counts the bytes read through it.
@@ -31,11 +31,11 @@ impl<R: Read> Read for Counting<R> {
     }
 }
 
-/// A reader that first yields the header, which is in memory, and then the frames.
+/// A reader that first yields the bytes of the header, which are in memory, and then the bytes of the frames.
 type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
 
-/// Reads the header and checks its numbers of columns and rows, because the decoder multiplies them unchecked. Returns
-/// a reader of the header and the frames.
+/// Reads the header, and checks the width and height in it, because the decoder multiplies them without a check.
+/// Returns a reader of the header and the frames.
 fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
     let mut header = Vec::new();
     while !header.ends_with(b"\n") && header.len() < LONGEST_HEADER {
@@ -72,7 +72,7 @@ pub(super) struct Y4m<R: Read> {
 }
 
 impl<R: Read> Y4m<R> {
-    /// Reads the header; `length` is the file's length in bytes if known, which gives the number of frames.
+    /// Reads the header. `length` is the file's length in bytes, if known; the number of frames is computed from it.
     ///
     /// # Errors
     /// Returns an error if the file is not YUV4MPEG2, or if its pixels have more than 8 bits.
@@ -102,7 +102,8 @@ impl<R: Read> Y4m<R> {
     }
 }
 
-/// Expands brightness of limited range, 16 to 235, to full range; values outside become black or white.
+/// Expands brightness from the limited range, 16 to 235, to the full range. Values outside the limited range become
+/// black or white.
 fn full_range(limited: u8) -> u8 {
     const BLACK: u16 = 16;
     const STEPS: u16 = 219;
@@ -110,7 +111,8 @@ fn full_range(limited: u8) -> u8 {
     ((above * 255 + STEPS / 2) / STEPS) as u8
 }
 
-/// Returns the number of bytes that the brightness of a frame takes, and the number that its colours take.
+/// Returns the number of bytes that the brightness of a frame takes, and the number of bytes that the frame's colours
+/// take.
 fn colours<R: Read>(decoder: &Decoder<R>) -> (u64, u64) {
     use y4m::Colorspace;
     let (width, height) = (decoder.get_width() as u64, decoder.get_height() as u64);

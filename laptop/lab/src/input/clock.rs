@@ -9,8 +9,8 @@ pub enum Kind {
     Gap,
     /// The step goes back: samples are out of order.
     Backward,
-    /// The step goes back so far that the recorder's clock must have restarted, as after a reboot: a new segment
-    /// begins.
+    /// The step goes back so far that the recorder's clock must have restarted, for example after a reboot. A new
+    /// segment begins.
     Restart,
 }
 
@@ -36,7 +36,7 @@ impl fmt::Display for Step {
 struct Jump {
     /// New rate, in samples a second.
     rate: f64,
-    /// Index of the sample from which the new rate was seen.
+    /// Index of the first sample at the new rate.
     from: u64,
 }
 
@@ -51,9 +51,9 @@ impl fmt::Display for Jump {
 pub struct Clock {
     usual_step: f64,
     longest_step: f64,
-    /// Longest step back, in µs, that still counts as disorder; a longer one is a restart.
+    /// Longest step back, in µs, that still counts as samples out of order. A longer step back counts as a restart.
     longest_back: f64,
-    /// Number of samples for each step forward: 1, or more if samples come in batches that share a time.
+    /// Number of samples for each step forward. It is 1 unless samples come in batches that share a time.
     samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
@@ -67,20 +67,21 @@ pub struct Clock {
     before: i64,
     /// The latest times in µs, over at most [`RUN`] steps.
     run: Vec<i64>,
-    /// Time between samples in µs, as measured when the rate last jumped.
+    /// Time between samples in µs, measured when the sample rate last changed.
     run_step: f64,
     jumps: Listed<Jump>,
     is_timed: bool,
 }
 
-/// Number of steps over which a rate is measured at a time.
+/// Number of consecutive steps over which the sample rate is measured.
 const RUN: usize = 64;
-/// Longest step back that still counts as disorder, in usual steps; a longer one is a restart of the recorder's clock.
+/// Longest step back that still counts as samples out of order, in usual steps. A longer step back counts as a restart
+/// of the recorder's clock.
 const RESTART: f64 = 10.0;
 /// Factor by which the sample rate must change to be reported.
 const JUMP: f64 = 1.5;
 
-/// Findings of one kind, such as gaps: their number, and the first few of them.
+/// The number of findings of one kind, such as gaps, and the first few of these findings.
 #[derive(Clone, Debug)]
 struct Listed<T> {
     count: u64,
@@ -94,8 +95,8 @@ impl<T> Default for Listed<T> {
 }
 
 impl Clock {
-    /// Makes a clock whose usual step is that of `first_times` or, without times, that of `rate` in samples a second. A
-    /// step longer than `steps` usual ones counts as a gap.
+    /// Makes a clock. The usual step is measured in `first_times` or, if `first_times` is empty, computed from `rate`
+    /// in samples a second. A step longer than `steps` usual steps counts as a gap.
     pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
         let are_sorted = !is_disordered(first_times);
         let usual = if are_sorted {
@@ -142,17 +143,17 @@ impl Clock {
         (self.usual_step / self.samples_a_step).round() as i64
     }
 
-    /// Returns the number of steps above the bound of gaps.
+    /// Returns the number of gaps.
     pub fn gaps(&self) -> u64 {
         self.gaps.count
     }
 
-    /// Returns the number of steps back in time, without those at which the clock restarted.
+    /// Returns the number of steps back in time. Restarts of the clock are not counted.
     pub fn steps_back(&self) -> u64 {
         self.backward.count
     }
 
-    /// Returns how often the clock restarted.
+    /// Returns the number of times that the clock restarted.
     pub fn restarts(&self) -> u64 {
         self.restarts.count
     }
@@ -206,8 +207,9 @@ impl Clock {
         steps
     }
 
-    /// Measures the rate of a run, and notes a jump if both the median and the mean of its steps have changed. A gap
-    /// changes only the mean, and steps that alternate between two lengths change only the median.
+    /// Measures the sample rate of the latest run of steps. Records a change of rate if both the median and the mean of
+    /// the steps have changed: a gap changes only the mean, and steps that alternate between two lengths change only
+    /// the median.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {
@@ -249,7 +251,7 @@ impl<T: fmt::Display> fmt::Display for Listed<T> {
     }
 }
 
-/// Writes the findings for the user: gaps, jumps of the rate, restarts, steps back and repeated times.
+/// Writes the findings for the user: gaps, changes of the sample rate, restarts, steps back and repeated times.
 impl fmt::Display for Clock {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_timed {
@@ -282,8 +284,8 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Returns whether times are out of order: more than two of their steps go back, and more than a tenth of the steps
-/// that are not 0.
+/// Returns whether times are out of order. They are if more than two steps go back, and if these steps are more than a
+/// tenth of the steps that are not 0.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();
@@ -291,9 +293,10 @@ fn is_disordered(times: &[i64]) -> bool {
     back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
 }
 
-/// Returns the median of the steps forward in µs, and the number of samples for each such step: 1 unless times repeat.
+/// Returns the median of the steps forward, in µs, and the number of samples for each step forward. This number is 1
+/// unless times repeat.
 ///
-/// Returns `None` if no time is later than the one before, or if times repeat and fewer than three steps go forward.
+/// Returns `None` if no step goes forward, or if times repeat and fewer than three steps go forward.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));

@@ -20,13 +20,13 @@ use std::collections::VecDeque;
 use std::io::{self, BufReader, Cursor, Read};
 use std::rc::Rc;
 
-/// Names of columns that hold counts rather than samples; such a column is read only if the user names it.
+/// Names of columns that hold counts rather than samples. A column with such a name is read only if the user names it.
 const COUNTS: [&str; 8] =
     ["index", "sample", "i", "", "unnamed: 0", "loopiteration", "lineno", "header.seq"];
 /// Number of rows that are examined first, to find the header and the format of the times.
 const AHEAD: usize = 64;
 
-/// A CSV table that is being read: the chosen columns, and those with the times, if there are any.
+/// A CSV table that is being read: the chosen columns, and the columns with the times, if the table has times.
 pub(super) struct Table {
     rows: Rows,
     /// Number of comments below the header.
@@ -64,10 +64,10 @@ struct Time {
 }
 
 impl Table {
-    /// Opens a table of text, JSON lines or an array of `NumPy`.
+    /// Opens a table that is CSV text, JSON lines or an array of `NumPy`.
     ///
     /// # Errors
-    /// Returns an error if the input holds no table, or not the columns that were asked for.
+    /// Returns an error if the input holds no table, or if the table lacks a requested column.
     pub(super) fn open(
         input: impl Read + 'static,
         file: &str,
@@ -89,7 +89,8 @@ impl Table {
         Self::of_text(text, 0, cut, file, options)
     }
 
-    /// Opens a table whose rows were in another format, and whose header is no line of the file.
+    /// Opens a table whose file has another format than CSV. `rows` is the table as CSV; its header is not counted as a
+    /// line of the file.
     ///
     /// # Errors
     /// See [`open`](Self::open).
@@ -98,7 +99,7 @@ impl Table {
         Self::of_text(rows, 1, Rc::default(), file, options)
     }
 
-    /// `above` is the number of lines that are not the file's own.
+    /// Opens a table of CSV text. `above` is the number of lines at the start of `text` that are not in the file.
     fn of_text(
         text: Box<dyn Read>,
         above: u64,
@@ -202,7 +203,8 @@ impl Table {
         Ok(times.into_iter().next())
     }
 
-    /// Decides the format of the times in `column`, whose name suggests `says`, and adds a note on it for the user.
+    /// Decides the format of the times in `column`, and adds a note on the format for the user. `says` is the format
+    /// that the column's name suggests.
     fn read_times(
         &mut self,
         column: Column,
@@ -355,18 +357,18 @@ pub(super) fn is_missing(field: &[u8]) -> bool {
     WORDS.iter().any(|word| field.eq_ignore_ascii_case(word.as_bytes()))
 }
 
-/// The rows of a table, and the lines at which they begin.
+/// A reader of a table's rows that knows the line at which each row begins.
 struct Rows {
     reader: Reader<Box<dyn Read>>,
-    /// Whether the table's lines end in CR and LF, in which case the CSV reader counts the LF as part of the next line.
+    /// Whether the table's lines end in CR and LF. If they do, the CSV reader counts the LF as part of the next line.
     is_of_windows: bool,
-    /// Number of lines above the first of the file.
+    /// Number of lines at the start of the text that are not in the file.
     above: u64,
 }
 
 impl Rows {
-    /// Makes a reader of the rows in `start` and of those in `input`. Comment lines are counted in `count`. `above` is the
-    /// number of lines above the first of the file.
+    /// Makes a reader of the rows in `start` and then in `input`. Comment lines are counted in `count`. `above` is the
+    /// number of lines in `start` that are not in the file.
     fn new(
         start: Start,
         input: impl Read + 'static,
@@ -398,7 +400,7 @@ impl Rows {
     }
 
     /// Returns the line at which `record`, the row read last, begins. The line is counted back from the reader's
-    /// position, because the record's own position is that of the comments before it.
+    /// position, because the record's own position is the position of the comments before the record.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
@@ -406,7 +408,7 @@ impl Rows {
     }
 }
 
-/// A reader that counts the lines beginning with `#` as they are read through it.
+/// A reader that passes on its input, and counts the lines that begin with `#`.
 struct Comments<R> {
     input: R,
     /// The last byte read.
@@ -454,7 +456,8 @@ fn unreadable(error: csv::Error, line: u64) -> TableKind {
     }
 }
 
-/// Finds the column of nanoseconds that ROS writes beside a column of whole seconds, such as `nsecs` beside `secs`.
+/// Finds the column of nanoseconds that belongs to a column of whole seconds, such as `nsecs` to `secs`. ROS writes
+/// times as such pairs of columns.
 fn nanoseconds(seconds: &Column, names: &[String]) -> Option<Column> {
     let lower = seconds.name.to_lowercase();
     let stem = lower.strip_suffix("secs").or_else(|| lower.strip_suffix("sec"))?;
@@ -495,7 +498,7 @@ fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Colu
     signals.map(|(index, name)| Column { index, name: name.clone() })
 }
 
-/// Lists the first 20 names and the number of the others, because a table may have a million columns.
+/// Lists the first 20 names and the number of further names, because a table may have a million columns.
 pub(super) fn first_of(names: &[String]) -> String {
     const MOST: usize = 20;
     let first = names.get(..MOST).unwrap_or(names).join(", ");
@@ -505,7 +508,7 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// Returns the only column that holds neither times nor counts; an error if there is none or several.
+/// Returns the only column that holds neither times nor counts. Returns an error if no column does, or if several do.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {

@@ -1,13 +1,14 @@
-//! Reads the lines of a table that is cut short, up to the last whole one.
+//! Reads a truncated table up to its last complete line.
 
 use std::cell::Cell;
 use std::io::{self, Read};
 use std::rc::Rc;
 
-/// The whole lines of an input. A last line without an end, and what cannot be read or decompressed, are left out.
+/// A reader of the complete lines of an input. It leaves out a last line without a line end, and all bytes after an
+/// error in reading or decompressing.
 pub(super) struct WholeLines<R> {
     input: R,
-    /// Bytes read; those from `at` to `whole` belong to whole lines and are not passed on yet.
+    /// The bytes read. The bytes from `at` to `whole` belong to complete lines and are not passed on yet.
     held: Vec<u8>,
     at: usize,
     whole: usize,
@@ -16,12 +17,12 @@ pub(super) struct WholeLines<R> {
 }
 
 impl<R: Read> WholeLines<R> {
-    /// Reads an input; a note on what is left out goes to `cut`.
+    /// Makes a reader of `input`. If bytes are left out, the reader puts a note about them into `cut`.
     pub(super) fn new(input: R, cut: Rc<Cell<Option<String>>>) -> Self {
         Self { input, held: Vec::new(), at: 0, whole: 0, is_read: false, cut }
     }
 
-    /// Reads until a line is whole, or to the end.
+    /// Reads until a line is complete, or to the end of the input.
     fn fill(&mut self) {
         const MORE: usize = 1 << 16;
         self.held.drain(..self.at);

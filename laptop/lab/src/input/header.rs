@@ -1,5 +1,5 @@
-//! Finds the header of a table: its first line, or a comment above its first row, where `EuRoC`, TUM-VI and `NumPy`
-//! write it.
+//! Finds the header of a table. The header is the first line or, in files of `EuRoC`, TUM-VI and `NumPy`, a comment
+//! above the first row.
 
 use super::csv::is_missing;
 use super::text::name;
@@ -14,7 +14,7 @@ pub(super) struct Start {
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
-    /// Offset in `text` of the line after it.
+    /// Offset in `text` of the line after the one at `line`.
     next: usize,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Header {
 }
 
 impl Start {
-    /// Reads lines up to and including the first that is neither a comment nor empty, and the line after it.
+    /// Reads lines up to the first line that is neither a comment nor empty, and then that line and the next line.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read.
@@ -44,12 +44,12 @@ impl Start {
         }
     }
 
-    /// Returns whether lines end in CR and LF.
+    /// Returns whether the lines end in CR and LF.
     pub(super) fn is_of_windows(&self) -> bool {
         self.text[..self.next].ends_with(b"\r\n")
     }
 
-    /// Returns whether the line after the first is a comment.
+    /// Returns whether the line after the first line that is not a comment is itself a comment.
     pub(super) fn is_followed_by_comment(&self) -> bool {
         self.text[self.next..].starts_with(b"#")
     }
@@ -64,8 +64,9 @@ impl Start {
         }
     }
 
-    /// Returns the header if a comment holds it: the last comment that has as many fields as the line after the
-    /// comments, if that line contains a number and the comment none. `asked` is the delimiter, if the user gave one.
+    /// Returns the header if a comment holds it. The header is the last comment that contains no number and has as many
+    /// fields as the line after the comments, which must contain a number. `asked` is the delimiter, if the user gave
+    /// one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
@@ -81,8 +82,8 @@ impl Start {
     }
 }
 
-/// Returns whether the first row holds samples rather than names: it contains numbers, and no text in it stands above a
-/// number in the second row.
+/// Returns whether the first row holds samples rather than names. It does if it contains numbers, and if no text in it
+/// stands above a number in the second row.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);
@@ -99,7 +100,8 @@ fn is_number(field: &[u8], delimiter: u8) -> bool {
     number(field.trim_ascii(), delimiter != b',').is_some()
 }
 
-/// Returns whether a header and the row below it have the same number of words, more than one, and the row is numbers.
+/// Returns whether a header and the row below are aligned by blanks: both have the same number of words, at least two,
+/// and all words of the row are numbers.
 fn is_aligned(header: &[u8], row: &[u8]) -> bool {
     let (names, row) = (split(header, b' '), split(row, b' '));
     names.len() > 1 && names.len() == row.len() && row.iter().all(|own| is_number(own, b' '))
@@ -119,7 +121,8 @@ fn split(line: &[u8], delimiter: u8) -> ByteRecord {
     record
 }
 
-/// Returns the delimiter that occurs most often in a line, outside of quotes; `None` if there is none but blanks.
+/// Returns the delimiter that occurs most often in a line, outside of quotes. Returns `None` if the line has no
+/// delimiter except blanks.
 fn delimiter(header: &[u8]) -> Option<u8> {
     let mut is_quoted = false;
     let mut counts = [(b',', 0), (b';', 0), (b'\t', 0), (b'|', 0)];

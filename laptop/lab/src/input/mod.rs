@@ -31,18 +31,18 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 pub use time::TimeUnit;
 
-/// The name that stands for all columns except those of times and counts.
+/// The name that stands for all columns except columns of times and counts.
 const ALL: &str = "all";
 
 /// Maximum number of samples in a chunk.
 pub const CHUNK: usize = 8192;
 
-/// The file of a recording, and options for reading it.
+/// The file of a recording, and options for reading the file.
 #[derive(Clone, Debug)]
 pub struct InputOptions {
-    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and `.log`,
-    /// telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed. `-` reads a table from
-    /// standard input.
+    /// A table, a log, or `-` for a table on standard input. Files may be compressed. The formats of tables are CSV,
+    /// JSON lines, Parquet, and `NumPy`'s `.npy` and `.npz`. The formats of logs are PX4's `ULog`, `ArduPilot`'s `.bin`
+    /// and `.log`, telemetry `.tlog`, bags of ROS 1 and 2, MCAP, and Betaflight's blackbox.
     pub input: PathBuf,
     /// The channels to read.
     pub channel: ChannelOptions,
@@ -61,17 +61,18 @@ impl Deref for InputOptions {
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
-    /// Columns of a CSV table, such as `gyro_x`, or `all`; for a log, fields as `TOPIC.FIELD`.
+    /// Columns of a table by name, such as `gyro_x`, or `all`. For a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
     /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a log's messages have the time
     /// at which they were recorded.
     pub time: Option<String>,
-    /// Unit of the time column; by default taken from its name, such as `time (us)` or `stamp_ns`, or from its values.
+    /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
+    /// `stamp_ns`, or from the column's values.
     pub time_unit: Option<TimeUnit>,
-    /// Delimiter of columns: `,` `;` `|` `tab` `space`; by default found in the header.
+    /// Delimiter of columns: `,` `;` `|` `tab` `space`. By default, the delimiter is found in the header.
     pub delimiter: Option<Delimiter>,
-    /// Topic of a log; the suffix `:1` stands for the second instance of a sensor.
+    /// Topic of a log. The suffix `:1` stands for the second instance of a sensor.
     pub topic: Option<String>,
     /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,
@@ -79,13 +80,13 @@ pub struct ChannelOptions {
     pub fields: Vec<String>,
     /// Samples a second, for a recording without times.
     pub rate: Option<f64>,
-    /// Longest step in time that is not yet a gap, in usual steps.
+    /// Longest step in time that does not count as a gap, in usual steps.
     pub gap: f64,
     /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
     /// row is an error.
     pub skip_non_finite: bool,
-    /// Whether a log that is cut short or damaged is read without its damaged parts, and a table up to its last whole
-    /// line. Otherwise, damage is an error.
+    /// Whether damaged files are accepted. A truncated or damaged log is then read without its damaged parts, and a
+    /// truncated table is read up to its last complete line. Otherwise, damage is an error.
     pub accept_cut: bool,
 }
 
@@ -128,9 +129,10 @@ impl FromStr for Delimiter {
 /// Consecutive samples of all channels, with their times if the recording has any.
 #[derive(Debug, Default)]
 pub struct Chunk {
-    /// The samples of each channel, NaN or infinite if not finite in the recording. All channels have the same number.
+    /// The samples of each channel. All channels have the same number of samples. Samples that are not finite in the
+    /// recording are NaN or infinite.
     pub columns: Vec<Vec<f64>>,
-    /// The samples' times in µs: one for each row, or none if the recording has no times.
+    /// The samples' times in µs, one for each row. Empty if the recording has no times.
     pub times: Vec<i64>,
 }
 
@@ -172,7 +174,7 @@ impl Chunk {
         rows
     }
 
-    /// Returns, for each channel, its values in the rows that are marked true.
+    /// Returns each channel's values in the rows for which `rows` is true.
     pub fn kept(&self, rows: &[bool]) -> Vec<Vec<f64>> {
         let kept = |column: &Vec<f64>| {
             column.iter().zip(rows).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
@@ -186,7 +188,7 @@ pub trait Source {
     /// Replaces the chunk's content with the next samples. After the last sample, the chunk is empty.
     ///
     /// # Errors
-    /// Returns an error, with its place, if a sample cannot be read.
+    /// Returns an error, with the place in the file, if a sample cannot be read.
     fn next(&mut self, chunk: &mut Chunk) -> Result<()>;
 
     /// Reads all remaining samples.
@@ -204,13 +206,13 @@ pub trait Source {
         }
     }
 
-    /// Returns the channels' names: those of columns or fields, which may contain commas.
+    /// Returns the channels' names, which are the names of columns or fields. A name may contain commas.
     fn names(&self) -> Vec<&str>;
 
-    /// Returns where the channels come from, as keys and values for the header of a file of spikes.
+    /// Returns the origin of the channels, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
 
-    /// Returns notes for the user on how the recording is read, a line each.
+    /// Returns notes for the user on how the recording is read. Each note is a line.
     fn notes(&self) -> &[Words];
 }
 
@@ -268,8 +270,8 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Returns the options with columns such as `TOPIC.FIELD` split into their common topic and fields; `None` if a
-    /// column has no such form, if the topics differ, or if a topic or field is chosen already.
+    /// Returns the options with columns such as `TOPIC.FIELD` split into their common topic and their fields. Returns
+    /// `None` if a column has a different form, if the topics differ, or if a topic or field is already chosen.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
@@ -287,7 +289,7 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// Returns these options, with all columns of a table chosen if no column is.
+    /// Returns these options. If the input is a table and no column is chosen, all columns are chosen.
     ///
     /// # Errors
     /// Returns an error if the file cannot be opened.

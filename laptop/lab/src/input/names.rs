@@ -1,7 +1,7 @@
 //! Suggestions for a misspelt name.
 
-/// Returns the words that follow a misspelt name in a message: all names if they are at most eight, or else the three
-/// that resemble `asked` most and the number of all.
+/// Returns the words that follow a misspelt name in a message. If there are at most eight valid names, the words list
+/// all names. Otherwise, the words list the three names that resemble `asked` most, and the number of all names.
 pub fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     const FEW: usize = 8;
     const MOST: usize = 3;

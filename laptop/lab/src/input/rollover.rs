@@ -4,14 +4,14 @@ use super::{Chunk, Source};
 use crate::Result;
 use catalogue::run::Words;
 
-/// Ranges of 32-bit clocks, in µs: of a clock that counts µs, and of one that counts ms.
+/// Ranges of 32-bit clocks, in µs. The first clock counts µs, the second ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Time in µs between two samples up to which a wrap of the clock between them is always recognised; [`STEPS`] may
-/// allow a longer time.
+/// Longest time in µs between two samples over which a wrap of the clock is always recognised. [`STEPS`] may allow a
+/// longer time.
 const SECOND: i64 = 1_000_000;
-/// Time between two samples up to which a wrap of the clock between them is recognised, as a multiple of the latest
-/// step forward. Applies if it allows more than [`SECOND`].
+/// Longest time between two samples over which a wrap of the clock is recognised, as a multiple of the latest step
+/// forward. Applies if this time is longer than [`SECOND`].
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.
@@ -23,7 +23,7 @@ pub struct Rollover {
     samples: u64,
     /// Number of times that the clock wrapped around.
     count: i64,
-    /// Range of the clock in µs, by which each wrap sets it back.
+    /// Range of the clock in µs. Each wrap sets the clock back by its range.
     range: i64,
     /// Index of the sample before the first wrap.
     first: u64,

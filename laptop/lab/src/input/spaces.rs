@@ -2,10 +2,11 @@
 
 use std::io::{self, Read};
 
-/// An input in which each run of blanks and tabs is one blank, and none stands at the start or end of a line.
+/// A reader that replaces each run of blanks and tabs by one blank, and removes blanks and tabs at the start and end of
+/// each line.
 pub(super) struct OneBlank<R> {
     input: R,
-    /// Whether a blank waits for what follows it, and whether the line has begun.
+    /// Whether a blank was read that is written only if the line continues.
     is_waiting: bool,
     is_begun: bool,
     held: Vec<u8>,

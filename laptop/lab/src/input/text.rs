@@ -1,4 +1,4 @@
-//! Opens tables as text, also if they are compressed or in UTF-16.
+//! Opens tables as text. Compressed tables and tables in UTF-16 are converted.
 
 use super::TableKind;
 use crate::Result;
@@ -6,7 +6,7 @@ use crate::error::At;
 use flight_logs::Packing;
 use std::io::{self, Cursor, Read};
 
-/// Number of bytes at the start of a file by which its kind is recognised.
+/// Number of bytes at the start of a file from which the kind of the file is recognised.
 const HEAD: usize = 16;
 
 const PARQUET: &str = if cfg!(feature = "datasets") {
@@ -15,8 +15,8 @@ const PARQUET: &str = if cfg!(feature = "datasets") {
     "a Parquet file; export it as CSV"
 };
 
-/// Kinds of files that are not tables: their first bytes, and words for the user that name the kind and suggest what to
-/// do.
+/// Kinds of files that are not tables. Each entry has the first bytes of such a file, and words for the user, which
+/// name the kind of file and suggest what to do.
 const OTHERS: [(&[u8], &str); 12] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
@@ -32,7 +32,7 @@ const OTHERS: [(&[u8], &str); 12] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8; text in
+/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8. Text in
 /// other encodings that extend ASCII passes unchanged. `name` is the file's name in errors.
 ///
 /// # Errors
@@ -42,7 +42,7 @@ pub fn text(input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     decode(&head, input, name)
 }
 
-/// Decompresses a file, and returns its first bytes and all of them.
+/// Decompresses a file. Returns its first bytes, and a reader of the whole file.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or decompressed.
@@ -79,10 +79,10 @@ pub fn shown(bytes: &[u8]) -> String {
     }
 }
 
-/// Decodes text, whose first bytes are `head`.
+/// Decodes an input of text. `head` holds its first bytes.
 ///
 /// # Errors
-/// Returns an error if it is not text.
+/// Returns an error if the input is not text.
 pub(super) fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Result<Box<dyn Read>> {
     let is_utf16 = head.len() >= 4 && head.len().is_multiple_of(2);
     match *head {
@@ -109,7 +109,7 @@ pub(super) fn decode(head: &[u8], input: impl Read + 'static, name: &str) -> Res
     Ok(Box::new(input))
 }
 
-/// Reads the first bytes, and returns them and a reader that begins with them again.
+/// Reads the first bytes of an input. Returns these bytes, and a reader of the whole input.
 fn peek<R: Read>(mut input: R) -> io::Result<(Vec<u8>, impl Read + use<R>)> {
     let mut head = Vec::new();
     input.by_ref().take(HEAD as u64).read_to_end(&mut head)?;
@@ -139,8 +139,8 @@ mod encoding {
     }
 }
 
-/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them;
-/// the tables of all encodings would make up a tenth of the page.
+/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them.
+/// The conversion tables of all encodings would make up a tenth of the page.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

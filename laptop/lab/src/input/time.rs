@@ -77,7 +77,7 @@ impl fmt::Display for TimeUnit {
 pub(super) enum Named {
     /// The times are in the given unit.
     In(TimeUnit),
-    /// The values decide the unit. Whole numbers too small to count from 1970 are in the given unit.
+    /// The values decide the unit. Whole numbers that are too small for a time since 1970 are in the given unit.
     Whole(TimeUnit),
     /// The column has times only if its values are dates.
     Dates,
@@ -114,8 +114,8 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
-/// Interprets the name of a column that the user chose as the time. If the name has no unit, it is seconds, unless the
-/// values say otherwise.
+/// Interprets the name of a column that the user chose as the time. If the name has no unit, the unit is seconds unless
+/// the values suggest a different one.
 pub(super) fn of_given(name: &str) -> Named {
     match of_name(name) {
         Some(named @ (Named::In(_) | Named::Whole(_))) => named,
@@ -143,7 +143,8 @@ fn is_time(name: &str) -> bool {
     )
 }
 
-/// Splits the last word, which may be a unit, off a name: `time (us)`, `time [us]`, `time_us`, `time us`, `stamp.secs`.
+/// Splits the last word off a name such as `time (us)`, `time [us]`, `time_us`, `time us` or `stamp.secs`. The last
+/// word may be a unit.
 fn last_word(name: &str) -> Option<(&str, &str)> {
     let bracketed = |open, close| {
         let (base, word) = name.strip_suffix(close)?.rsplit_once(open)?;
@@ -211,8 +212,8 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp count, where a float
-/// keeps only 15. Returns `None` if there is an exponent or any other character.
+/// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp are used, while a
+/// float would keep only 15. Returns `None` if the field contains an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
     /// Maximum number of digits before the decimal point, which keeps the sum within 128 bits.
     const MOST: usize = 24;
@@ -250,8 +251,8 @@ fn text(field: &[u8]) -> Option<&str> {
     text.contains(':').then_some(text)
 }
 
-/// Guesses the unit of numbers: large ones count from 1970, in a unit that shows in their size; fractions are in
-/// seconds; all others are in `whole`.
+/// Guesses the unit of times. Large numbers are times since 1970, and their size shows the unit. Smaller numbers are in
+/// seconds if any has a fraction; otherwise, they are in the unit `whole`.
 fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     let size = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     match size {
@@ -286,8 +287,8 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// A name is that of a time if it ends in a unit and the rest means a time. The names in common exports are tested
-    /// with the command-line program.
+    /// A column is taken for a time if its name ends in a unit and the name without the unit means a time. The tests of
+    /// the command-line program cover the names in common exports.
     #[test]
     fn names_that_are_no_times() {
         let is = |unit| Some(Named::In(unit));
@@ -334,8 +335,8 @@ mod tests {
         assert_eq!(microseconds(duration), 86_400_005_000);
     }
 
-    /// All digits of a time stamp count. As a float, 1520530308199447453 ns would be 48 ns later, and be rounded to the
-    /// next µs.
+    /// All digits of a time stamp are used. As a float, 1520530308199447453 ns would become 48 ns later, and would be
+    /// rounded to the next µs.
     #[test]
     fn all_digits_of_a_stamp_count() {
         for (text, unit, commas, time) in [

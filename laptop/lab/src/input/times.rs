@@ -1,18 +1,19 @@
-//! Summarises times that come one by one: length, rate and gaps, and wraps of the recorder's clock.
+//! Summarises a recording's times, which come one by one: their length, rate and gaps, and the wraps of the recorder's
+//! clock.
 
 use super::{CHUNK, Clock, Rollover};
 
 /// Summary of the times of a recording that is read once, without storing it.
 pub(super) struct Times {
     gap: f64,
-    /// The first times, by which the usual step is found.
+    /// The first times, from which the usual step is computed.
     first: Vec<i64>,
     clock: Option<Clock>,
     rollover: Rollover,
 }
 
 impl Times {
-    /// Starts without times. A step above `gap` usual steps will count as a gap.
+    /// Makes a summary of no times yet. A step longer than `gap` usual steps will count as a gap.
     pub(super) fn new(gap: f64) -> Self {
         Self { gap, first: Vec::new(), clock: None, rollover: Rollover::default() }
     }

@@ -53,7 +53,7 @@ impl Beside {
         self.file.as_mut().ok_or_else(|| io::Error::other("it is finished"))
     }
 
-    /// Overwrites bytes at the offset `place` of the file; what is written later is appended as before.
+    /// Overwrites bytes at the offset `place` of the file. Later writes still append to the end of the file.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -65,7 +65,7 @@ impl Beside {
         Ok(())
     }
 
-    /// Writes buffered bytes, and renames the file to its final one.
+    /// Writes buffered bytes, and renames the file from its temporary name to its final one.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -103,7 +103,7 @@ impl Write for Beside {
     }
 }
 
-/// Returns whether both paths are the same file, also through links; `-` as input is standard input.
+/// Returns whether both paths lead to the same file, if necessary through links. The input `-` is standard input.
 pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
         return false;
@@ -114,7 +114,7 @@ pub(super) fn is_same(output: &Path, input: &Path) -> bool {
 
 /// Follows symbolic links to the last target, even if no file exists there yet.
 fn target(mut path: PathBuf) -> io::Result<PathBuf> {
-    /// Maximum number of links to follow; a longer chain is taken for a circle.
+    /// Maximum number of links to follow. A longer chain of links is taken for a circle.
     const MOST: usize = 40;
     for _ in 0..MOST {
         if !fs::symlink_metadata(&path).is_ok_and(|data| data.is_symlink()) {

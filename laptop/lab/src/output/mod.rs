@@ -1,4 +1,4 @@
-//! Outputs: files that appear complete or not at all, standard output, and memory.
+//! Outputs: files, standard output, and memory. A file appears once it is complete, or not at all.
 
 #[cfg(not(target_family = "wasm"))]
 mod beside;
@@ -35,8 +35,8 @@ enum Place {
     Memory(Vec<u8>),
 }
 
-/// Checks that a path has the ending of a table, `.csv`, `.txt` or none, because other programs recognise a table by
-/// it. A device may have any name. The error lists the endings of tables, followed by `others`.
+/// Checks that a path ends as a table does: in `.csv`, in `.txt`, or without an ending. Other programs recognise a
+/// table by its ending. A device may have any name. The error lists the endings of tables, followed by `others`.
 ///
 /// # Errors
 /// Returns an error if the path has a different ending.
@@ -62,7 +62,7 @@ impl Output {
     /// Opens the output at `path`, or standard output if `path` is `None` or `-`. Links are followed.
     ///
     /// # Errors
-    /// Returns an error if no file can be written at `path`, or if that is the same file as `input`.
+    /// Returns an error if no file can be written at `path`, or if `path` and `input` are the same file.
     #[cfg(not(target_family = "wasm"))]
     pub fn open(path: Option<&Path>, input: &Path) -> Result<Self> {
         if let Some(path) = path.filter(|path| beside::is_same(path, input)) {
@@ -149,7 +149,7 @@ impl Output {
         Ok(())
     }
 
-    /// Writes buffered bytes, and gives a file its final name.
+    /// Writes buffered bytes. If the output is a file, gives it its final name.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// Returns, for each column of pixels, the first, lowest, highest and last point in it, in the order of the points.
-/// `columns` columns span `range`.
+/// Returns the first, lowest, highest and last point in each column of pixels, in the order of the points. `columns`
+/// columns span `range`.
 ///
 /// A line through these points covers the same pixels as a line through all points.
 pub(super) fn decimate(

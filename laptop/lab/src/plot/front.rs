@@ -1,6 +1,6 @@
-//! Draws Pareto fronts of spikes against error: of each scheme, the settings that no other setting beats in both. A
-//! scheme that forms part of the common front of all schemes has a colour and a name beside its line; other schemes are
-//! grey.
+//! Draws Pareto fronts of spikes against error. The front of a scheme consists of the settings that no other settings
+//! beat in both spikes and error. A scheme that forms part of the common front of all schemes has a colour, and a name
+//! beside its line. All other schemes are grey.
 
 use super::FONT;
 use super::palette::{DISTINCT, GRID, INK, OTHERS};
@@ -28,7 +28,7 @@ const HEAD: i32 = 34;
 const LABELS: u32 = 84;
 /// Height of a line of the legend, in pixels.
 const LINE: i32 = 28;
-/// Lower end of the efficiency axis, in percent. Population codes with several spikes a sample lie below it.
+/// Lower end of the efficiency axis, in percent. Population codes with several spikes a sample have a lower efficiency.
 const LOWEST: f64 = -100.0;
 /// Number of steps into which the efficiency axis is divided to compare schemes.
 const STEPS: usize = 400;
@@ -43,8 +43,8 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front: for each step along the efficiency axis, the scheme with the least error at that
-    /// efficiency or above, with the efficiency and error of its setting.
+    /// Returns the common front. For each step along the efficiency axis, it has the scheme with the least error at
+    /// that efficiency or above, and the efficiency and error of the scheme's setting.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);
@@ -58,8 +58,8 @@ impl Panel {
     }
 }
 
-/// Returns the schemes that form most of the common fronts, the one with the largest share first, at most as many as
-/// there are colours.
+/// Returns the schemes that form most of the common fronts. The scheme with the largest share comes first. At most as
+/// many schemes are returned as there are colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
     /// A scheme gets a name and a colour only if it forms more than this share of the common fronts.
     const PART: f64 = 0.03;
@@ -182,8 +182,8 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the middle one of the points that `scheme` contributes to the panel's common front at efficiencies of at
-/// least `left` percent, as efficiency and error; `None` if there are no such points.
+/// Returns the efficiency and error of the middle one of the points that `scheme` contributes to the panel's common
+/// front. Only points with an efficiency of at least `left` percent count. Returns `None` if there are no such points.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

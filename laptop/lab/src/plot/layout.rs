@@ -18,7 +18,7 @@ pub(super) fn size(picture: &Picture) -> (u32, u32) {
     (PANEL.0 * COLUMNS as u32, PANEL.1 * rows)
 }
 
-/// Draws a single trial alone, or several in a grid with the panel of efficiencies last.
+/// Draws a single trial alone, or several trials in a grid whose last panel shows the efficiencies.
 pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Picture) -> Drawn<B> {
     area.fill(&WHITE)?;
     if let [trial] = picture.trials {
@@ -40,7 +40,7 @@ pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Pi
 
 const FRONT: (u32, u32) = (400, 340);
 
-/// Returns the numbers of columns and rows of a grid of `panels` panels.
+/// Returns the number of columns and the number of rows of a grid of `panels` panels.
 fn fronts_grid(panels: usize) -> (usize, usize) {
     let columns = panels.clamp(1, COLUMNS);
     (columns, panels.div_ceil(columns))

@@ -23,7 +23,7 @@ use tiny_skia::{Color, Pixmap};
 
 use crate::output::Output;
 
-/// The recording and the trials of schemes on it that a picture shows.
+/// The recording that a picture shows, and the trials of schemes on this recording.
 pub struct Picture<'a> {
     /// The recording that the trials encoded.
     pub recording: &'a Recording,
@@ -41,7 +41,8 @@ const FONT: &str = "sans-serif";
 /// Draws trials to a file, as SVG or PNG by the file's ending.
 ///
 /// # Errors
-/// Returns an error if the ending is neither `.svg` nor `.png`, if the file cannot be written, or if it is the input.
+/// Returns an error if the ending is neither `.svg` nor `.png`, if the file cannot be written, or if the file is the
+/// input.
 pub fn draw(path: &Path, input: &Path, picture: &Picture) -> Result<()> {
     write(path, input, layout::size(picture), Drawing::Trials(picture))
 }
@@ -69,7 +70,7 @@ fn write(path: &Path, input: &Path, size: (u32, u32), drawing: Drawing) -> Resul
     output.finish()
 }
 
-/// Returns a picture of trials as the bytes of an SVG or PNG file; `ending` says which.
+/// Returns a picture of trials as the bytes of an SVG or PNG file. `ending` is `svg` or `png`.
 ///
 /// # Errors
 /// Returns an error if the ending is neither `svg` nor `png`.

@@ -33,7 +33,8 @@ room!(CaptureKind, Capture);
 
 /// A ring buffer on a board, read by polling.
 pub trait Channel {
-    /// Reads the bytes that are available, up to the buffer's length; returns 0 if there are none.
+    /// Reads the bytes that are available, up to the buffer's length. Returns the number of bytes read, 0 if none are
+    /// available.
     ///
     /// # Errors
     /// Returns an error if the board or the probe was disconnected.
@@ -45,11 +46,12 @@ pub trait Channel {
 pub struct Captured {
     /// The number of bytes written.
     pub bytes: u64,
-    /// `Ok` if the capture ended on request, otherwise the reason that it ended.
+    /// `Ok` if the capture ended on request; otherwise the error that ended the capture.
     pub end: Result<()>,
 }
 
-/// Copies a channel's bytes to `output` until `is_due` returns true, and then the bytes that are still in the channel.
+/// Copies a channel's bytes to `output` until `is_due` returns true. Afterwards copies the bytes that are still in the
+/// channel.
 pub fn capture(
     channel: &mut dyn Channel,
     output: &mut dyn Write,
@@ -109,7 +111,7 @@ mod tests {
         }
     }
 
-    /// Captures from a board that returns `reads`, with a request to stop after `stop` reads.
+    /// Captures from a [`Fake`] board that returns `reads`. The capture is asked to stop after `stop` reads.
     fn run(reads: &[&'static [u8]], stop: usize) -> (Vec<u8>, Captured) {
         let (mut output, mut asked) = (Vec::new(), 0);
         let captured = capture(&mut Fake(reads.iter().copied().collect()), &mut output, || {

@@ -14,11 +14,11 @@ use std::time::Duration;
 pub struct Board {
     /// Name of the chip in probe-rs, such as `STM32F405RG` or `RP2040`.
     pub chip: String,
-    /// The debug probe as `VENDOR:PRODUCT[:SERIAL]`; must be given if several are connected.
+    /// The debug probe as `VENDOR:PRODUCT[:SERIAL]`. Must be given if several probes are connected.
     pub probe: Option<String>,
     /// Number of the channel on the board, from 0.
     pub channel: usize,
-    /// Address of RTT's control block on the board; if `None`, all RAM is searched for the block.
+    /// Address of RTT's control block on the board. If `None`, all RAM is searched for the control block.
     pub address: Option<u64>,
 }
 
@@ -30,7 +30,8 @@ pub fn with_channel(
     board: &Board,
     use_it: impl FnOnce(&mut dyn Channel) -> Result<()>,
 ) -> Result<()> {
-    /// Longest time to search for the control block; a board that has just started must first set the block up.
+    /// Longest time to search for the control block. The search repeats because a board that has just started must
+    /// first set up the block.
     const PATIENCE: Duration = Duration::from_secs(2);
     let Board { chip, probe, channel: number, address } = board;
     let target = Registry::from_builtin_families()

@@ -10,12 +10,12 @@ pub(super) struct Bag {
     output: Output,
     topics: Vec<Topic>,
     chunk: Vec<u8>,
-    /// The messages in the current chunk: topic, time in ns, and offset in the chunk.
+    /// For each message in the current chunk, the index of its topic, its time in ns, and its offset in the chunk.
     index: Vec<(usize, u64, u32)>,
     chunks: Vec<Chunk>,
 }
 
-/// A chunk's entry in the index at the end of the bag.
+/// A finished chunk, as listed in the index at the end of the bag.
 struct Chunk {
     place: u64,
     first: u64,
@@ -27,7 +27,7 @@ struct Chunk {
 /// Size of a chunk in bytes, as in `rosbag`.
 const CHUNK: usize = 768 * 1024;
 const VERSION: &[u8] = b"#ROSBAG V2.0\n";
-/// Size in bytes to which the first record is padded, because it is overwritten once the place of the index is known.
+/// Size in bytes to which the first record is padded. The record is overwritten once the offset of the index is known.
 const FIRST: usize = 4096;
 
 impl Bag {

@@ -14,7 +14,7 @@ pub struct Header {
     pub scheme: Scheme,
     /// The sample type.
     pub sample: SampleType,
-    /// All parameters that decoding needs, a set for each channel.
+    /// All parameters that decoding needs. Each channel has a set of its own.
     pub channels: Vec<Settings>,
     /// Sample rate in Hz, if known.
     pub rate: Option<f64>,
@@ -22,8 +22,8 @@ pub struct Header {
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters of a scheme that a file of spikes holds only as notes: decoding uses other parameters, which
-/// were derived from them.
+/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters.
+/// It uses parameters that were derived from them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =
@@ -37,7 +37,7 @@ const VERSION: &str = "1";
 /// Maximum number of channels, which is the number of addresses.
 const MOST_CHANNELS: usize = 1 << 16;
 
-/// Keys of notes that decoding does not need, besides the parameters in [`unrecorded`].
+/// Keys of the notes in a header, besides the parameters in [`unrecorded`]. Decoding does not need the notes.
 const NOTES: [&str; 4] = ["column", "topic", "field", "latency"];
 
 impl Header {
@@ -143,7 +143,7 @@ fn parse<T: FromStr>(key: &str, value: &str) -> Result<T> {
     Ok(value.trim().parse().map_err(wrong)?)
 }
 
-/// Keys and values that are taken out one by one; those left at the end are known to be unused.
+/// The keys and values of a header, which are removed as they are used. The entries left at the end are unused.
 struct Keys {
     left: Vec<(String, String)>,
 }

@@ -10,7 +10,7 @@ pub(super) struct Mcap {
     output: Output,
     topics: Vec<Topic>,
     chunk: Vec<u8>,
-    /// The messages in the current chunk: topic, time in ns, and offset in the chunk.
+    /// For each message in the current chunk, the index of its topic, its time in ns, and its offset in the chunk.
     index: Vec<(usize, u64, u64)>,
     /// The entry of each finished chunk in the index at the end of the file.
     chunks: Vec<Vec<u8>>,
@@ -176,7 +176,7 @@ fn text(text: &str) -> Vec<u8> {
     long(text.as_bytes())
 }
 
-/// Returns bytes preceded by their length, which takes 4 bytes.
+/// Returns `bytes` after their length in 4 bytes.
 fn long(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat()
 }

@@ -15,7 +15,7 @@ use std::path::Path;
 /// A log of spikes that is read from its start to its end.
 pub struct Messages {
     log: Reading,
-    /// Topic of each channel, and the number of samples read from it so far.
+    /// For each channel, its topic and the number of samples read so far.
     channels: Vec<(String, u64)>,
     /// Number of neurons of each channel.
     neurons: usize,
@@ -29,8 +29,7 @@ pub struct Messages {
 }
 
 impl Messages {
-    /// Opens a log, and makes the header of its spikes: from the header in the log or, if there is none, from all
-    /// messages.
+    /// Opens a log, and returns the header of its spikes. If the log has no header, one is made from all messages.
     ///
     /// # Errors
     /// Returns an error if the log has no spikes, or if its messages lack a parameter that decoding needs.
@@ -57,7 +56,7 @@ impl Messages {
         Ok((messages, header))
     }
 
-    /// Turns the current message, which is of channel number `channel`, into items.
+    /// Converts the current message, which belongs to channel number `channel`, to items.
     fn take(&mut self, channel: usize) -> Result<()> {
         let (neurons, slots) = (self.neurons, self.slots);
         let sample = self.channels[channel].1;
@@ -122,8 +121,8 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike from a message: from the field `spike` of a single neuron, or from element `place` of the
-/// array `spike`. Returns `None` beyond the array's end.
+/// Reads a neuron's spike from a message. A message of a single neuron has the spike in the field `spike`. A message of
+/// several neurons has it in element `place` of the array `spike`. Returns `None` beyond the array's end.
 ///
 /// # Errors
 /// Returns an error if the message has no field `spike`.

@@ -1,11 +1,12 @@
-//! Files of spikes: a table `index,address,polarity`, below lines `# key=value` with everything that decoding needs.
+//! Files of spikes. Lines `# key=value` hold everything that decoding needs. Below them is a table with the columns
+//! `index,address,polarity`.
 //!
 //! `index` is the sample's index or, with sub-timesteps, that index times the number of slots, plus the slot. Neurons
-//! are numbered through all channels: those of channel 1 follow those of channel 0.
+//! are numbered across all channels: the neurons of channel 1 follow the neurons of channel 0.
 //!
-//! Comments between the events report values that were not finite and gaps in time, each where it occurs, and the time
-//! before each gap and at the first and last sample. The last lines give the numbers of samples and events, by which a
-//! truncated file is noticed.
+//! Comments between the events report values that were not finite, and gaps in time. Each comment stands where the
+//! value or gap occurs. Further comments give the time at the first sample, before each gap, and at the last sample.
+//! The last lines give the numbers of samples and events, which reveal a truncated file.
 
 mod bag;
 mod header;
@@ -31,8 +32,8 @@ use catalogue::run::Event;
 
 /// A file in any format, to which spikes are written.
 pub trait Record {
-    /// Notes the next samples and the unusual steps in their times, and removes from `chunk` the rows that are not
-    /// finite, which must not be encoded.
+    /// Records the next samples, and the unusual steps in their times. Removes from `chunk` the rows that are not
+    /// finite, because these must not be encoded.
     ///
     /// # Errors
     /// Returns an error if the file cannot hold the samples.
@@ -56,16 +57,16 @@ pub trait Spikes {
     /// Returns whether the events have times.
     fn is_timed(&self) -> bool;
 
-    /// Returns the next item; the last is [`Item::End`].
+    /// Returns the next item. The last item is [`Item::End`].
     ///
     /// # Errors
-    /// Returns an error if an item is invalid, or if the end is missing.
+    /// Returns an error if an item is invalid, or if the end of the file is missing.
     fn next(&mut self) -> Result<Item>;
 
     /// Returns the place of the latest item, for an error.
     fn place(&self) -> Place;
 
-    /// Returns notes for the user on the file, complete once the last item was read.
+    /// Returns notes for the user on the file. The notes are complete once the last item was read.
     fn notes(&mut self) -> Vec<String> {
         Vec::new()
     }

@@ -13,7 +13,7 @@ use std::io::{BufRead, Read};
 pub enum Item {
     /// A spike.
     Event {
-        /// The spike. Its sample is counted as in the file, samples that are not finite included.
+        /// The spike. Its sample index counts all samples, including samples that are not finite.
         event: Event,
         /// The time of the event's sample in µs, if events have times.
         time: Option<i64>,
@@ -269,7 +269,7 @@ impl<R: BufRead> Spikes for Reader<R> {
     }
 }
 
-/// Parses digits; returns `None` if there are other characters or more than 18 digits.
+/// Parses a number of at most 18 digits. Returns `None` if the text is longer, or contains other characters.
 fn digits(text: &[u8]) -> Option<u64> {
     if text.is_empty() || text.len() > 18 {
         return None;

@@ -1,8 +1,8 @@
-//! Records spikes as messages in a ROS 1 bag or an MCAP file: on the topic `event`, one message for each sample, as the
-//! paper's toolbox does.
+//! Records spikes as messages in a ROS 1 bag or an MCAP file. The topic `event` has one message for each sample, as in
+//! the paper's toolbox.
 //!
-//! A single message on the topic `event_header` holds the header of a file of spikes as text, which lets every scheme
-//! be decoded. The channels after the first are on the topics `event_1`, `event_2` and so on.
+//! A single message on the topic `event_header` holds the header of a file of spikes as text. With this header, every
+//! scheme can be decoded. The channels after the first are on the topics `event_1`, `event_2` and so on.
 
 use super::bag::Bag;
 use super::mcap::Mcap;
@@ -49,10 +49,10 @@ pub enum Format {
 }
 
 impl Format {
-    /// Returns the format of a log by the file's name; `None` if the file is a table.
+    /// Returns the format of a log, by the file's name. Returns `None` if the name is that of a table.
     ///
     /// # Errors
-    /// Returns an error if the name ends neither as a log's nor as a table's.
+    /// Returns an error if the name has neither the ending of a log nor that of a table.
     pub fn of(path: &Path) -> Result<Option<Self>> {
         match path.extension().and_then(|own| own.to_str()) {
             Some("bag") => Ok(Some(Self::Bag)),
@@ -67,7 +67,7 @@ pub struct Recorder {
     container: Box<dyn Container>,
     format: Format,
     kind: Kind,
-    /// A message for each channel, with the content that all messages of the channel share.
+    /// For each channel, a message with the content that all messages of the channel share.
     empty: Vec<Spyke>,
     /// The header's lines, until they have been written.
     header: Option<String>,
@@ -76,7 +76,7 @@ pub struct Recorder {
     period: Option<f64>,
     /// Samples that are not written yet.
     pending: VecDeque<Pending>,
-    /// Number of finite samples written so far. Encoders number samples by counting the finite ones.
+    /// Number of finite samples written so far. Encoders number samples by counting finite samples.
     finite: u64,
     /// Events of samples that may still get more events.
     events: VecDeque<Event>,
@@ -89,7 +89,7 @@ struct Pending {
     is_finite: bool,
 }
 
-/// First time in µs that a message cannot hold, because its seconds have 32 bits.
+/// First time in µs that a message cannot hold, because a message stores seconds in 32 bits.
 const LATEST: u64 = (1 << 32) * 1_000_000;
 /// Topic of the first channel's spikes, as in the toolbox.
 pub(super) const EVENT: &str = "event";

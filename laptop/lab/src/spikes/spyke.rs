@@ -6,8 +6,8 @@ use std::time::Duration;
 /// The toolbox's message of one sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
-    /// Number of spikes of each neuron, negative for spikes down. All neurons' numbers in one sub-timestep precede
-    /// those in the next.
+    /// Number of spikes of each neuron, negative for spikes down. The numbers of all neurons in one sub-timestep
+    /// precede the numbers in the next sub-timestep.
     pub spikes: Vec<i8>,
     /// Value from which decoding starts.
     pub start: f32,
@@ -94,8 +94,8 @@ impl Kind {
 }
 
 impl Spyke {
-    /// Encodes the message for ROS 1, or for ROS 2 as CDR: after a prefix of four bytes, numbers are aligned to four
-    /// bytes and strings end with NUL.
+    /// Encodes the message for ROS 1 or, as CDR, for ROS 2. CDR has a prefix of four bytes, aligns numbers to four
+    /// bytes, and ends strings with NUL.
     pub(crate) fn bytes(&self, kind: Kind, format: Format) -> Vec<u8> {
         let mut bytes = start(format);
         if kind == Kind::SpykeArray {

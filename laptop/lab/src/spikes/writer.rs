@@ -11,8 +11,8 @@ use std::io::Write;
 
 /// A file of spikes that is being written.
 ///
-/// Encoders see and count finite samples only, while the file counts all. If an encoder looks ahead, its events come
-/// late, and the writer holds notes on later samples back until these events are written.
+/// Encoders count only finite samples, while the file counts all samples. If an encoder looks ahead, its events come
+/// late. The writer then holds back notes on later samples until the events are written.
 pub struct Writer {
     output: Output,
     slots: u64,
@@ -33,7 +33,7 @@ pub struct Writer {
     line: Vec<u8>,
 }
 
-/// Counts of what a file of spikes contains.
+/// The numbers of samples and spikes in a file of spikes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Summary {
     /// Number of samples.

@@ -1,4 +1,4 @@
-//! Reports parameters whose best value lies at a bound of the search, if the scheme itself allows values beyond.
+//! Reports parameters whose best value lies at a bound of the search, if the scheme allows values beyond this bound.
 
 use super::Problem;
 use super::space::{Axis, Role, Space};
@@ -26,10 +26,10 @@ impl Bound {
     }
 }
 
-/// Returns the bounds of the search at which the settings `best` lie. A bound is left out if no value beyond it can be
-/// built, because such a bound is the scheme's and not the search's.
+/// Returns the bounds of the search at which the settings `best` lie. A bound is left out if the scheme itself allows
+/// no value beyond it.
 pub(super) fn bounds(problem: &Problem, space: &Space, best: &Asked) -> Vec<Bound> {
-    /// Distance from a bound, as a share of the axis, within which a value lies at the bound.
+    /// Largest distance from a bound at which a value counts as lying at the bound, as a share of the axis.
     const NEAR: f64 = 0.02;
     let point = space.point(best);
     let Some(first) = problem.train.first() else { return Vec::new() };
@@ -57,7 +57,7 @@ pub(super) fn bounds(problem: &Problem, space: &Space, best: &Asked) -> Vec<Boun
     found
 }
 
-/// Returns the value that `options` give to the parameter of an axis; `None` for an axis whose bounds mean nothing to a
+/// Returns the value of the axis's parameter in `options`. Returns `None` for an axis whose bounds mean nothing to a
 /// user.
 fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     match axis.role {
@@ -75,8 +75,8 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
     }
 }
 
-/// Returns a number just beyond a bound of an axis: the next whole number, or on other axes a number a fiftieth of the
-/// axis away.
+/// Returns a number just beyond a bound of an axis. On an axis of whole numbers, this is the next whole number. On
+/// other axes, it is a fiftieth of the axis away from the bound.
 fn further(axis: &Axis, is_high: bool) -> f64 {
     let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
     match axis.role {

@@ -13,7 +13,7 @@ impl Chance {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    /// Draws a number from 0 up to, but not including, 1, all equally likely.
+    /// Draws a number from 0 up to, but not including, 1. All numbers are equally likely.
     pub(super) fn part(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }

@@ -1,7 +1,7 @@
 //! Adaptive differential evolution with a shrinking number of parents: L-SHADE, after Tanabe and Fukunaga (2014).
 //!
-//! The caller passes the share of its budget that is spent, by which the number of parents shrinks: even a small budget
-//! converges as far as it can. Points lie in the unit cube.
+//! The number of parents shrinks with the share of the caller's budget that is spent, which makes even a small budget
+//! converge as far as it can. Points lie in the unit cube.
 
 use super::chance::Chance;
 
@@ -9,13 +9,13 @@ use super::chance::Chance;
 const MEMORY: usize = 6;
 /// Number of parents at the end of the budget.
 const FEWEST: usize = 4;
-/// Share of the parents that count as the best. Each new point moves towards one of these.
+/// Share of the parents that count as the best. Each new point moves towards one of the best parents.
 const BEST: f64 = 0.15;
 
 /// An optimiser that seeks the smallest value of a function. The caller computes the values.
 pub(super) struct Evolution {
     chance: Chance,
-    /// The parents and their values; sorted, the best first, by each call of `ask`.
+    /// The parents and their values. Each call of `ask` sorts the parents, the best first.
     parents: Vec<(Vec<f64>, f64)>,
     /// Former parents that were replaced by better points.
     replaced: Vec<Vec<f64>>,
@@ -92,10 +92,10 @@ impl Evolution {
     }
 
     /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may
-    /// leave the last ones out.
+    /// leave out the last points.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Largest weight of a point that improved on its parent; the weight is the difference of their values.
-        /// Settings that break a limit have values so far apart that their differences would outweigh all others.
+        /// Largest weight of a point that is better than its parent. The weight is the difference of their values.
+        /// Without a maximum, the weights of settings that break a limit would outweigh all other weights.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);
@@ -129,8 +129,8 @@ impl Evolution {
 mod tests {
     use super::{Chance, Evolution};
 
-    /// In a bowl of five dimensions, 400 points come within a squared distance of 1e-3 of the minimum; as many random
-    /// points would not.
+    /// In a bowl of five dimensions, the evolution comes within a squared distance of 1e-3 of the minimum with 400
+    /// points. As many random points would not come so near.
     #[test]
     fn a_bowl_is_descended() {
         let value = |point: &[f64]| point.iter().map(|own| (own - 0.3).powi(2)).sum::<f64>();

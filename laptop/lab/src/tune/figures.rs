@@ -22,13 +22,14 @@ pub struct Figures {
     pub snr: f64,
     /// The largest error, in the signal's unit.
     pub worst: f64,
-    /// Delay of the decoded values in samples, besides the code's latency: the lag with the highest correlation.
+    /// Delay of the decoded values in samples, in addition to the code's latency. It is the lag at which signal and
+    /// decoded values correlate most.
     pub lag: i64,
-    /// RMSE of that part of the error that lies below a frequency limit, if a limit was given.
+    /// RMSE after the error was low-pass filtered at a frequency limit, if a limit was given.
     pub below: Option<f64>,
     /// Events a second, if the rate is known.
     pub events_per_second: Option<f64>,
-    /// Entropy of the spikes in bits a second: the entropy of a sample's code, times the rate.
+    /// Entropy of the spikes in bits a second: the entropy of a sample's code, times the sample rate.
     pub bits_per_second: Option<f64>,
     /// Bits a second that raw samples would need if they were rounded to the same RMSE.
     pub raw_bits_per_second: Option<f64>,
@@ -152,8 +153,8 @@ fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>,
     *codes.entry(Vec::new()).or_default() += silent;
 }
 
-/// Adds the correlation of a stretch with its decoded values to each lag's sum. The lags go from `-FARTHEST` to
-/// `FARTHEST` samples.
+/// Adds a stretch's correlation with its decoded values to `correlations`, for each lag from `-FARTHEST` to `FARTHEST`
+/// samples.
 fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let (center, middle) = (mean(values), mean(decoded));
@@ -174,7 +175,7 @@ pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     kept.map(|(_, power)| power).sum()
 }
 
-/// Returns the power spectrum: each frequency's part of the sum of squares, from 0 to half the sample rate.
+/// Returns the power spectrum: the part of the sum of squares at each frequency from 0 to half the sample rate.
 pub fn power(values: &[f64]) -> Vec<f64> {
     let count = values.len();
     if count < 2 {
@@ -206,7 +207,8 @@ mod tests {
         }
     }
 
-    /// A frequency limit passes the slower of two waves, which have 5 and 40 cycles in 1000 samples.
+    /// Of two waves with 5 and 40 cycles in 1000 samples, only the slower wave counts below a frequency limit between
+    /// them.
     #[test]
     fn a_limit_keeps_what_is_below() {
         let wave = |cycles: f64| move |i: i32| (TAU * cycles * f64::from(i) / 1000.0).sin();

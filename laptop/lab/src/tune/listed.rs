@@ -1,4 +1,5 @@
-//! Tunes step codes: lists the spikes and errors of all thresholds, in exact arithmetic, and scores the best of them.
+//! Tunes step codes. Lists the spikes and errors of all thresholds in exact arithmetic, and scores the best thresholds
+//! with the codec.
 
 use super::Scored;
 use super::problem::{Goal, most_spikes};
@@ -11,22 +12,25 @@ use rayon::prelude::*;
 const SMALLEST: f64 = 1e-3;
 /// Maximum number of samples that are processed to list outcomes, which bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. Keeps a
-/// search with a small budget short.
+/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
+/// maximum keeps a search with a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
 /// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
 const NEIGHBOURHOODS: usize = 24;
-/// Number of combinations of integer parameters that are listed between two checks whether to stop the search.
+/// Number of combinations of integer parameters whose outcomes are listed before the search checks again whether to
+/// stop.
 const COMBINATIONS: usize = 8;
 /// Maximum number of listed outcomes that are scored with the codec.
 const MOST_SCORED: usize = 1000;
 
-/// The combinations of integer parameters, and the outcomes worth scoring, each with the index of its combination.
+/// The combinations of integer parameters, and the outcomes worth scoring. Each outcome has the index of its
+/// combination.
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
     /// Lists the outcomes of the threshold for every combination of integer parameters, and scores the best of them.
-    /// Returns false if the scheme has no such list, or if the user fixed a parameter that the list would choose.
+    /// Returns false if the scheme cannot list its outcomes, or if the user fixed a parameter that the list would
+    /// choose.
     pub(super) fn exactly(&mut self, space: &Space) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];
@@ -64,8 +68,8 @@ impl Run<'_> {
         true
     }
 
-    /// Lists the outcomes worth scoring, for all combinations of integer parameters; `None` if the scheme has no such
-    /// list.
+    /// Lists the outcomes worth scoring, for all combinations of integer parameters. Returns `None` if the scheme
+    /// cannot list its outcomes.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
         let rounded = self.rounded;
@@ -121,7 +125,7 @@ impl Run<'_> {
         Some((combinations, all))
     }
 
-    /// Returns a function that ranks outcomes by the goal, on `samples` samples; smaller is better.
+    /// Returns a function that rates an outcome on `samples` samples by the goal. A smaller result is better.
     fn in_order(&self, samples: usize) -> impl Fn(&Outcome) -> f64 + use<> {
         const NOT_ALLOWED: f64 = 1e100;
         let (goal, count) = (self.problem.goal, samples as f64);
@@ -151,7 +155,7 @@ fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     options
 }
 
-/// Sorts outcomes by their number of spikes, and removes those that another outcome beats in both spikes and error.
+/// Sorts outcomes by their number of spikes. Removes outcomes that another outcome beats in both spikes and error.
 fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     all.sort_by(|(a, _), (b, _)| a.spikes.cmp(&b.spikes).then(a.squares.total_cmp(&b.squares)));
     let mut least = f64::INFINITY;
@@ -162,8 +166,8 @@ fn unbeaten(all: &mut Vec<(Outcome, usize)>) {
     });
 }
 
-/// Returns a range of thresholds around each of the best outcomes: from the next lower to the next higher threshold in
-/// `list`.
+/// Returns a range of thresholds around each of the best outcomes. The range goes from the next lower to the next
+/// higher threshold in `list`.
 fn neighbourhoods(list: &[Outcome], in_order: &impl Fn(&Outcome) -> f64) -> Vec<(f64, f64)> {
     let mut thresholds: Vec<f64> = list.iter().map(|own| own.threshold).collect();
     thresholds.sort_by(f64::total_cmp);

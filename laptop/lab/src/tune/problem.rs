@@ -1,4 +1,5 @@
-//! The problem that a search solves: a goal, limits, and the score of settings, computed with the codec that flies.
+//! The problem that a search solves: a goal, limits, and the score of settings. The score is computed with the same
+//! codec that flies on the drone.
 
 use super::RequestKind;
 use super::{Costs, Extent, Stretch};
@@ -13,7 +14,7 @@ pub enum Goal {
     LeastError(f64),
     /// The greatest spiking efficiency, with at most this RMSE.
     MostEfficient(f64),
-    /// The Pareto front: all settings that no other beats in both spikes and error.
+    /// The Pareto front: all settings that no other settings beat in both spikes and error.
     Front,
 }
 
@@ -78,7 +79,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// Returns the name of the setting in a request that limits the quantity.
+    /// Returns the name of the request's setting that limits the quantity.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ram => "max_ram",
@@ -165,7 +166,7 @@ impl<'a> Problem<'a> {
         Self { scheme, sample, fixed: fixed.clone(), train, goal, limits, core, extent, calibrated }
     }
 
-    /// Completes options to full settings for a stretch: a parameter that is missing has its default, or comes from the
+    /// Completes options to full settings for a stretch. A missing parameter gets its default, or is taken from the
     /// calibration or the stretch's samples.
     ///
     /// # Errors
@@ -213,7 +214,7 @@ impl<'a> Problem<'a> {
         Ok((events, decoded, codec.latency()))
     }
 
-    /// Scores settings on stretches; also returns the code's latency in samples.
+    /// Scores settings on stretches. Returns the counts, and the code's latency in samples.
     ///
     /// # Errors
     /// Returns an error if the settings are invalid.
@@ -227,7 +228,7 @@ impl<'a> Problem<'a> {
         Ok((tally, latency))
     }
 
-    /// Scores settings as [`tally`](Self::tally) does; also returns the settings completed for the last stretch.
+    /// Scores settings as [`tally`](Self::tally) does. Also returns the full settings for the last stretch.
     fn tallied(
         &self,
         options: &Asked,
@@ -301,8 +302,8 @@ impl<'a> Problem<'a> {
         excess
     }
 
-    /// Returns the value of scored settings for a goal. Smaller is better; settings that break a limit are worse than
-    /// all others.
+    /// Returns the value of scored settings for a goal. A smaller value is better. Settings that break a limit are
+    /// worse than all settings that break none.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, squares, .. } = scored.tally;
         let limits = scored
@@ -314,8 +315,8 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// Returns the value of a number of spikes and a sum of squared errors for a goal, regardless of the limits;
-    /// smaller is better.
+    /// Returns the value, for a goal, of a number of spikes and a sum of squared errors. Limits are not regarded. A
+    /// smaller value is better.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();
@@ -351,7 +352,7 @@ pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     (if is_count { nearest } else { spikes.floor() }).max(0.0) as usize
 }
 
-/// Returns the Pareto front: the settings that no other beats in both spikes and error, sorted by spikes.
+/// Returns the Pareto front, sorted by spikes: the settings that no other settings beat in both spikes and error.
 pub fn front(mut all: Vec<Scored>) -> Vec<Scored> {
     let key = |one: &Scored| one.tally.spikes as f64 / one.tally.samples as f64;
     all.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.tally.squares.total_cmp(&b.tally.squares)));

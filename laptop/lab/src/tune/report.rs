@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Note on the settings of a code whose errors add up.
+/// Note for the user on settings of a code whose errors add up from step to step.
 pub(crate) const DRIFTS: &str = "drifts: the errors of all its steps add up until a keyframe comes, and each flight's add up \
      otherwise: not to be relied on in another flight";
 
@@ -47,7 +47,7 @@ pub struct Row {
     pub paper: Option<Paper>,
     /// Costs on a flight controller.
     pub costs: Costs,
-    /// Change of the RMSE from `f32` to the sample type, in percent; `None` in `f32`.
+    /// Change of the RMSE from `f32` to the sample type, in percent. `None` if the sample type is `f32`.
     pub quantisation: Option<f64>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
@@ -76,11 +76,11 @@ pub struct Paper {
 }
 
 impl Row {
-    /// Reports on settings that a search has found; `below` is the frequency in Hz below which the error is also
-    /// reported.
+    /// Makes the report on settings that a search has found. `below` is the frequency in Hz below which the error is
+    /// also reported.
     ///
     /// # Errors
-    /// Returns an error if the settings are invalid; those that a search has found are valid.
+    /// Returns an error if the settings are invalid. Settings that a search has found are always valid.
     pub fn new(
         problem: &Problem,
         cut: &Cut,
@@ -132,7 +132,7 @@ impl Row {
 
     /// Returns reasons not to trust the settings, a sentence each.
     fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
-        /// Factor by which the RMSE of other settings may be lower on held-out blocks by chance.
+        /// Factor by which an RMSE on held-out blocks may be too large or too small by chance.
         const BY_CHANCE: f64 = 1.25;
         /// Factor by which the RMSE may be larger on held-out blocks before overfitting is reported.
         const FAR: f64 = 1.5;
@@ -241,8 +241,8 @@ impl Row {
     }
 }
 
-/// Formats the table of all rows, and below it details of each row. `core` is the core of the instruction counts,
-/// `below` the frequency in Hz below which the error is also reported.
+/// Formats a table of all rows, followed by details of each row. `core` is the processor core of the instruction
+/// counts. `below` is the frequency in Hz below which the error is also reported.
 pub fn print(rows: &[&Row], core: &str, below: Option<f64>) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -320,7 +320,7 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
     row.notes.iter().try_for_each(|note| writeln!(text, "  {note}"))
 }
 
-/// Returns words for the user that name the limits which the best settings break, and how far they are from each.
+/// Returns words for the user that name the limits which the best settings break, and the distance from each limit.
 pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
     let settings = problem
         .train

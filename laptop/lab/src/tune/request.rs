@@ -16,7 +16,8 @@ use std::time::{Duration, Instant};
 
 /// The logs, schemes and goal of a search, for [`tune`].
 pub struct TuneRequest {
-    /// Logs that are tuned on together, each with one recording for each channel; all logs have the same channels.
+    /// Logs that are tuned on together. Each log has one recording for each channel, and all logs have the same
+    /// channels.
     pub logs: Vec<Vec<Recording>>,
     /// The schemes whose parameters are searched, each scheme by itself.
     pub schemes: Vec<Scheme>,
@@ -26,19 +27,19 @@ pub struct TuneRequest {
     pub fixed: Asked,
     /// Whether the taps of a filter are searched one by one, rather than by shape, length and sum.
     pub free_taps: bool,
-    /// The goal; if `None`, the least error at the efficiency of the paper's settings.
+    /// The goal. `None` stands for the least error at the efficiency of the paper's settings.
     pub goal: Option<Goal>,
     /// Upper limits on what settings may cost.
     pub limits: Limits,
     /// Processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: String,
-    /// The part of each recording that is not tuned on, but on which the settings found are scored too.
+    /// The part of each recording that is held out from tuning, to check the settings found.
     pub hold_out: HoldOut,
     /// Frequency in Hz below which the error is also reported.
     pub below: Option<f64>,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
-    /// Seconds after which the search stops; the result then depends on the machine's speed.
+    /// Seconds after which the search stops. If this limit ends the search, the result depends on the machine's speed.
     pub seconds: Option<f64>,
     /// Seed of the search: the same seed and number of settings give the same result on every machine.
     pub seed: u64,
@@ -50,8 +51,8 @@ impl TuneRequest {
     /// Default number of settings to score for each scheme and channel.
     pub const EVALUATIONS: usize = 4000;
 
-    /// Requests the parameters of schemes on logs: in `f32`, for the efficiency of the paper's settings, with 30 % of
-    /// 20 blocks held out.
+    /// Requests parameters of `schemes` for `logs`, in `f32` and for the efficiency of the paper's settings. The
+    /// recordings are cut into 20 blocks, 30 % of which are held out.
     pub fn new(logs: Vec<Vec<Recording>>, schemes: Vec<Scheme>) -> Self {
         Self {
             logs,
@@ -71,10 +72,10 @@ impl TuneRequest {
         }
     }
 
-    /// Checks whether all settings of the request are in their ranges and go with each other.
+    /// Checks that all settings of the request are within their ranges and fit each other.
     ///
     /// # Errors
-    /// Returns an error if a setting is out of its range, or does not go with the schemes.
+    /// Returns an error if a setting is outside its range, or does not fit the schemes.
     pub fn check(&self) -> Result<()> {
         let HoldOut { blocks, part } = self.hold_out;
         if !(0.0..1.0).contains(&part) {
@@ -157,7 +158,7 @@ impl TuneRequest {
 pub struct Tuned {
     /// The channel, cut into stretches.
     pub channel: Cut,
-    /// The schemes that reach the goal, with their settings, the best first; empty for [`Goal::Front`].
+    /// The schemes that reach the goal, with their settings. The best scheme comes first. Empty for [`Goal::Front`].
     pub rows: Vec<(Scheme, Row)>,
     /// The Pareto front of each scheme, for [`Goal::Front`]; otherwise empty.
     pub curves: Vec<Curve>,
@@ -167,7 +168,7 @@ pub struct Tuned {
     pub notes: Vec<String>,
 }
 
-/// The Pareto front of one scheme: the settings that no other beats in both spikes and error.
+/// The Pareto front of one scheme: the settings that no other settings beat in both spikes and error.
 pub struct Curve {
     /// The scheme.
     pub scheme: Scheme,

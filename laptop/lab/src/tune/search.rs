@@ -1,4 +1,4 @@
-//! Searches settings: exactly if the scheme can list its outcomes, otherwise by evolution.
+//! Searches settings. If the scheme can list its outcomes, the search is exact; otherwise, it uses evolution.
 //!
 //! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
 //! every machine.
@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 pub struct Budget<'a> {
     /// Maximum number of settings to score.
     pub evaluations: usize,
-    /// Time at which to stop; the result then depends on the machine's speed.
+    /// Time at which the search stops. If this limit ends the search, the result depends on the machine's speed.
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
@@ -29,7 +29,7 @@ pub struct Budget<'a> {
 pub struct Found {
     /// The best settings, even if they break a limit.
     pub best: Option<Scored>,
-    /// The Pareto front of the settings within the limits: those that no other beats in both spikes and error.
+    /// The Pareto front of the settings within the limits: the settings that no others beat in both spikes and error.
     pub front: Vec<Scored>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
@@ -39,7 +39,7 @@ pub struct Found {
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
-    /// The bounds of the search at which the best settings lie, if the scheme allows values beyond.
+    /// The bounds of the search at which the best settings lie, if the scheme allows values beyond these bounds.
     pub bounds: Vec<Bound>,
 }
 
@@ -52,15 +52,15 @@ pub struct Method {
     pub free_taps: bool,
 }
 
-/// Number of settings that are scored between two checks whether to stop.
+/// Number of settings that are scored before the search checks again whether to stop.
 pub(super) const BATCH: usize = 64;
 /// Smallest and largest number of parents with which an evolution starts.
 const PARENTS: (usize, usize) = (10, 100);
-/// Efficiencies in percent, for each of which settings are searched to find a Pareto front.
+/// Efficiencies in percent. To find a Pareto front, settings are searched for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest maximum that [`Run::tighten`] sets.
 const ROOM: usize = 16;
-/// Value of settings that cannot be built, worse than all others.
+/// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
 
 /// Searches the best settings for a problem within a budget.
@@ -133,8 +133,8 @@ impl Run<'_> {
         self.found.is_cut_short
     }
 
-    /// Scores options, as many as the budget has left, and keeps the best and the Pareto front. Returns each score,
-    /// `None` for invalid options.
+    /// Scores options until the budget is spent, and keeps the best and the Pareto front. Returns each score, or `None`
+    /// for invalid options.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;
@@ -160,7 +160,7 @@ impl Run<'_> {
         scored
     }
 
-    /// Scores points of a space, as many as the budget has left; returns each point with its value for `goal`.
+    /// Scores points of a space until the budget is spent. Returns each scored point with its value for `goal`.
     fn tried(&mut self, space: &Space, goal: Goal, points: Vec<Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
         let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
         let scored = self.try_all(&options);
@@ -248,9 +248,9 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample, to twice the number that
-    /// the signal needs, because a higher maximum costs time. The maximum stays at [`ROOM`] or above, because held-out
-    /// blocks and other recordings may jump further.
+    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample. The parameter becomes
+    /// twice the number that the signal needs, because a higher maximum costs time. It stays at [`ROOM`] or above,
+    /// because held-out blocks and other recordings may jump further.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;

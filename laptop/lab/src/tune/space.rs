@@ -34,13 +34,13 @@ pub(super) struct Axis {
 /// The conversion of a number on an axis to a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
-    /// Natural logarithm of the parameter divided by the given unit.
+    /// The natural logarithm of a quotient: the parameter divided by the given unit.
     Log(f64),
-    /// Offset of the parameter from the first value, divided by the second.
+    /// Offset of the parameter from the first given value, divided by the second given value.
     Around(f64, f64),
     /// The parameter divided by the sum of the taps of the scheme's filter.
     OfFilter,
-    /// Natural logarithm of the parameter divided by the threshold.
+    /// The natural logarithm of a quotient: the parameter divided by the threshold.
     Thresholds,
     Whole,
     /// A whole number that is a maximum, such as the largest number of spikes in a sample.
@@ -50,14 +50,15 @@ pub(super) enum Role {
     Length,
     Shape,
     Alpha,
-    /// Natural logarithm of the filter's sum divided by the height of the signal's mean above the shift. The quotient
-    /// is the number of samples for each spike while the signal is at its mean. The two values bound the sum itself.
+    /// The natural logarithm of a quotient: the sum of the filter's taps divided by the height of the signal's mean
+    /// above the shift. The quotient is the number of samples for each spike while the signal is at its mean. The two
+    /// values are the bounds of the sum of the taps.
     Sum(f64, f64),
     /// A tap of the filter divided by the given unit.
     Tap(f64),
 }
 
-/// The shapes of a filter that are searched; only the last has a parameter alpha.
+/// The shapes of a filter that are searched. Only the last shape has a parameter alpha.
 const SHAPES: [&str; 3] = ["triang", "hann", "gauss"];
 
 /// The space of a scheme's search: an axis for each number that is searched, and the parameters that are fixed.
@@ -73,13 +74,13 @@ pub(crate) struct Space {
 pub(crate) struct Inner {
     /// Index of the axis.
     pub axis: usize,
-    /// Whether the axis is the filter's sum, and the compared values are factors of that sum. If false, the axis is the
-    /// threshold, and the compared values are thresholds.
+    /// If true, the axis is the sum of the filter's taps, and the compared values are factors of this sum. If false,
+    /// the axis is the threshold, and the compared values are thresholds.
     pub is_factor: bool,
 }
 
 impl Space {
-    /// Makes the space of those parameters of the scheme that `fixed` leaves open.
+    /// Makes the space of the scheme's parameters that `fixed` leaves open.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {
@@ -178,7 +179,7 @@ impl Space {
         points
     }
 
-    /// Returns every combination of values of the integer and word parameters, as options.
+    /// Returns every combination of values of the parameters that are integers or words, as options.
     pub(crate) fn combinations(&self) -> Vec<Asked> {
         let mut all = vec![Asked::default()];
         for axis in
@@ -255,14 +256,15 @@ impl Space {
         options
     }
 
-    /// Returns the height of the signal's mean above a shift, or above the signal's minimum if `None`; at least 1 % of
-    /// the signal's range.
+    /// Returns the height of the signal's mean above `shift`, or above the signal's minimum if `None`. The height is at
+    /// least 1 % of the signal's range.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())
     }
 
-    /// Converts options to a point of the unit cube; an axis on which the options have no value gets its middle.
+    /// Converts options to a point of the unit cube. On an axis for which the options have no value, the point lies in
+    /// the middle.
     pub(crate) fn point(&self, options: &Asked) -> Vec<f64> {
         let number = |name: &str| options.number(name);
         let taps = taps_of(options).unwrap_or_default();
@@ -362,7 +364,7 @@ mod tests {
     use crate::scheme::Scheme;
     use catalogue::run::Asked;
 
-    /// Each scheme accepts the options at the lower bounds, at the upper bounds, and in the middle of its space.
+    /// Each scheme accepts the options at the lower bounds of its space, at the upper bounds, and in the middle.
     #[test]
     fn every_corner_is_understood() {
         for scheme in Scheme::all() {

@@ -7,7 +7,7 @@ use crate::trial::Recording;
 use catalogue::run::{Given, SampleType};
 use std::ops::Range;
 
-/// Consecutive samples that are coded in one piece, and the ranges of them that are scored.
+/// Consecutive samples that are coded in one piece, and the ranges of samples that are scored.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// The samples that are coded.
@@ -71,14 +71,14 @@ const SHORTEST: usize = 20;
 /// held out.
 const OFFSET: f64 = 0.35;
 
-/// Cuts a recording into blocks; returns the stretches to tune on, and those whose held-out blocks are scored.
+/// Cuts a recording into blocks. Returns the stretches to tune on, and the stretches whose held-out blocks are scored.
 ///
-/// Adjacent blocks to tune on form one stretch. Held-out blocks are coded as in flight: each segment is coded in one
-/// piece, including the blocks to tune on, and only the held-out blocks are scored. If each block were coded alone, a
-/// code that drifts would start it from the right value, and its drift would not show.
+/// Adjacent blocks that are tuned on form one stretch. Held-out blocks are coded as in flight: each segment is coded in
+/// one piece, including the blocks to tune on, and only the held-out blocks are scored. If each block were coded alone,
+/// a code that drifts would start it from the right value, and its drift would not show.
 ///
 /// # Errors
-/// Returns an error if the blocks are too short, or if none is left to tune on.
+/// Returns an error if the blocks are too short, or if no block is left to tune on.
 pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Vec<Stretch>)> {
     let HoldOut { blocks, part } = hold_out;
     let samples = recording.values.len();
@@ -129,7 +129,8 @@ mod tests {
     use super::{HoldOut, Stretch, cut};
     use crate::trial::Recording;
 
-    /// Of 5 blocks, the second and the fifth are held out, and coded together with the blocks before them.
+    /// If 40 % of 5 blocks are held out, these are the second and the fifth block. They are coded together with the
+    /// blocks before them.
     #[test]
     fn what_is_held_out_is_coded_with_what_is_before_it() {
         let values: Vec<f64> = (0..200).map(f64::from).collect();

@@ -11,7 +11,7 @@ use catalogue::run::Words;
 /// A summary of a CSV table.
 #[derive(Debug)]
 pub struct Summary {
-    /// The columns, except those of times and counts.
+    /// The columns, except columns of times and counts.
     pub columns: Vec<ColumnSummary>,
     /// Number of rows.
     pub rows: u64,

@@ -17,7 +17,8 @@ pub struct Channel {
     time: Option<String>,
     time_unit: Option<TimeUnit>,
     skip_non_finite: bool,
-    /// For each topic of the log, the positions of the fields, if the topic has the chosen name.
+    /// For each topic of the log, the positions of the chosen fields. `None` if the topic does not have the chosen
+    /// name.
     plans: Vec<Option<Plan>>,
     samples: u64,
     values: Vec<f64>,
@@ -25,7 +26,7 @@ pub struct Channel {
     notes: Vec<Words>,
 }
 
-/// Positions of the chosen fields in a message, and of the time, if a field holds it.
+/// Positions of the chosen fields in a message, and of the field that holds the time, if a field does.
 struct Plan {
     fields: Vec<Path>,
     time: Option<Time>,
@@ -110,7 +111,8 @@ impl Channel {
         Ok(Plan { fields, time })
     }
 
-    /// Returns the unit of a field that holds times: the chosen unit, or else the one that the field's name suggests.
+    /// Returns the unit of a field that holds times. This is the unit that the user chose or, if the user chose none,
+    /// the unit that the field's name suggests.
     fn unit(&self, field: &str) -> TimeUnit {
         self.time_unit.unwrap_or_else(|| {
             match of_given(field.rsplit('.').next().unwrap_or(field)) {
@@ -151,7 +153,7 @@ impl Channel {
         Ok(())
     }
 
-    /// Makes the error of a recording without samples: its topic is unknown or has no messages.
+    /// Makes the error for a recording without samples, because its topic is unknown or has no messages.
     fn nothing(&self) -> Error {
         let topic = self.topic.clone();
         if self.plans.iter().any(Option::is_some) {
@@ -163,8 +165,8 @@ impl Channel {
     }
 }
 
-/// Appends the values of a message's fields, NaN for those beyond the end of a short array, and returns the message's
-/// time in µs.
+/// Appends the values of a message's fields, and returns the message's time in µs. A field beyond the end of a short
+/// array has the value NaN.
 fn read(
     topic: &Topic,
     plan: &Plan,

@@ -13,13 +13,13 @@ use std::path::Path;
 pub struct Overview {
     /// Name of the topic.
     pub name: String,
-    /// Type of the messages; empty if the log names none.
+    /// Type of the messages; empty if the log does not name the type.
     pub kind: String,
     /// Names of the fields that hold numbers.
     pub fields: Vec<String>,
     /// Names of the fields that hold text.
     pub texts: Vec<String>,
-    /// The reason that the fields cannot be read, if they cannot.
+    /// The reason that the fields cannot be read. `None` if they can be read.
     pub unread: Option<String>,
     /// Number of messages.
     pub count: u64,
@@ -71,7 +71,7 @@ pub fn overview(
 struct Watched {
     times: Times,
     count: u64,
-    /// Position of the sequence number in the messages, if they have one.
+    /// Position of the sequence number in the messages, if messages have a sequence number.
     counter: Option<FieldPath>,
     previous: Option<u32>,
     missing: u64,

@@ -1,4 +1,5 @@
-//! JSON lines: an object on each line. Members of an object within are called `pose.x`, elements of an array `gyro[0]`.
+//! JSON lines, with an object on each line. A member of a nested object becomes a column such as `pose.x`, and an
+//! element of an array becomes a column such as `gyro[0]`.
 
 use super::{Lines, Rows, end, odd, quote};
 use crate::Result;
@@ -6,7 +7,7 @@ use serde_json::value::RawValue;
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, BufRead, BufReader, Read};
 
-/// Number of lines whose names make up the columns. Names that first appear on a later line are not read.
+/// Number of first lines whose names become columns. A name that first appears on a later line is not read.
 const AHEAD: usize = 64;
 
 /// Reads JSON lines as a CSV table.
@@ -38,16 +39,16 @@ pub(super) fn lines(input: impl Read + 'static) -> Result<Box<dyn Read>> {
 
 struct Objects<R> {
     input: BufReader<R>,
-    /// The column of each name.
+    /// The index of each name's column.
     names: BTreeMap<String, usize>,
-    /// Lines that were read for their names.
+    /// The first lines, which were read in advance for their names.
     ahead: VecDeque<String>,
     line: String,
     number: u64,
 }
 
 impl<R: Read> Objects<R> {
-    /// Reads the next line; returns false at the end.
+    /// Reads the next line. Returns false at the end of the input.
     fn read(&mut self) -> io::Result<bool> {
         self.line.clear();
         Ok(self.input.read_line(&mut self.line)? > 0)
@@ -89,7 +90,7 @@ impl<R: Read> Rows for Objects<R> {
     }
 }
 
-/// Returns the names and values of a line, the numbers as they are written.
+/// Returns the names and values of a line. Numbers keep the digits with which they are written.
 fn fields(line: &str, number: u64) -> Result<Vec<(String, String)>> {
     let mut fields = Vec::new();
     if !line.trim().is_empty() {

@@ -1,7 +1,8 @@
-//! Tables in other formats than CSV, as the lines of a CSV table: JSON lines, `NumPy`'s arrays, Parquet.
+//! Converts tables in other formats to the lines of a CSV table. The formats are JSON lines, `NumPy`'s arrays, and
+//! Parquet.
 //!
-//! The rules for columns, times and missing values are thus those of all tables. Numbers are passed on digit by digit, or
-//! as the shortest text that reads as the same number.
+//! The same rules for columns, times and missing values thus apply to all tables. A number keeps its digits if the file
+//! has it as text. Otherwise, it becomes the shortest text that reads back as the same number.
 
 mod json;
 mod numpy;
@@ -14,19 +15,19 @@ use std::fs::File;
 use std::io::{self, Read, Seek};
 use std::path::Path;
 
-/// First bytes of a file of `NumPy`, of an archive of them, and of Parquet.
+/// First bytes of three formats: `NPY` of `NumPy`'s arrays, `NPZ` of archives of such arrays, `PARQUET` of Parquet.
 const NPY: &[u8] = b"\x93NUMPY";
 const NPZ: &[u8] = b"PK\x03\x04";
 #[cfg(feature = "datasets")]
 const PARQUET: &[u8] = b"PAR1";
 
-/// The rows of a table, as text of a CSV table.
+/// A source of rows, which are read as lines of CSV.
 trait Rows {
-    /// Appends the next row, with its end; returns false at the end of the table.
+    /// Appends the next row to `text` as a line of CSV, with its line end. Returns false at the end of the table.
     fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool>;
 }
 
-/// Rows that are read as text.
+/// A reader of rows as the text of a CSV table.
 struct Lines<T> {
     rows: T,
     text: Vec<u8>,
@@ -34,7 +35,7 @@ struct Lines<T> {
 }
 
 impl<T: Rows> Lines<T> {
-    /// Starts with the line of the header.
+    /// Makes a reader whose text starts with a header line of these names.
     fn new(names: impl IntoIterator<Item = String>, rows: T) -> Self {
         let mut text = Vec::new();
         for name in names {
@@ -60,7 +61,7 @@ impl<T: Rows> Read for Lines<T> {
     }
 }
 
-/// Replaces the comma at the end of a row by the end of its line.
+/// Replaces the comma at the end of a row by a line end.
 fn end(text: &mut Vec<u8>) {
     match text.last_mut() {
         Some(last) => *last = b'\n',
@@ -68,7 +69,7 @@ fn end(text: &mut Vec<u8>) {
     }
 }
 
-/// Appends a text, in quotes if it needs them.
+/// Appends `own` to `text` as a field of CSV, in quotes if necessary.
 fn quote(own: &str, text: &mut Vec<u8>) {
     let is_plain = !own.contains([',', '"', '\n', '\r']) && !own.starts_with('#');
     if is_plain {
@@ -85,7 +86,8 @@ fn quote(own: &str, text: &mut Vec<u8>) {
     text.push(b'"');
 }
 
-/// Returns the content of a file that needs random access, as a CSV table; `None` if its first bytes are others.
+/// Returns the table in an `.npz` archive or a Parquet file as CSV. These formats need random access. Returns `None` if
+/// the first bytes of the file belong to neither format.
 ///
 /// # Errors
 /// Returns an error if the file is damaged, or holds no table.
@@ -104,7 +106,8 @@ pub(super) fn of_file(path: &Path, name: &str) -> Result<Option<Box<dyn Read>>> 
     Ok(None)
 }
 
-/// Returns an input as a CSV table, if its first bytes are those of JSON lines or of an array; otherwise the input.
+/// Converts an input of JSON lines or of a `NumPy` array to CSV. Returns the input unchanged, as the inner error, if
+/// its first bytes `head` belong to neither format.
 ///
 /// # Errors
 /// Returns an error if the first line or the header cannot be read, or holds no table.
@@ -123,7 +126,7 @@ pub(super) fn of_stream(
     read.map(Ok).map_err(|error| error.at(name))
 }
 
-/// Makes the error of a table that cannot be read.
+/// Makes the error for a table that cannot be read, for the reason `what`.
 fn odd(what: impl Into<String>) -> crate::Error {
     TableKind::OddTable { what: what.into() }.into()
 }

@@ -1,7 +1,7 @@
-//! `NumPy`'s arrays: a column for each field of a structured array, or for each column of a plain one; in an archive
-//! `.npz`, for each array.
+//! Converts `NumPy`'s arrays to CSV tables. A structured array gives a column for each field, and a plain array gives a
+//! column for each of its columns. An `.npz` archive gives the columns of all its arrays.
 //!
-//! The header is read here: of the crates, `npyz` 0.9 needs a parser generator and a C compiler for it.
+//! The header is parsed here, because the crate `npyz` 0.9 needs a parser generator and a C compiler for that.
 
 use super::{Lines, Rows, end, odd};
 use crate::Result;
@@ -49,7 +49,7 @@ pub(super) fn archive(file: File) -> Result<Box<dyn Read>> {
     }
 }
 
-/// An array that is read row by row.
+/// An array whose rows are read one after the other.
 struct Array {
     input: Box<dyn Read>,
     fields: Vec<Field>,
@@ -58,14 +58,14 @@ struct Array {
     left: u64,
 }
 
-/// A number in a row.
+/// The position and type of a number in each row.
 struct Field {
     name: String,
     at: usize,
     kind: Kind,
 }
 
-/// Type of a number: its letter in `NumPy`, and its size in bytes.
+/// Type of a number: the type's letter in `NumPy`, its size in bytes, and whether it is big-endian.
 #[derive(Clone, Copy)]
 struct Kind {
     letter: u8,
@@ -74,7 +74,7 @@ struct Kind {
 }
 
 impl Kind {
-    /// Reads a type such as `<f8`; `None` if it is no number.
+    /// Parses a type such as `<f8`. Returns `None` if the type is not a type of numbers.
     fn of(text: &str) -> Option<Self> {
         let [order, kind, size @ ..] = text.as_bytes() else { return None };
         let size = str::from_utf8(size).ok()?.parse().ok()?;
@@ -83,7 +83,7 @@ impl Kind {
         is_known.then_some(Self { letter: *kind, size, is_big: *order == b'>' })
     }
 
-    /// Appends a number as text.
+    /// Appends the number in `bytes` to `text`, in decimal digits.
     fn write(self, bytes: &[u8], text: &mut Vec<u8>) {
         let mut own = [0; 8];
         for (place, byte) in own.iter_mut().zip(bytes) {
@@ -136,7 +136,7 @@ impl Array {
     }
 }
 
-/// Reads an array that is stored column by column, and returns its bytes row by row. It is held in memory.
+/// Reads a whole array that is stored column by column into memory, and returns its bytes row by row.
 fn by_rows(mut input: impl Read, size: usize, columns: usize, rows: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input.read_to_end(&mut bytes)?;
@@ -155,7 +155,8 @@ fn by_rows(mut input: impl Read, size: usize, columns: usize, rows: u64) -> Resu
     Ok(sorted)
 }
 
-/// Returns where the numbers of a row lie, the length of a row in bytes, and the number of rows.
+/// Parses the header of an array. Returns the position of each number in a row, the length of a row in bytes, and the
+/// number of rows.
 fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
     let (_, shape) = header.split_once("'shape':")?;
     let shape = shape.split_once('(')?.1.split_once(')')?.0;
@@ -216,7 +217,7 @@ fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
     (!fields.is_empty()).then_some((fields, at, rows))
 }
 
-/// Arrays whose rows are read side by side.
+/// Arrays of equal length whose rows are joined to rows of one table.
 struct Arrays(Vec<Array>);
 
 impl Rows for Arrays {

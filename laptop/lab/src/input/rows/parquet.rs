@@ -1,4 +1,4 @@
-//! Parquet: a column for each that holds numbers, times or texts.
+//! Converts Parquet files to CSV tables. Numbers, times and texts become fields; other values become missing values.
 
 use super::{Lines, Rows, end, odd, quote};
 use crate::Result;
@@ -8,7 +8,7 @@ use parquet::record::reader::RowIter;
 use std::fs::File;
 use std::io::{self, Read};
 
-/// Reads a file as a CSV table.
+/// Reads a Parquet file as a CSV table.
 pub(super) fn open(file: File) -> Result<Box<dyn Read>> {
     let unread = |error| odd(format!("a Parquet file that is not read: {error}"));
     let file = SerializedFileReader::new(file).map_err(unread)?;
@@ -51,7 +51,7 @@ impl Rows for Table {
     }
 }
 
-/// Appends a value as text; times are counts in the file's unit.
+/// Appends a value to `text`. A time is written as a whole number in the file's unit.
 fn write(field: &Field, text: &mut Vec<u8>) {
     let (mut whole, mut decimals) = (itoa::Buffer::new(), zmij::Buffer::new());
     let digits = match *field {
