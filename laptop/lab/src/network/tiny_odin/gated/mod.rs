@@ -26,7 +26,7 @@ const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
 /// Maximum number of neurons of each layer on which the search compares [shapes](Shape).
 const SURVEYED: usize = 8;
-/// Number of [shapes](Shape) with which the whole network is quantised: those that are best for a sample of its neurons.
+/// Number of [shapes](Shape) with which the whole network is quantised: the best for a sample of its neurons.
 const CHOSEN: usize = 2;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
