@@ -21,11 +21,11 @@ pub struct Request<'a> {
     pub tuned: &'a Trains,
     /// A second recording, on which the quantised network is only tested; `None` to test it on `tuned` only.
     pub held_out: Option<HeldOut<'a>>,
-    /// The outputs' spikes by step, as the training framework computed them: for `tuned`, then for `held_out`. `None`
-    /// if they are not known.
+    /// Spikes of the outputs that the training framework computed, by step: for the recording `tuned`, then for
+    /// `held_out`. `None` if these spikes are not known.
     pub framework: Option<(&'a Trains, &'a Trains)>,
     /// When neurons compare their potentials with their thresholds. `None` tries both possibilities and chooses the one
-    /// that agrees better with double precision. Chips that offer no choice ignore the setting.
+    /// whose spikes agree better with double precision. Chips that offer no choice ignore the setting.
     pub compare: Option<Compare>,
     /// Called during the search for the chip's parameters, with the number of finished parts of the search and the
     /// total number of parts.
@@ -37,8 +37,8 @@ pub struct Request<'a> {
 pub struct HeldOut<'a> {
     /// Input spikes of all steps, including those before `from`.
     pub steps: &'a Trains,
-    /// Index of the first step that is compared. Parameters may have been tuned on the steps before it; these run only
-    /// to bring the network into its state at `from`.
+    /// Index of the first step that is compared. Earlier steps run only to bring the network into its state at `from`;
+    /// parameters may have been tuned on them.
     pub from: usize,
 }
 
@@ -50,13 +50,14 @@ pub struct Brought {
     pub tuned: Figures,
     /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
-    /// The effect of each part of the chip's arithmetic by itself. The network runs in double precision except for this
-    /// part; the number is the share of active steps in which the same outputs fire as in full double precision.
-    /// Measured on the held-out recording or, if there is none, on the tuned one. Active steps are those in which an
-    /// output fires in either run.
+    /// Each part of the chip's arithmetic, with its effect by itself. To measure the effect, the network runs in double
+    /// precision except for this part. The number is the share of active steps in which the same outputs fire as in
+    /// full double precision. Active steps are those in which an output fires in either run. The recording is the
+    /// held-out one or, if there is none, the tuned one.
     pub costs: Vec<(Cost, f64)>,
-    /// Share of active steps in which the same outputs fire in double precision as did in the training framework: a
-    /// test of how the network's file was read. `None` if the framework's spikes are not given, or if no output fires.
+    /// Share of active steps in which the same outputs fire in double precision and in the training framework. A low
+    /// share suggests that the network's file, or the rule of its neurons, was understood wrongly. `None` if the
+    /// framework's spikes are not given, or if no output fires.
     pub reading: Option<f64>,
 }
 
@@ -189,7 +190,7 @@ impl Original {
         }
     }
 
-    /// Replaces the spikes of the last layer by `framework`, those that the training framework computed.
+    /// Replaces the spikes of the last layer by `framework`, the spikes that the training framework computed.
     ///
     /// # Errors
     /// Returns an error if `framework` has a different number of steps, or an output that the network does not have.
@@ -347,8 +348,8 @@ impl Figures {
         }
     }
 
-    /// Returns how well the network on the chip agrees with double precision, from 0 to 1: the mean of two shares, that
-    /// of agreeing active steps and that of agreeing windows.
+    /// Returns how well the network on the chip agrees with double precision, from 0 to 1. This is the mean of the
+    /// share of active steps that agree and the share of windows that agree.
     pub(super) fn holds(&self) -> f64 {
         let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
         f64::midpoint(self.agreement().unwrap_or(0.0), windows)

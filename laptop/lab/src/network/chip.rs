@@ -11,10 +11,10 @@ pub trait Chip: Sync {
     /// Returns the name by which the command line selects the chip, such as `tinyodin`.
     fn name(&self) -> &'static str;
 
-    /// Searches for the chip's parameters with which the spikes of each layer are nearest to `fired`, those that the
-    /// layer should have. `inputs` are the network's input spikes by step. `compare` is as in
-    /// [`Request`](super::Request). Calls `progress` with the number of finished parts of the search and the total
-    /// number of parts.
+    /// Searches for the chip's parameters with which each layer's spikes are nearest to the layer's target, its spikes
+    /// in `fired`. `inputs` are the network's input spikes by step. `compare` has the meaning of
+    /// [`Request::compare`](super::Request::compare). Calls `progress` with the number of finished parts of the search
+    /// and the total number of parts.
     ///
     /// # Errors
     /// Returns an error if the network does not fit the chip.
@@ -28,12 +28,13 @@ pub trait Chip: Sync {
     ) -> Result<Box<dyn OnChip>>;
 }
 
-/// When a chip's neurons compare their potentials with their thresholds, on a chip that can do it in both ways.
+/// When a chip's neurons compare their potentials with their thresholds. The choice exists only on chips that support
+/// both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
     /// After each spike that arrives, as the chip does by default.
     Spike,
-    /// Once in each time step, as in training. The driver sends the chip extra events that bring this about.
+    /// Once in each time step, as in training. For this, the driver sends extra events to the chip.
     Step,
 }
 
@@ -50,8 +51,8 @@ pub trait OnChip {
     fn run(&self, inputs: &Trains) -> Result<Ran>;
 
     /// Loads the network into the chip's model, and runs it step by step. Passes the result of each step to `see`
-    /// before it reads the inputs of the next one, so that later inputs may depend on the result. Returns the number of
-    /// spikes that were lost on their way into the chip.
+    /// before it reads the inputs of the next step, so that later inputs may depend on the result. Returns the number
+    /// of spikes that were lost on their way into the chip.
     ///
     /// # Errors
     /// Returns an error if the chip or `see` refuses a step, or if the chip's outputs for a step come only in later
@@ -78,8 +79,8 @@ pub trait OnChip {
     /// Returns an error if the chip does not accept the network.
     fn bytes(&self) -> Result<Vec<u8>>;
 
-    /// Returns remarks for the user, one line each: on the network's size on the chip, and on what quantising had to
-    /// change.
+    /// Returns remarks for the user, one line each: on the network's size on the chip, and on the changes that
+    /// quantising made to the network.
     fn notes(&self) -> Vec<String>;
 
     /// Returns the parts of the chip's arithmetic, such as rounded weights, whose effect on the spikes can be measured

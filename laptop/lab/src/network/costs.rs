@@ -30,14 +30,14 @@ impl Display for Cost {
     }
 }
 
-/// Fixed leaks to try, as multiples of the amount that the trained neuron loses in a step at a potential of half its
+/// Fixed leaks to try, as multiples of the amount that the trained neuron loses in a step if its potential is half its
 /// threshold.
 const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
 
 impl Cost {
     /// Runs the network on `inputs`, in double precision except for this part of the chip's arithmetic. Returns the
-    /// spikes of the last layer. Parameters of this part, such as fixed leaks, are fitted to `fired`, the spikes that
-    /// each layer should have for the inputs `tuned`.
+    /// spikes of the last layer. Parameters of this part, such as fixed leaks, are fitted to a target: `fired` contains
+    /// the spikes that each layer should fire for the inputs `tuned`.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -79,7 +79,7 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
 }
 
 /// Returns the leak, as a fixed amount for each step, with which the spikes of neuron `at` are nearest to those in
-/// `fired`. `drive` are the input spikes of the layer.
+/// `fired`. `drive` contains the input spikes of the layer.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
     let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {

@@ -15,7 +15,8 @@ pub type Trains = Vec<Vec<u16>>;
 pub struct Trained {
     /// The layers whose neurons fire, from input to output.
     pub layers: Vec<Layer>,
-    /// Output neurons that never fire, after the last of `layers`; `None` if the outputs are the spikes of that layer.
+    /// Output neurons that never fire and that follow the last of `layers`; `None` if the outputs are the spikes of
+    /// that layer.
     pub readout: Option<Readout>,
 }
 
@@ -82,7 +83,7 @@ pub struct Layer {
     pub fires: Fires,
 }
 
-/// Converts a threshold to a whole number for chips, whose neurons fire at or above their thresholds. Returns the
+/// Converts a threshold to a whole number, for chips whose neurons fire at or above their thresholds. Returns the
 /// smallest whole potential at which a neuron with this `threshold` fires.
 pub(super) fn fires_at(threshold: f64, fires: Fires) -> f64 {
     match fires {
@@ -258,8 +259,8 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
-    /// Replaces the rule by which neurons reset and fire by the one that the user asked for. `asked` contains one reset
-    /// for all layers, or one reset for each layer.
+    /// Sets how the neurons of each layer reset, and whether they fire at the threshold or only above it. Both follow
+    /// `asked`, which contains at most one reset for all layers, or one reset for each layer.
     ///
     /// # Errors
     /// Returns an error if `asked` contains several resets, and their number is not that of the layers.
@@ -277,8 +278,8 @@ impl Trained {
     }
 
     /// Converts layers in which a spike subtracts the threshold in the same step, for chips that subtract it one step
-    /// later. There the subtraction comes after the step's leak, which would have reduced it; a weight from each neuron
-    /// to itself makes up for the difference.
+    /// later. The leak of a step no longer reduces the amount that a late subtraction removes. A positive weight from
+    /// each neuron to itself makes up for the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {

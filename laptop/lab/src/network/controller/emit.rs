@@ -67,8 +67,8 @@ fn spell_rows<K: Copy>(rows: &[&[K]], spell: impl Fn(K) -> String) -> String {
 }
 
 /// Returns the Rust source of a module that defines the network. For integers, `shifts` are the left shifts of the
-/// layers' weights, and `units` the values, in units of the training, that potentials of 1 stand for; both are empty
-/// for floating point. `check` are the input spikes of the self-test.
+/// layers' weights, and `units` the values of integer potentials of 1, in the units of the trained network. Both are
+/// empty for floating point. `check` are the input spikes of the self-test.
 pub(super) fn emit<K: Spelled>(
     net: &Net<K>,
     shifts: &[u32],

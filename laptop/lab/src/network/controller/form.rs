@@ -139,8 +139,8 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Converts a matrix of recurrent weights, which has one row for each receiving neuron. If each neuron leads at most to
-/// itself, keeps only the diagonal.
+/// Converts a matrix of recurrent weights, which has one row for each receiving neuron. The result contains only the
+/// weights from each neuron to itself if all other weights are 0.
 fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
@@ -218,8 +218,8 @@ struct Stepped {
     gain: f64,
 }
 
-/// Converts the parameters of neuron `at`, such as time constants, to those for one step. Leaves the bias at 0, to
-/// which the caller adds it.
+/// Converts the parameters of neuron `at`, such as time constants, to the parameters for one step. Sets the bias to 0;
+/// the caller adds the bias later.
 fn stepped(neurons: &Neurons, at: usize, rule: &Rule) -> Result<Stepped> {
     let dt = rule.dt;
     let resistance = neurons.resistance.at(at);
@@ -268,8 +268,8 @@ impl Neurons {
 }
 
 impl Neuron<f64> {
-    /// Shifts the neuron's potentials, such as its threshold, so that a neuron with the initial potential `start`
-    /// starts at 0.
+    /// Shifts the neuron's potentials, such as its threshold, by `-start`: a neuron whose initial potential was `start`
+    /// then starts at 0.
     fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
         self.inner -= (1.0 - self.decay) * start;
         if let Some(spike) = &mut self.spike {

@@ -211,7 +211,8 @@ fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
 }
 
 impl OnController {
-    /// Returns two numbers of bytes that the network takes: in flash (weights and neurons) and in RAM (state).
+    /// Returns the number of bytes of flash that the network takes (weights and neurons), and the number of bytes of
+    /// RAM (state).
     fn bytes_of(&self) -> (usize, usize) {
         match &self.held {
             Held::Float(net) => bytes(net, 4),
@@ -234,8 +235,8 @@ impl OnController {
     }
 }
 
-/// Returns two numbers of bytes that a network takes as `spikewire-network` stores it: in flash and in RAM. A weight
-/// takes `weight` bytes.
+/// Returns the number of bytes of flash and the number of bytes of RAM that a network takes in `spikewire-network`. A
+/// weight takes `weight` bytes.
 fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
     let (mut flash, mut ram) = (0, 0);
     for layer in &net.layers {

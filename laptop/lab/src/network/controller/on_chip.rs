@@ -6,8 +6,8 @@ use super::Model;
 use super::net::{Layer, Neuron, Recurrent, Spike};
 use crate::network::fault::{Context, FitKind, Result, ensure};
 
-/// Largest share of a synaptic current that a step may leave. The chips' neurons have no such current, so it must be
-/// over after its step.
+/// Maximum share of a synaptic current that may remain after one step. The chips' neurons have no synaptic current, so
+/// the current must end with its step.
 const CURRENT: f64 = 1e-3;
 
 impl Model {

@@ -58,13 +58,14 @@ pub(super) struct Integers {
     pub shifts: Vec<u32>,
     /// Number of weights that exceeded 8 bits and were clipped, for each layer.
     pub clipped: Vec<usize>,
-    /// For each neuron of the last layer, the value in units of the training that a potential of 1 stands for.
+    /// For each neuron of the last layer, the value of an integer potential of 1, in the units of the trained network.
     pub units: Vec<f64>,
 }
 
-/// Quantises a network to integers. Chooses for each neuron the scale of its weights at which its spikes, or its
-/// potentials if it never fires, are nearest to those in double precision, which are `fired` and `potentials`. Calls
-/// `progress` with the number of finished neurons and the total number of neurons.
+/// Quantises a network to integers. `fired` and `potentials` are the network's spikes and potentials in double
+/// precision. Chooses for each neuron the scale of its weights at which its spikes are nearest to `fired`. For a neuron
+/// that never fires, chooses the scale at which its potentials are nearest to `potentials`. Calls `progress` with the
+/// number of finished neurons and the total number of neurons.
 pub(super) fn integers(
     net: &Net<f64>,
     inputs: &Trains,
@@ -109,16 +110,16 @@ fn has(fired: &[u16], neuron: usize) -> bool {
     fired.binary_search(&(neuron as u16)).is_ok()
 }
 
-/// A neuron in integers, and the weights that lead to it: a column of the layer's matrices.
+/// A neuron in integers, and the weights that lead to the neuron.
 struct Column {
     /// The weight of each input, after the layer's left shift.
     weights: Vec<i32>,
-    /// The recurrent weight of each neuron of the layer, after the left shift; only the neuron's weight to itself if
-    /// neurons do not act on one another.
+    /// The recurrent weights that lead to the neuron, after the left shift: one for each neuron of the layer. If
+    /// neurons do not act on one another, only the weight from the neuron to itself.
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
-    /// The value in units of the training that a potential of 1 stands for.
+    /// Value of an integer potential of 1, in the units of the trained network.
     unit: f64,
 }
 

@@ -105,8 +105,8 @@ pub struct Rule {
     pub dt: f64,
 }
 
-/// The rule of networks in JSON, whose parameters are for a step: a neuron fires above its threshold, and a spike sets
-/// the potential to 0 in the same step.
+/// The rule of networks in JSON. A neuron fires above its threshold, and a spike sets the potential to 0 in the same
+/// step. Decay and duration of a step play no role, because the parameters in JSON apply to one step.
 pub(super) const PLAIN: Rule = Rule {
     framework: None,
     reset: Reset::ToValue,
@@ -199,8 +199,8 @@ impl Asked {
         })
     }
 
-    /// Returns the rule of a network in JSON: [`PLAIN`], except for what the user or the framework says about the
-    /// reset, and about firing at the threshold or only above it.
+    /// Returns the rule of a network in JSON: [`PLAIN`], with the reset and the condition for firing that the user or
+    /// the framework gives.
     pub(in super::super) fn or_plain(&self) -> Rule {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Rule {
@@ -224,8 +224,8 @@ impl Asked {
         }
     }
 
-    /// Returns the reset of the first layer: the one that the user gave or, if there is none, the one in `says`, the
-    /// parts of the rule that the framework implies.
+    /// Returns the reset of the first layer that the user gave. If the user gave no reset, returns the reset in `says`,
+    /// which contains the parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }

@@ -9,7 +9,7 @@ const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
 
 /// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair with a
-/// common leak and threshold; therefore both hold neurons of the same layer, with trained leaks that are as similar as
+/// common leak and threshold. Therefore both hold neurons of the same layer whose trained leaks are as similar as
 /// possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
@@ -67,8 +67,8 @@ impl Places {
         self.by_layer[layer][neuron]
     }
 
-    /// Returns, for each pair of the chip's neurons, the layer and index of each neuron that the pair holds: two
-    /// neurons, or one if the other stays free.
+    /// Returns, for each pair of the chip's neurons, the layer and index of each of the network's neurons that the pair
+    /// holds. A pair holds two neurons, or one if its second neuron stays free.
     pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
     }

@@ -49,14 +49,14 @@ pub(super) struct Quantised {
     pub(super) bias: Option<usize>,
     /// Name and number of neurons of each layer.
     pub(super) layers: Vec<(String, usize)>,
-    /// The value in units of the training that an output's potential of 1 stands for; `None` if the outputs report the
-    /// spikes of neurons.
+    /// Value of an output's potential of 1 on the chip, in the units of the trained network; `None` if the outputs
+    /// report the spikes of neurons.
     pub(super) unit: Option<f64>,
-    /// For each layer, how rounding changed its weights. One more entry is for the weights of outputs, if they were
-    /// trained.
+    /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
+    /// these weights.
     pub(super) changes: Vec<Change>,
-    /// Number of neurons and outputs whose leak on the chip differs from the trained one because several share a leak,
-    /// and the largest difference of the factors.
+    /// Number of neurons and outputs whose leak on the chip differs from the trained one, because several share a leak.
+    /// The second number is the largest difference between a decay factor on the chip and the trained one.
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -81,7 +81,7 @@ impl Change {
         if weights > 0.0 { (changes / weights).sqrt() } else { 0.0 }
     }
 
-    /// Rounds `weight * scale` to a weight of the chip, and counts the weight in these statistics.
+    /// Rounds `weight * scale` to a weight of the chip, and adds the change of the weight to these statistics.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let rounded = (weight * scale).round();
         let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
@@ -95,15 +95,16 @@ impl Change {
     }
 }
 
-/// A neuron of the trained network, and the weights that lead to it. Weights and potentials are in units of its
-/// threshold.
+/// A neuron of the trained network, and the weights that lead to the neuron. Weights and potentials are in units of the
+/// neuron's threshold.
 struct Source {
     layer: usize,
     neuron: usize,
     keep: f64,
     /// The weight of each input; then the bias, if the network has a bias.
     inputs: Vec<f64>,
-    /// For each neuron that leads to this one: the number of the chip's neuron that holds it, and its weight.
+    /// For each neuron that sends spikes to this one: the number of the chip's neuron that holds the sender, and the
+    /// weight.
     recurrent: Vec<(usize, f64)>,
     has_bias: bool,
     /// Largest absolute potential that the neuron reaches in double precision.
@@ -134,8 +135,8 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     (ROOM / room).min(of_kind(0)).min(of_kind(1))
 }
 
-/// Returns how much rounding changes a pair of neurons, as a sum of squares: of the changes of its weights, and of the
-/// amounts that its potentials lose because the chip rounds each leak.
+/// Returns a measure of how much rounding changes a pair of neurons. It is the sum of the squared changes of the
+/// weights and of the squared losses of potential. Potential is lost because the chip rounds each leak.
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -149,10 +150,10 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     pair.iter().map(of_source).sum()
 }
 
-/// Quantises a network for the chip. First chooses the shifts at which rounding changes the weights least. Then
-/// chooses, for each pair of neurons, the scale at which its spikes are nearest to those in double precision, if the
-/// other neurons fire as in double precision. Calls `progress` with the number of finished neurons and the total number
-/// of neurons.
+/// Quantises a network for the chip. First chooses the left shifts of weights at which rounding changes the weights
+/// least. Then chooses, for each pair of neurons, the scale at which the pair's spikes are nearest to those in double
+/// precision; all other neurons are assumed to fire as in double precision. Calls `progress` with the number of
+/// finished neurons and the total number of neurons.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip.
@@ -301,10 +302,10 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
 
 /// The spikes that act on a layer in a step.
 struct Drive {
-    /// Inputs of the network that fire, each at most once.
+    /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
-    /// Neurons that fire, as layer and index: those of the layer before in the same step, and those of the layer itself
-    /// in the step before.
+    /// Neurons that fire, each as layer and index. Neurons of the layer before fire in the same step, neurons of the
+    /// layer itself in the step before.
     neurons: Vec<(usize, usize)>,
 }
 
@@ -340,7 +341,7 @@ struct Firing {
     fires: Fires,
 }
 
-/// A neuron in the chip's integers, which is simulated without the rest of its network.
+/// A neuron in the chip's integers, for a simulation of this neuron alone.
 struct Held<'a> {
     keep: i32,
     threshold: i32,

@@ -1,9 +1,9 @@
 //! Hill climbing, which searches for the parameters of a neuron on the chip.
 
 /// Searches for a choice of parameters with a small `distance`; returns the distance and the choice. Starts from the
-/// `climbs` best of the choices in `first`, and moves each to its best neighbour until no neighbour is nearer. Each
-/// call of `distance` also gets the smallest distance that is still useful: it may stop computing as soon as a choice
-/// exceeds it, as almost all do.
+/// `climbs` best of the choices in `first`, and moves each to its best neighbour until no neighbour is nearer. The
+/// second argument of `distance` is the smallest distance that is no longer useful: `distance` may stop computing when
+/// it reaches this limit, which saves time because most choices do.
 pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
     first: impl IntoIterator<Item = C>,
     neighbours: impl Fn(C) -> N,

@@ -1,5 +1,5 @@
-//! Quantises a network from double precision to tinyODIN's integers. Its neurons compare potentials with thresholds
-//! after every spike.
+//! Quantises a network from double precision to tinyODIN's integers. The neurons of the quantised network compare their
+//! potentials with their thresholds after every spike.
 
 use super::super::trained::{Layer, Neuron, fires_at};
 use super::super::{Distance, Trained, Trains};
@@ -30,8 +30,8 @@ const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
 const SURVEYED: usize = 32;
 /// The value that stands for a leak where a function takes a weight.
 const LEAK: i8 = i8::MIN;
-/// Number of a layer's spikes in a step above which the simulation of the step stops: the layer's recurrent spikes then
-/// drive it without end.
+/// Maximum number of spikes of a layer in a step. The simulation of a step stops after more spikes, because the layer's
+/// recurrent spikes then drive the layer without end.
 const MOST_SPIKES: usize = 10_000;
 /// Numbers of steps to try between two leaks of all neurons.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
@@ -46,7 +46,8 @@ pub(super) struct Quantised {
     inputs: usize,
     /// Whether the network has a bias.
     pub has_bias: bool,
-    /// Whether spikes of neurons act on neurons: a layer is recurrent, or there are several layers.
+    /// Whether neurons send spikes to other neurons or to themselves: a layer is recurrent, or there are several
+    /// layers.
     is_recurrent: bool,
     /// Number of steps between two leaks of all neurons.
     pub steps_a_leak: usize,
@@ -254,13 +255,13 @@ impl ChipLayer {
 /// The parameters of a neuron that the search varies.
 #[derive(Clone, Copy)]
 struct Choice {
-    /// The value in units of the training that a weight of 1 on the chip stands for.
+    /// Value of a weight of 1 on the chip, in the units of the trained network.
     unit: f64,
     threshold: u16,
     leak: u8,
 }
 
-/// The aim of a search: the spikes that a neuron should have in answer to the spikes that act on it.
+/// The aim of a search: the spikes that a neuron should fire in response to the spikes that act on it.
 struct Aim<'a> {
     drive: &'a Drive,
     /// For each step, the number of spikes that the neuron should have.
@@ -268,8 +269,9 @@ struct Aim<'a> {
     steps_a_leak: usize,
 }
 
-/// Searches for the parameters with which neuron `at` has the spikes in `aim`, or nearly so. Returns the distance of
-/// its spikes from these, and the neuron. The search climbs from the `climbs` best of its initial choices.
+/// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
+/// distance between the spikes and the target, and the neuron. The search climbs from the `climbs` best initial
+/// choices.
 fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuron) {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();
@@ -281,8 +283,8 @@ fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuro
     (least, neuron(best))
 }
 
-/// Returns the initial choices of parameters for neuron `at`: several scales of its weights, each with the threshold
-/// that fits the scale, and each with several leaks.
+/// Returns the initial choices of parameters for neuron `at`: several scales of the neuron's weights. Each scale has
+/// its matching threshold, and is combined with several leaks.
 fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -345,8 +347,8 @@ impl ChipNeuron {
         }
     }
 
-    /// Runs the neuron on the spikes in `aim`, and returns the distance of its spikes from those that it should have.
-    /// Returns infinity as soon as the distance reaches `most`.
+    /// Runs the neuron on the spikes that act on it in `aim`, and returns the distance between the neuron's spikes and
+    /// the target of `aim`. Returns infinity as soon as the distance reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let threshold = i32::from(self.threshold);
@@ -468,8 +470,8 @@ mod tests {
     use super::*;
     use crate::network::{Fires, Reset};
 
-    /// Makes random inputs with at most one spike in a step. With several, the chip's neuron might fire at the first
-    /// spike, and keep the weights of the others for the next step.
+    /// Makes random inputs with at most one spike in a step. If a step had several spikes, the chip's neuron might fire
+    /// at the first one, and the weights of the others would remain in its potential.
     fn some(inputs: u16, steps: u32) -> Trains {
         let fires = |step: u32, input: u16| {
             let mixed = (step * 257 + u32::from(input) * 7919).wrapping_mul(0x9E37_79B9);

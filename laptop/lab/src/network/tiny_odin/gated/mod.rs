@@ -24,9 +24,9 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Maximum number of neurons of each layer on which the search compares shapes (see [`Shape`]).
+/// Maximum number of neurons of each layer on which the search compares [shapes](Shape).
 const SURVEYED: usize = 8;
-/// Number of the best shapes for which the whole network is quantised.
+/// Number of [shapes](Shape) with which the whole network is quantised: the best for a sample of its neurons.
 const CHOSEN: usize = 2;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
@@ -48,9 +48,9 @@ struct GatedLayer {
     neurons: Vec<GatedNeuron>,
 }
 
-/// Rates all shapes of the network on some of its neurons, and quantises the network with each of the best shapes.
-/// Calls `progress` with the number of finished parts of this work and the total number of parts. Returns an empty list
-/// if the chip has no room for any shape.
+/// Rates all [shapes](Shape) on a sample of the network's neurons, and quantises the network with each of the best
+/// shapes. Calls `progress` with the number of finished parts of this work and the total number of parts. Returns an
+/// empty list if the chip has no room for any shape.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -110,8 +110,8 @@ pub(super) fn quantise(
     found.collect()
 }
 
-/// Returns two properties of the network: the largest sum of positive weights that a step adds to a neuron, and the
-/// median threshold. Both are in units of the largest weight of the respective neuron.
+/// Returns the largest sum of positive weights that a step adds to a neuron, and the median threshold of the neurons.
+/// Each neuron's sum and threshold are in units of the neuron's largest weight.
 fn sizes(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> (f64, f64) {
     let (mut most, mut thresholds) = (0.0_f64, Vec::new());
     for ((layer, own), before) in
@@ -205,8 +205,8 @@ impl Gated {
         None
     }
 
-    /// Returns two numbers of rows of synapses: of those for inputs and neurons, and of all rows, which include those
-    /// that raise or lower neurons.
+    /// Returns the number of rows of synapses for inputs, bias and neurons, and the number of all rows. All rows
+    /// include the rows that raise or lower neurons.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }

@@ -2,8 +2,8 @@
 
 use super::shape::Shape;
 
-/// A neuron that compares its potential with its threshold once a step, and the weights that lead to it. Its potential
-/// is meant without the offset that it has on the chip during a step.
+/// A neuron that compares its potential with its threshold once a step, and the weights that lead to the neuron.
+/// Potentials do not include the offset by which the chip lowers the neuron during a step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
     /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
@@ -17,7 +17,7 @@ pub(super) struct GatedNeuron {
     pub leak: u8,
     /// Amount by which a rung (one event of the series that raises neurons) raises the potential.
     pub rung: u8,
-    /// Number of leaks that only this neuron receives after a spike.
+    /// Amount by which a rung raises the potential. A rung is one of the events that raise the neurons in a step.
     pub own_leaks: u16,
     /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
@@ -28,8 +28,8 @@ pub(super) struct GatedNeuron {
 pub(super) struct Added {
     /// Sum of all weights.
     pub all: i32,
-    /// Sum of the positive weights only. The potential may rise by this much in between, because positive weights may
-    /// arrive before negative ones.
+    /// Sum of the positive weights only. The potential may rise by this sum during the step, because positive weights
+    /// may arrive before negative ones.
     pub raised: i32,
 }
 
@@ -46,8 +46,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the step's leaks: for
-    /// each, the number of lowering events before it.
+    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that all
+    /// neurons receive in the step. Each leak is given as the number of events that have lowered the neurons before it.
     #[inline]
     pub(super) fn step(
         &self,
@@ -86,8 +86,9 @@ impl GatedNeuron {
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// Returns the initial potential and the threshold of the chip's neuron. The initial potential is the offset, which
-    /// [`below`](Shape::below) rungs make up for; the threshold is raised by [`above`](Shape::above) rungs.
+    /// Returns the initial potential and the threshold of the chip's neuron. The initial potential is the offset
+    /// downwards, of [`below`](Shape::below) rungs. The threshold is higher than the neuron's by
+    /// [`above`](Shape::above) rungs.
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

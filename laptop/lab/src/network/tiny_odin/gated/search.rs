@@ -12,7 +12,7 @@ use crate::network::Reset;
 /// 7 are clipped to the chip's range; the smaller weights are then rounded less. The last value rounds weights of up to
 /// 4 rows to 0, so that the neuron stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
-/// Amounts by which a rung raises the potential in the initial choices of the search.
+/// Amounts by which a rung (an event that raises the neurons) raises a potential, in the initial choices of the search.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
@@ -39,7 +39,7 @@ impl Drive {
     }
 }
 
-/// The aim of a search: the spikes that a neuron should have in answer to the spikes that act on it.
+/// The aim of a search: the spikes that a neuron should fire in response to the spikes that act on it.
 pub(super) struct Aim<'a> {
     pub drive: &'a Drive,
     /// For each step, whether the neuron should fire.
@@ -50,7 +50,7 @@ pub(super) struct Aim<'a> {
 /// The parameters of a neuron that the search varies.
 #[derive(Clone, Copy, PartialEq)]
 struct Choice {
-    /// The value in units of the training that a weight of 1 on the chip stands for.
+    /// Value of a weight of 1 on the chip, in the units of the trained network.
     unit: f64,
     threshold: u16,
     leak: u8,
@@ -60,8 +60,9 @@ struct Choice {
     more: i16,
 }
 
-/// Searches for the parameters with which neuron `at` has the spikes in `aim`, or nearly so. Returns the distance of
-/// its spikes from these, and the neuron. The search climbs from the `climbs` best of its initial choices.
+/// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
+/// distance between the spikes and the target, and the neuron. The search climbs from the `climbs` best initial
+/// choices.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
@@ -178,8 +179,8 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
 }
 
 /// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, these
-/// leaks move it there from wherever rungs and other leaks may have left it. If spikes subtract the threshold, these
-/// leaks make up the difference between the chip's reset and the subtraction.
+/// leaks move the potential to 0, from which other events of the step may have moved it. If spikes subtract the
+/// threshold, these leaks make up for the difference between the chip's reset and the subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {
@@ -206,8 +207,8 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Runs the neuron on the spikes in `aim`, and returns the distance of its spikes from those that it should have.
-    /// Returns infinity as soon as the distance reaches `most`.
+    /// Runs the neuron on the spikes that act on it in `aim`, and returns the distance between the neuron's spikes and
+    /// the target of `aim`. Returns infinity as soon as the distance reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let (mut potential, mut first) = (0_i32, 0);

@@ -1,39 +1,39 @@
-//! The shape of a network whose neurons compare once a step: the numbers of rows of synapses, rungs and leaks, which
-//! all of its neurons share.
+//! The shape of a network whose neurons compare their potentials with their thresholds once a step. A shape is what all
+//! neurons of the network share: the number of rows of synapses for each weight, and the sequence of events in a step.
 
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, NEURONS, ROWS};
 
-/// Maximum number of heights above 0 at which neurons at rest stand when a step sends leaks to all neurons. As many
-/// heights may be below 0.
+/// A step sends leaks to all neurons when neurons at rest stand at several heights. This is the maximum number of
+/// heights above the middle one, which is at or near 0. As many heights are below the middle one.
 const LEVELS: u16 = 6;
 /// Numbers of rows of synapses to try for each weight.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
-/// Factor by which the number of rungs exceeds what the recording needs: in other recordings, a step may add more to a
-/// potential.
+/// Factor by which the number of rungs (events that raise the neurons) exceeds the number that the recording needs. The
+/// excess is for other recordings, in which a step may add more to a potential.
 const SPARE: f64 = 1.5;
-/// Maximum number of rungs between two leaks.
+/// Maximum number of rungs (events that raise the neurons) between two leaks.
 const WIDEST: f64 = 12.0;
 
-/// The sequence of events in each step, which is the same for all neurons. A *rung* is an event that raises neurons by
-/// a fixed amount; an offset downwards keeps them from firing before.
+/// The sequence of events in each step, which is the same for all neurons. A *rung* is an event that raises the neurons
+/// by a fixed amount. An offset downwards keeps the neurons from firing until enough rungs have raised them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
     /// Number of rows of synapses for each input or sending neuron. A weight is the sum over its rows.
     pub rows: u16,
-    /// Number of rungs that follow those of `below`. They raise a neuron at rest from 0 to the potential at which it
-    /// compares with its threshold.
+    /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
+    /// They follow the rungs that [`below`](Self::below) counts.
     pub above: u16,
-    /// Number of rungs that raise a neuron at rest from its offset to 0.
+    /// Number of rungs that raise a neuron at rest from the offset to 0.
     pub below: u16,
-    /// The leaks that all neurons receive in a step: for each leak, the number of lowering events that come before it.
-    /// The lists are for successive steps, in turn.
+    /// The leaks that all neurons receive in a step, as one list for each step of a cycle that repeats. For each leak,
+    /// the list contains the number of events that have lowered the neurons before it.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of rungs that raise all neurons again at the end of a step, before the neurons that fired receive leaks
-    /// of their own. 0 if spikes subtract the threshold.
+    /// Number of rungs that raise all neurons again at the end of a step. The neurons that fired then receive leaks
+    /// that no other neurons receive. 0 if spikes subtract the threshold.
     pub lift: u16,
-    /// Number of rungs between two leaks of a step, which together take a share of the potential. 0 if a step has fewer
-    /// than two leaks.
+    /// Number of rungs between two leaks of a step. Several leaks in a step together reduce a potential by a share of
+    /// its value. 0 if all neurons receive fewer than two leaks in a step.
     pub spacing: u16,
 }
 
@@ -46,15 +46,15 @@ impl Shape {
         if self.leaks.is_empty() { &[] } else { &self.leaks[step % self.leaks.len()] }
     }
 
-    /// Returns the number of events in a step of a network with `layers` layers. Not included are spikes, and the leaks
-    /// that only neurons that fired receive.
+    /// Returns the number of events in a step of a network with `layers` layers. The number includes neither spikes nor
+    /// the leaks that only the neurons that fired receive.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         usize::from(self.rungs()) * (layers + 1) + leaks / self.leaks.len().max(1)
     }
 }
 
-/// Returns the number of rows of synapses that a network needs if each weight takes `rows` rows.
+/// Returns the number of rows of synapses that the network needs if each weight is split into `rows` rows.
 pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     let last = trained.layers.len() - 1;
     let senders = trained.layers.iter().enumerate().map(|(at, layer)| {
