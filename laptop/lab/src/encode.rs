@@ -53,6 +53,7 @@ pub fn encode(
 pub(crate) type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
 
 /// Properties of a recording that a writer of spikes needs at its start.
+#[cfg_attr(not(feature = "datasets"), allow(dead_code, reason = "a data set reads all fields"))]
 pub(crate) struct Start<'a> {
     pub header: &'a Header,
     /// Names of the channels.
@@ -66,6 +67,7 @@ pub(crate) struct Start<'a> {
 }
 
 /// The outcome of encoding a recording.
+#[cfg_attr(not(feature = "datasets"), allow(dead_code, reason = "a data set reads all fields"))]
 pub(crate) struct Encoded {
     /// The output, which the caller must finish.
     pub output: Output,
