@@ -8,7 +8,9 @@
 use crate::error::{ParameterError, unwrap};
 use crate::integer;
 use crate::number::{self, Number};
-use crate::reset::{Reset, ToValue, ToValueHeld, ToValueLate};
+use crate::reset::{
+    Reset, Subtract, SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate,
+};
 use crate::sealed::Sealed;
 use core::{fmt::Debug, marker::PhantomData};
 
@@ -291,6 +293,9 @@ macro_rules! constructors {
         constructors!(@returning $number, ToValue, "Sets the potential to which it returns when it fires, 0 by default.");
         constructors!(@returning $number, ToValueLate, "Sets the potential to which it returns after it has fired, 0 by default.");
         constructors!(@returning $number, ToValueHeld, "Sets the potential at which it is held after it has fired, 0 by default.");
+        constructors!(@returning $number, Subtract, "Sets the number that a spike subtracts, the threshold by default.");
+        constructors!(@returning $number, SubtractLate, "Sets the number that a spike subtracts, the threshold by default.");
+        constructors!(@returning $number, SubtractNoDelay, "Sets the number that a spike subtracts, the threshold by default.");
 
         impl Li<$number> {
             /// Makes an integrator whose potential is multiplied by `decay` in each step.

@@ -153,6 +153,19 @@ fn networks_fire_as_their_frameworks_do() {
     }
 }
 
+/// Neurons that rest above 0 are moved to 0 with their thresholds, and a spike still subtracts the whole threshold: 0.4
+/// where 0.3 is left above rest.
+#[test]
+fn a_spike_subtracts_the_files_threshold_wherever_a_neuron_rests() {
+    let (_directory, spikes) = common::file("spikes.txt", "0 2 5\n1 4\n\n".repeat(20));
+    let norse = nir("norse.nir");
+    let ran = ran!(
+        "network {} --on controller --as norse --dt 0.001 --reset subtract {spikes}",
+        norse.display()
+    );
+    assert!(ran.output.contains(", 0.3).with_reset(0.4)"), "{}", ran.output);
+}
+
 fn network(name: &str, options: &str) -> String {
     format!(
         "network {} --on controller {options} {}",

@@ -4,7 +4,7 @@ use super::super::Trains;
 use super::super::chip::{Remarks, list};
 use super::net::{Layer, Net, Neuron, Recurrent};
 use super::number::Number;
-use super::rule::{Current, Fires, Rule};
+use super::rule::{Current, Fires, Reset, Rule};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -209,7 +209,9 @@ fn neuron<K: Spelled>(neuron: &Neuron<K>, rule: &Rule) -> String {
             let reset = rule.reset.type_name();
             let threshold = spike.threshold.spell();
             let mut text = format!("Lif::<{numbers}, {reset}>::{new}({decay}, {threshold})");
-            if !rule.reset.subtracts() && spike.reset != zero {
+            // Norse's neurons that start above 0 fire that much lower, and still subtract the whole threshold.
+            let by_default = if rule.reset.subtracts() { spike.threshold } else { zero };
+            if rule.reset != Reset::NoReset && spike.reset != by_default {
                 _ = write!(text, ".with_reset({})", spike.reset.spell());
             }
             if rule.fires == Fires::At {
