@@ -3,7 +3,7 @@
  * A line for each, which laptop/flight/tests/both_ends.rs has too: `sf 405 frames, 10155 bytes, 954 exact values, …`. The
  * hash is over all bytes and all exact values.
  */
-#include "board.h"
+#include "print.h"
 
 #if defined(PAIRS)
 #include "pairs/flights.h"
@@ -187,18 +187,6 @@ static uint32_t hear(const flight *own, const uint8_t *bytes, size_t length, uin
         }
     }
     return exact;
-}
-
-static void print_number(uint64_t number, uint32_t base, uint32_t digits)
-{
-    char text[24];
-    uint32_t at = sizeof text - 1u;
-    text[at] = '\0';
-    do {
-        text[--at] = "0123456789abcdef"[number % base];
-        number /= base;
-    } while (number > 0u || at + digits > sizeof text - 1u);
-    board_print(&text[at]);
 }
 
 static void print_count(uint64_t count, const char *what)

@@ -2,7 +2,7 @@
 #ifndef RECORDING_H
 #define RECORDING_H
 
-#include "board.h"
+#include "print.h"
 #include "spikewire.h"
 
 #define CHANNELS 6u
@@ -21,18 +21,6 @@ static void check(sw_status status, const char *what)
         board_print("\n");
         is_good = 0;
     }
-}
-
-static void print_number(uint64_t number, uint32_t base, uint32_t digits)
-{
-    char text[24];
-    uint32_t at = sizeof text - 1u;
-    text[at] = '\0';
-    do {
-        text[--at] = "0123456789abcdef"[number % base];
-        number /= base;
-    } while (number > 0u || at + digits > sizeof text - 1u);
-    board_print(&text[at]);
 }
 
 static size_t samples(void) { return (size_t)(recording_end - recording) / RECORD; }

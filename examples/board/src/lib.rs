@@ -18,11 +18,15 @@ pub mod usart;
 #[cfg(target_arch = "arm")]
 mod cortex_m;
 #[cfg(target_arch = "arm")]
-pub use cortex_m::{console, entry, finish};
+pub use cortex_m::entry;
 #[cfg(target_arch = "riscv32")]
 mod riscv;
 #[cfg(target_arch = "riscv32")]
-pub use riscv::{console, entry, finish};
+pub use riscv::entry;
+#[cfg(target_os = "none")]
+mod semihosting;
+#[cfg(target_os = "none")]
+pub use semihosting::{console, finish};
 
 /// The host counts no instructions.
 #[cfg(all(not(target_os = "none"), feature = "stopwatch"))]

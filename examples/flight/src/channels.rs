@@ -2,7 +2,7 @@
 
 use crate::{CHANNELS, Sample};
 
-/// What a count of a sensor is: rad/s for the turn rates, m/s² for the accelerations.
+/// Size of one count of a sensor: in rad/s for the turn rates, in m/s² for the accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Counts {
     /// rad/s of a count of a turn rate.

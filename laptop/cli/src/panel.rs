@@ -14,6 +14,7 @@ use spikewire::link::{Received, Withheld};
 use spikewire::{Polarity, Tick};
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::fmt::Write;
 use std::io::{self, IsTerminal, Stdout};
 use std::rc::Rc;
 use std::thread;
@@ -187,10 +188,7 @@ impl Panel {
             }
         }
         for (why, names) in reasons {
-            text += "\n";
-            text += &names.join(", ");
-            text += ": ";
-            text += &why.to_string();
+            let _ = write!(text, "\n{}: {why}", names.join(", ")); // a string takes all
         }
         text
     }

@@ -75,6 +75,11 @@ pub const RISC_V: Board = Board {
 };
 
 impl Board {
+    /// Returns the boards of all cores.
+    pub fn all() -> impl Iterator<Item = &'static Self> {
+        BOARDS.iter().chain([&RISC_V])
+    }
+
     /// Returns QEMU's program and the options that choose the board.
     pub fn emulator(&self) -> (&'static str, &'static [&'static str]) {
         match self.machine {
@@ -90,7 +95,7 @@ impl Board {
 
     /// Returns the board with this core.
     pub fn with(core: &str) -> Result<&'static Self> {
-        let board = BOARDS.iter().find(|board| board.core.eq_ignore_ascii_case(core));
+        let board = Self::all().find(|board| board.core.eq_ignore_ascii_case(core));
         board.with_context(|| format!("no core `{core}`"))
     }
 
@@ -133,7 +138,7 @@ mod tests {
 
     #[test]
     fn every_board_has_a_map_and_a_known_target() {
-        for board in BOARDS.iter().chain([&RISC_V]) {
+        for board in Board::all() {
             let (flash, ram) = board.memory().unwrap();
             assert!(flash >= 128 * 1024 && ram >= 16 * 1024, "{}", board.machine);
             assert!(crate::setup::toolchain::TARGETS.contains(&board.target));

@@ -53,7 +53,7 @@ pub(crate) fn run(options: &Info) -> Result<()> {
     let logs = dataset::expand(&options.logs)?;
     let is_single = logs.len() == 1;
     let mut output = Output::to(None)?;
-    let (mut all, mut failed) = (Vec::new(), None);
+    let (mut all, mut is_any_refused) = (Vec::new(), false);
     for log in &logs {
         let content = as_file(log).and_then(|own| options.content(&own));
         let name = log.display().to_string();
@@ -83,7 +83,7 @@ pub(crate) fn run(options: &Info) -> Result<()> {
                 let words = words::of(&error);
                 all.push(json!({ "log": name, "refused": words }));
                 eprintln!("error: {words}");
-                failed = Some(error);
+                is_any_refused = true;
             }
         }
     }
@@ -91,10 +91,10 @@ pub(crate) fn run(options: &Info) -> Result<()> {
         writeln!(output, "{:#}", serde_json::Value::Array(all))?;
     }
     output.finish()?;
-    match failed {
-        Some(_) => bail!("not all of the {} logs can be read", logs.len()),
-        None => Ok(()),
+    if is_any_refused {
+        bail!("not all of the {} logs can be read", logs.len());
     }
+    Ok(())
 }
 
 impl Info {

@@ -17,8 +17,8 @@ pub(super) const MANIFEST: &str = "manifest.jsonl";
 /// Name of the file with the settings of a data set.
 const SETTINGS: &str = "dataset.json";
 /// Names of the directories of spike files (`EVENTS`) and of sample files (`VALUES`).
-const EVENTS: &str = "events";
-const VALUES: &str = "values";
+pub(super) const EVENTS: &str = "events";
+pub(super) const VALUES: &str = "values";
 
 /// The side of the split between training and testing on which a flight is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub enum Split {
 }
 
 /// A row of the manifest: one log, and the outcome of encoding it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Full path of the log.
     pub log: String,
@@ -86,28 +86,8 @@ impl Row {
     pub(super) fn new(log: &Path, settings: &Settings) -> Self {
         Self {
             log: log.display().to_string(),
-            kind: String::new(),
-            bytes: 0,
-            modified_us: 0,
-            sha256: String::new(),
             settings: settings.sha256.clone(),
-            split: None,
-            refused: None,
-            refused_kind: None,
-            events: None,
-            events_bytes: 0,
-            values: None,
-            values_bytes: 0,
-            channels: Vec::new(),
-            rate: None,
-            seconds: 0.0,
-            samples: 0,
-            not_finite: 0,
-            spikes: Vec::new(),
-            gaps: 0,
-            steps_back: 0,
-            restarts: 0,
-            notes: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -1,6 +1,7 @@
 //! Restores the text file of spikes that `encode` would have written for a log of a data set.
 
 use super::DatasetKind;
+use super::manifest::{EVENTS, VALUES};
 use super::parts::{FIRST, GAP, HEADER, RATE, TIME};
 use crate::error::At;
 use crate::input::{Chunk, Clock};
@@ -84,8 +85,8 @@ fn other(what: &str) -> Error {
 /// Returns the path of the file of samples that belongs to the file of spikes `part`.
 fn beside(part: &Path) -> Option<PathBuf> {
     let part = part.canonicalize().ok()?;
-    let events = part.parent().filter(|own| own.ends_with("events"))?;
-    Some(events.parent()?.join("values").join(part.file_name()?))
+    let events = part.parent().filter(|own| own.ends_with(EVENTS))?;
+    Some(events.parent()?.join(VALUES).join(part.file_name()?))
 }
 
 /// A Parquet file that is being read.

@@ -1,9 +1,9 @@
-//! `cargo xtask c-bundle`: the C library for people without Rust, in one archive that make, CMake, Arduino, PlatformIO,
-//! Zephyr and ESP-IDF take as it is.
+//! `cargo xtask c-bundle`: the C library for people without Rust, in one archive laid out for make, CMake, Arduino,
+//! PlatformIO, Zephyr and ESP-IDF.
 
 use super::{archive, include, room};
 use crate::common::{paths, shell};
-use crate::programs::boards::{BOARDS, Board, RISC_V};
+use crate::programs::boards::{Board, RISC_V};
 use crate::setup;
 use anyhow::{Context, Result, ensure};
 use std::{
@@ -22,15 +22,15 @@ const CORES: [(&str, &str); 6] = [
     ("RV32", "esp32c3"),
 ];
 
-/// Packages that change the archive for RISC-V, and compile the program in `bare` for it.
-const PACKAGES: [&str; 3] = ["binutils-riscv64-unknown-elf", "gcc-riscv64-unknown-elf", "make"];
+/// Packages that compile the program in `bare` for RISC-V.
+const PACKAGES: [&str; 2] = ["gcc-riscv64-unknown-elf", "make"];
 
 /// Output of the program in `bare`, by the law of step forward: threshold 0.5, samples 0, 0.2, 0.6, 1.2, 1.3, 0.4.
 const SPIKES: &str = ".\n.\n+\n+\n.\n-\n";
 
 /// Writes the bundle; returns the path of the compressed archive.
 pub fn bundle() -> Result<PathBuf> {
-    setup::packages("what compiles C for RISC-V", &PACKAGES)?;
+    setup::packages("what strips the archive for RISC-V", &["binutils-riscv64-unknown-elf"])?;
     let version = crate::programs::published::version()?;
     let name = format!("spikewire-c-{version}");
     let top = tempfile::tempdir()?;
@@ -38,7 +38,7 @@ pub fn bundle() -> Result<PathBuf> {
     copy(&room().join("bundle"), &place)?;
     copy(include()?, &place.join("src"))?;
     for (core, directory) in CORES {
-        let board = Board::with(core).unwrap_or(&RISC_V);
+        let board = Board::with(core)?;
         let into = place.join("src").join(directory);
         fs::create_dir_all(&into)?;
         let from = archive(board)?;
@@ -50,7 +50,7 @@ pub fn bundle() -> Result<PathBuf> {
     for file in ["board.h", "cortex_m.c", "link.ld"] {
         fs::copy(room().join("tests").join(file), place.join("bare").join(file)).context(file)?;
     }
-    for board in BOARDS.iter().chain([&RISC_V]) {
+    for board in Board::all() {
         fs::copy(board.memory_map(), place.join(format!("bare/{}.x", board.machine)))?;
     }
     for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
@@ -75,6 +75,7 @@ pub fn bundle() -> Result<PathBuf> {
 /// Unpacks the bundle into a directory of its own, and runs its program on every emulated core with what a person without
 /// Rust has: make, a C compiler and QEMU. Also checks that each manifest names the crate's version.
 pub fn verify() -> Result<()> {
+    setup::packages("what compiles C for RISC-V", &PACKAGES)?;
     let packed = bundle()?;
     let elsewhere = tempfile::tempdir()?;
     shell::run(shell::command("tar").arg("-xzf").arg(&packed).arg("-C").arg(elsewhere.path()))?;
