@@ -14,7 +14,7 @@ use spikewire_chips::AerPort;
 
 use super::chip::{Chip, Kind};
 
-/// The model of a chip that a board can carry: its clock, and the pins of its SPI.
+/// A model of a chip for a simulated board: runs the chip's clock, and drives and reads the chip's SPI pins.
 pub trait Model: Default {
     /// Runs the chip for `clocks` clock cycles.
     fn run(&mut self, clocks: u32);
@@ -197,8 +197,8 @@ fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
 pub struct Port<C>(Board<C>);
 
 impl<C: Model> Port<C> {
-    /// Runs the chip for the clock cycles of a call, then acts on the pins. If the call has a fault, returns the number
-    /// of the call as the error.
+    /// Runs the chip for the clock cycles of a call, then applies `act` to the pins. If the call has a fault, returns
+    /// the number of the call as the error.
     pub(crate) fn call<T>(&mut self, act: impl FnOnce(&mut Pins<C>) -> T) -> Result<T, u64> {
         let mut pins = self.0.pins();
         let call = pins.calls;

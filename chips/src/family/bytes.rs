@@ -50,7 +50,7 @@ impl fmt::Display for FormatError {
 
 impl core::error::Error for FormatError {}
 
-/// A network as bytes, for programs that know the network only at run time. It takes about half the memory of a
+/// A network as bytes, for programs that know the network only at run time. The bytes take about half the memory of a
 /// [`Network`](super::Network).
 ///
 /// | bytes | content |

@@ -46,8 +46,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     ///
     /// # Errors
     /// Returns an error if a value is out of its range, or [`NoProbe`](ChipError::NoProbe); the chip is then still
-    /// gated. Also returns an error if the bus or the port failed, if the chip reads back a wrong value, or if it does
-    /// not answer; then reset the chip.
+    /// gated. Also returns an error if the bus or the port failed, if memory reads back a wrong value, or if the chip
+    /// does not answer; then reset the chip.
     pub fn run(self, registers: &I::Registers) -> Outcome<Running<'a, I, D, P>, D, P> {
         I::check_registers(registers)?;
         let chip = self.chip;
@@ -124,7 +124,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Checks that the chip is gated and in sync with the bus. [`run`](Self::run) makes the same check.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, or if the chip reads back a wrong value: then reset the chip.
+    /// Returns an error if the bus failed, or if memory reads back a wrong value: then reset the chip.
     pub fn check_sync(&mut self) -> Outcome<(), D, P> {
         self.chip.check_sync()
     }

@@ -30,7 +30,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
-    /// or if the chip reads back a wrong value; then reset the chip.
+    /// or if memory reads back a wrong value; then reset the chip.
     pub fn load(
         &mut self,
         network: &impl Describe<I>,
@@ -86,8 +86,8 @@ fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
-/// Calls `visit` for every byte of the chip's memories that the network uses. Its arguments are the byte's address, a
-/// mask of the bits that the network does not use, and a value with all other bits.
+/// Calls `visit` for every byte of the chip's memories that the network uses. `visit` gets the byte's address, a mask
+/// of the bits that the network does not use, and the value of the other bits.
 fn each_byte<I: Input, B, P>(
     network: &impl Describe<I>,
     mut visit: impl FnMut(Address, u8, u8) -> Result<(), ChipError<B, P>>,

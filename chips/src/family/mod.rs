@@ -155,7 +155,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// [`Running::feed`] that the chip has not acknowledged, the driver keeps the event and sends it again.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.
+    /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Gated<'_, I, D, P>, D, P> {
         self.state = State::NotReset;
         let (under_way, is_output_lost) = self.aer.reset().map_err(ChipError::Port)?;

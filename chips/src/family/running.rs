@@ -80,7 +80,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     ///
     /// # Errors
     /// Returns the errors of [`quiesce`](Self::quiesce), after which the chip still runs. Also returns an error if the
-    /// bus failed, or if the chip reads back a different value than was written; then reset the chip.
+    /// bus failed, or if memory reads back a different value than was written; then reset the chip.
     pub fn gate(mut self, on_output: impl FnMut(u8)) -> Outcome<Gated<'a, I, D, P>, D, P> {
         self.quiesce(on_output)?;
         self.chip.shut()?;

@@ -98,9 +98,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Writes bytes, each with a mask of the bits to keep, then checks that chip and bus are in sync, and reads the
     /// bytes back.
     ///
-    /// A faulty write that goes to another address leaves the byte at its own address unchanged. To notice this, only
-    /// bytes that differ from memory are written, and the reads that find the differences are checked, too. The bits to
-    /// keep are compared as well.
+    /// After a fault, a write may go to another address; the byte at the intended address then stays unchanged. To
+    /// notice this, the driver writes only bytes that differ from memory, and also checks the reads that find the
+    /// differences. The bits to keep are compared as well.
     pub(super) fn store(
         &mut self,
         bytes: impl Iterator<Item = (Address, u8, u8)> + Clone,
@@ -123,7 +123,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.expect_anchor()
     }
 
-    /// Reads up to 16 bytes, checks that chip and bus are in sync, and reads the bytes again.
+    /// Reads up to 16 bytes, checks that chip and bus are in sync, then reads the bytes again and compares them.
     pub(super) fn fetch(
         &mut self,
         addresses: impl Iterator<Item = Address> + Clone,

@@ -11,8 +11,8 @@ use spikewire::Tick;
 /// Maximum number of leak events that one call sends.
 const MAX_LEAKS: u32 = 255;
 
-/// Limit in µs (67 s) up to which a tick can be late. A tick is late if it is earlier than the last leak event by at
-/// most this limit. A tick that seems to be even earlier is taken for a future tick, because the 32-bit clock wraps.
+/// Longest time by which a tick can be late, in µs (67 s). A tick that seems to be earlier than the last leak event by
+/// more than this time is taken for a future tick, because the 32-bit clock wraps.
 const LATEST: u32 = 1 << 26;
 
 /// Returns the time from `last` to `now` in µs; `None` if `now` is at most 67 s earlier than `last`.

@@ -18,7 +18,8 @@ impl Address {
         Self(NEURON | u32::from(byte) << 8 | u32::from(neuron))
     }
 
-    /// Returns the address of a byte that does not exist, beyond the bytes of a neuron. It reads as 0.
+    /// Returns the address of a byte that does not exist, beyond the bytes of a neuron. A read of this address returns
+    /// 0.
     pub(super) fn nowhere() -> Self {
         Self::neuron(255, 0x7F)
     }

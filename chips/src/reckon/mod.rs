@@ -40,8 +40,8 @@ use wire::{Address, Wire};
 ///   afterwards. Three cases of such a pair may go unnoticed. In the first case, one of the two faults lies in the
 ///   frame of a register or in the frame before: the register may keep its old value or take a wrong one, or a
 ///   different register may be written. In the second case, the pair lies in the first bits of a frame that writes
-///   weights between neurons: it may write a register instead. The driver notices this unless the memory held the same
-///   weights before. In the third case, the pair turns a read into a write while a load compares memory.
+///   weights between neurons: the frame may then write a register instead. The driver notices this unless the memory
+///   already held the same weights. In the third case, the pair turns a read into a write while a load compares memory.
 ///   [`Programmed::verify`] after the load detects this in weights and parameters, but not in the potential of a neuron
 ///   or an output.
 /// - **Waits:** the driver reads the pins a given number of times, then returns an error.
@@ -61,9 +61,9 @@ use wire::{Address, Wire};
 ///   without an answer is an error.
 /// - If `SAMPLE` falls while the chip learns, the chip goes on learning without end, through all weights, unless it is
 ///   set to send an answer in each step.
-/// - The chip processes neurons in pairs, up to the largest of three numbers: that of neurons, of inputs and of
-///   outputs. A pair that the network does not use fires at every step if its memory holds a threshold of 0. Therefore
-///   [`Programmed::load`] writes all 128 pairs.
+/// - The chip processes neurons in pairs, up to the largest of the numbers of neurons, inputs and outputs. A pair that
+///   the network does not use fires at every step if its memory holds a threshold of 0. Therefore [`Programmed::load`]
+///   writes all 128 pairs.
 /// - If the number of neurons is odd, the last neuron would never fire. Therefore the driver gives the chip a number
 ///   that is one higher.
 /// - A frame that announces more than one word to a register writes them all to the same register.
@@ -169,7 +169,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// their content; its registers do not.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.
+    /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Programmed<'_, D, P>, D, P> {
         self.state = State::NotReset;
         self.clear_pins().map_err(ChipError::Port)?;

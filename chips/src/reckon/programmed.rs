@@ -30,7 +30,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
-    /// or if the chip reads back a wrong value; then reset the chip, and load again.
+    /// or if memory reads back a wrong value; then reset the chip, and load again.
     pub fn load(
         &mut self,
         network: &impl DescribeReckOn,
@@ -98,7 +98,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         chip.check_sync()
     }
 
-    /// Reads the weight from an input to a neuron, which learning may have changed.
+    /// Reads the weight from an input to a neuron. Learning may have changed this weight.
     ///
     /// # Errors
     /// Returns an error if the bus failed or is out of sync: then reset the chip.

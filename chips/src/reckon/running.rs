@@ -91,8 +91,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         self.chip.send(input, false)
     }
 
-    /// Ends a time step and begins the next one. Waits until the chip is ready, ticks, and takes the chip's answer,
-    /// which proves that the chip has done the step. Returns the answer if the setting is
+    /// Ends a time step and begins the next one. Waits until the chip is ready, sends a tick, and takes the chip's
+    /// answer, which proves that the chip has done the step. Returns the answer if the setting is
     /// [`PotentialsEachStep`](ReckOnAnswers::PotentialsEachStep), otherwise `None`.
     ///
     /// # Errors

@@ -38,8 +38,8 @@ pub enum ReckOnTask {
     Regression,
 }
 
-/// How the chip learns, by eligibility propagation (e-prop). Every field is a register of the chip; the chip's
-/// documentation describes how they act together.
+/// The parameters of learning by eligibility propagation (e-prop). Every field is a register of the chip; the chip's
+/// documentation describes how the registers act together.
 ///
 /// A step that learns takes up to 8 704 clock cycles more. Weights change by 1, with a probability that depends on the
 /// learning signal. To make a run repeatable, seed the chip's random generators: write registers 85 to 92 with
@@ -76,7 +76,7 @@ pub struct ReckOnSettings {
     /// The kind of target from which the chip learns. [`Label`](ReckOnAnswers::Label) answers need
     /// [`Classification`](ReckOnTask::Classification).
     pub task: ReckOnTask,
-    /// The parameters of learning; `None` switches learning off. (After a reset it is on.)
+    /// The parameters of learning; `None` switches learning off. (After a reset, learning is on.)
     pub learning: Option<ReckOnLearning>,
 }
 

@@ -108,7 +108,8 @@ proptest! {
     }
 }
 
-/// This test shuts the gate too early, as a driver does that expects too few pin reads in each clock cycle of the chip.
+/// Shuts the gate while the chip still works. This happens if the driver's number of pin reads in a clock cycle of the
+/// chip is set too low.
 #[test]
 fn parameters_stay_whole_even_where_the_gate_shuts_on_a_chip_that_works() {
     for clocks in 0..200 {

@@ -55,7 +55,7 @@ impl DescribeReckOn for RandomNetwork {
 struct Pace {
     before: Cell<u32>,
     after: Cell<u32>,
-    /// Number of the tick that does not reach the chip, from 0 on; `None` if all ticks do.
+    /// Number of the tick that does not reach the chip, where the first tick is 0; `None` if all ticks reach the chip.
     lost: Cell<Option<u32>>,
     /// Number of ticks so far.
     ticks: Cell<u32>,

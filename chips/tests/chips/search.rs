@@ -81,7 +81,7 @@ struct Known {
     registers: Option<TinyOdinRegisters>,
     fired: Vec<u8>,
     out: Vec<u8>,
-    /// Whether the chip ran in closed loop, so that the test cannot predict the potentials.
+    /// Whether the chip ran in closed loop. If true, the test cannot predict the potentials.
     is_stale: bool,
 }
 
@@ -373,7 +373,7 @@ fn running(
     }
 }
 
-/// Updates what the test expects of a chip that was just gated. If the loop was closed, the test stops comparing spikes
+/// Updates the expected state of a chip that was just gated. If the loop was closed, the test no longer compares spikes
 /// and potentials.
 fn finish(known: &mut Known) {
     if !known.is_open_loop() {

@@ -17,8 +17,8 @@ struct Neuron {
     rung: i32,
     /// Number of leaks that only this neuron receives after a spike.
     own: u16,
-    /// Weights from the previous layer (without the bias and the neuron's own layer). A neuron of the previous layer
-    /// has one weight for each of its rows of synapses; those of its first neuron come first.
+    /// Weights from the previous layer (without the bias and the neuron's own layer). Each neuron of that layer has one
+    /// weight for each of its rows of synapses. The weights of the layer's first neuron come first.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,

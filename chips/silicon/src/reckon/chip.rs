@@ -59,8 +59,8 @@ pub enum EventState {
     Trace,
 }
 
-/// The state of a pair of neurons, as one word of memory stores it. If a neuron was not updated since the sample began,
-/// its state counts as 0, whatever the memory holds.
+/// The state of a pair of neurons, as one word of memory stores it. The state of a neuron that was not updated since
+/// the sample began counts as 0, whatever the memory holds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
