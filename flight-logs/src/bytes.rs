@@ -122,28 +122,28 @@ pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<St
     (bytes, fault)
 }
 
-/// Removes a little-endian `u16` from the front of `bytes`; returns `None` if they are too short.
+/// Removes a little-endian `u16` from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn u16_from(bytes: &mut &[u8]) -> Option<u16> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u16::from_le_bytes(*first))
 }
 
-/// Removes a little-endian `u32` from the front of `bytes`; returns `None` if they are too short.
+/// Removes a little-endian `u32` from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn u32_from(bytes: &mut &[u8]) -> Option<u32> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u32::from_le_bytes(*first))
 }
 
-/// Removes a little-endian `u64` from the front of `bytes`; returns `None` if they are too short.
+/// Removes a little-endian `u64` from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn u64_from(bytes: &mut &[u8]) -> Option<u64> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u64::from_le_bytes(*first))
 }
 
-/// Removes `count` bytes from the front of `bytes`; returns `None` if they are too short.
+/// Removes `count` bytes from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn take<'a>(bytes: &mut &'a [u8], count: u64) -> Option<&'a [u8]> {
     let (first, rest) = bytes.split_at_checked(usize::try_from(count).ok()?)?;
     *bytes = rest;

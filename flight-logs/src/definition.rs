@@ -1,7 +1,7 @@
 //! Layouts of messages, parsed from the message definitions in a log, and paths to the numbers and texts in a message.
 //!
-//! A definition has a line `type name` for each field. In ROS, definitions of nested messages follow after a line `MSG:
-//! package/Type`.
+//! A definition has a line `type name` for each field. In ROS, the definitions of nested messages follow, each after a
+//! line `MSG: package/Type`.
 
 use super::known::known;
 use std::collections::HashMap;
@@ -181,8 +181,8 @@ impl Definition {
         Parser::parse(&name, &|name| texts.get(name).cloned(), dialect)
     }
 
-    /// Creates the layout of a ROS 2 message. `look_up` returns the text of the definition of a type `package/Type`. It
-    /// must know the message's type, and the types of nested messages.
+    /// Creates the layout of a ROS 2 message. `look_up` returns the text of the definition of a type `package/Type`.
+    /// `look_up` must know the message's type, and the types of nested messages.
     ///
     /// # Errors
     /// Returns the reason if a line or a nested type cannot be understood, or if a message contains itself.

@@ -87,7 +87,7 @@ impl Faults {
         self.long += 1;
     }
 
-    /// Adds a note about the log that is not about damage.
+    /// Adds a note on something other than damage.
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
     }

@@ -5,7 +5,7 @@ use bzip2::read::MultiBzDecoder;
 use flate2::read::MultiGzDecoder;
 use std::io::{BufReader, Read};
 
-/// Compression of a whole file. Parallel packers write a file as several streams; all of them are read.
+/// Compression of a whole file. Packers that use several cores write a file as several streams; all streams are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Packing {

@@ -85,8 +85,8 @@ pub trait Input: Copy {
     /// register and not in each synapse.
     const SIGNS_BY_ROW: bool;
 
-    /// Returns the registers for a network that uses the neurons from 0 to `last_neuron`. Bit `n % 16` of `inhibitory[n
-    /// / 16]` is 1 if neuron `n` inhibits.
+    /// Returns the registers for a network that uses the neurons from 0 to `last_neuron`. Bit `n % 16` of
+    /// `inhibitory[n / 16]` is 1 if neuron `n` is inhibitory.
     fn registers(last_neuron: u8, is_open_loop: bool, inhibitory: [u16; 16]) -> Self::Registers;
 
     /// Calls `write` with the number and the value of each register, except for the one that gates the chip.

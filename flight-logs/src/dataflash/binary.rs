@@ -129,7 +129,7 @@ enum Defined {
 }
 
 impl Defined {
-    /// Parses the content of an `FMT` message, which defines a format; returns `None` if it is invalid.
+    /// Parses the content of an `FMT` message, which defines a format; returns `None` if the content is invalid.
     fn of_format(content: &[u8]) -> Option<Self> {
         let (&[kind, length], rest) = content.split_first_chunk()?;
         let (name, rest) = rest.split_at_checked(4)?;
