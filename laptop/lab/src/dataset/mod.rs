@@ -37,7 +37,7 @@ use std::thread;
 pub struct Request {
     /// The logs to encode: files, directories and patterns such as `logs/*.ulg`.
     pub logs: Vec<PathBuf>,
-    /// The code of all logs.
+    /// The scheme with which all logs are encoded.
     pub code: Code,
     /// Options for reading the logs. An option that does not apply to a kind of log is ignored for logs of that kind.
     pub channel: ChannelOptions,
@@ -54,12 +54,12 @@ pub struct Request {
     pub jobs: usize,
 }
 
-/// The code of all logs.
+/// The scheme with which all logs are encoded.
 #[derive(Clone, Debug)]
 pub enum Code {
     /// One scheme for all channels.
     Coding(Box<Coding>),
-    /// The channels and the scheme of a `flight.toml`, coded as the flight's sender codes them.
+    /// The channels and the scheme of a `flight.toml`. Logs are encoded as by the flight's sender.
     Flight(Box<Flight>),
 }
 
@@ -110,7 +110,7 @@ impl FromStr for ChannelsOf {
     }
 }
 
-/// The numbers of logs in a data set by their outcome, and of their samples and spikes.
+/// The result of a run: the numbers of logs, samples and spikes in the data set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Outcome {
     /// Number of requested logs.

@@ -80,7 +80,7 @@ pub struct ChannelOptions {
     pub fields: Vec<String>,
     /// Samples a second, for a recording without times.
     pub rate: Option<f64>,
-    /// Longest step in time that does not count as a gap, in usual steps.
+    /// Longest step between the times of two samples that does not count as a gap, as a multiple of the usual step.
     pub gap: f64,
     /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
     /// row is an error.
@@ -129,8 +129,8 @@ impl FromStr for Delimiter {
 /// Consecutive samples of all channels, with their times if the recording has any.
 #[derive(Debug, Default)]
 pub struct Chunk {
-    /// The samples of each channel. All channels have the same number of samples. Samples that are not finite in the
-    /// recording are NaN or infinite.
+    /// The samples of each channel. All channels have the same number of samples. A sample that is missing or not
+    /// finite in the recording is NaN or infinite.
     pub columns: Vec<Vec<f64>>,
     /// The samples' times in µs, one for each row. Empty if the recording has no times.
     pub times: Vec<i64>,

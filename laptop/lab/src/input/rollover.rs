@@ -11,7 +11,7 @@ const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 /// longer time.
 const SECOND: i64 = 1_000_000;
 /// Longest time between two samples over which a wrap of the clock is recognised, as a multiple of the latest step
-/// forward. Applies if this time is longer than [`SECOND`].
+/// forward. If this time is shorter than [`SECOND`], [`SECOND`] applies.
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.
@@ -30,7 +30,8 @@ pub struct Rollover {
 }
 
 impl Rollover {
-    /// Returns the continued time of the next sample, in µs. `shown` is the time on the 32-bit clock, in µs.
+    /// Extends the time of the next sample beyond 32 bits, and returns it in µs. `shown` is the time on the 32-bit
+    /// clock, in µs.
     pub fn take(&mut self, shown: i64) -> i64 {
         let previous = self.previous.unwrap_or(shown);
         let step = shown.saturating_sub(previous);

@@ -11,8 +11,8 @@ pub trait Chip: Sync {
     /// Returns the name by which the command line selects the chip, such as `tinyodin`.
     fn name(&self) -> &'static str;
 
-    /// Searches for the chip's parameters with which each layer's spikes are nearest to the layer's target, its spikes
-    /// in `fired`. `inputs` are the network's input spikes by step. `compare` has the meaning of
+    /// Searches for the chip's parameters with which the spikes of each layer are nearest to those in `fired`. `inputs`
+    /// are the network's input spikes by step. `compare` has the meaning of
     /// [`Request::compare`](super::Request::compare). Calls `progress` with the number of finished parts of the search
     /// and the total number of parts.
     ///
@@ -130,7 +130,8 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    /// Returns the duration of `steps` steps as text that begins with a comma; empty if it is not known.
+    /// Returns the duration of `steps` steps as text that begins with a comma; empty if the duration of a step is not
+    /// known.
     pub(super) fn micros(&self, steps: usize) -> String {
         self.step_us.map_or(String::new(), |step| {
             format!(", {:.0} µs in the recording", step * steps as f64)
@@ -158,7 +159,7 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Converts an error that a chip's driver reports while it runs on the chip's model.
+/// Converts an error of a chip's driver in a run on the chip's model.
 pub(super) fn refused<B, P>(error: ChipError<B, P>) -> crate::Error
 where
     ChipError<B, P>: std::error::Error + Send + Sync + 'static,

@@ -15,8 +15,8 @@ pub type Trains = Vec<Vec<u16>>;
 pub struct Trained {
     /// The layers whose neurons fire, from input to output.
     pub layers: Vec<Layer>,
-    /// Output neurons that never fire and that follow the last of `layers`; `None` if the outputs are the spikes of
-    /// that layer.
+    /// Output neurons that never fire and that follow the last of `layers`. `None` if the outputs are the spikes of the
+    /// last layer.
     pub readout: Option<Readout>,
 }
 
@@ -277,9 +277,9 @@ impl Trained {
         Ok(self)
     }
 
-    /// Converts layers in which a spike subtracts the threshold in the same step, for chips that subtract it one step
-    /// later. The leak of a step no longer reduces the amount that a late subtraction removes. A positive weight from
-    /// each neuron to itself makes up for the difference.
+    /// Converts layers in which a spike subtracts the threshold in the same step, for chips that subtract the threshold
+    /// one step later. The leak of the step in between does not reduce an amount that is subtracted later. A positive
+    /// weight from each neuron to itself makes up for the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {

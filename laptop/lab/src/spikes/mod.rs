@@ -39,7 +39,8 @@ pub trait Record {
     /// Returns an error if the file cannot hold the samples.
     fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
 
-    /// Writes events. All events passed later must belong to the finite sample number `decided` or to later samples.
+    /// Writes events. `decided` is a number of finite samples whose events are complete: no event that is passed later
+    /// may belong to one of the first `decided` finite samples.
     ///
     /// # Errors
     /// Returns an error if the spikes cannot be written.

@@ -32,7 +32,7 @@ pub struct Costs {
     pub ram: Option<usize>,
     /// Mean number of instructions to encode a sample, if measured.
     pub instructions: Option<f64>,
-    /// Whether `instructions` is an upper bound, scaled from a shorter filter that was measured.
+    /// Whether `instructions` is an upper bound. The bound is scaled up from a measured filter that is shorter.
     pub is_bound: bool,
 }
 

@@ -5,7 +5,7 @@
 
 use super::chance::Chance;
 
-/// Number of successful scale factors, and of crossover rates, that are remembered.
+/// Number of remembered scale factors, and of remembered crossover rates, that gave better points.
 const MEMORY: usize = 6;
 /// Number of parents at the end of the budget.
 const FEWEST: usize = 4;
@@ -91,11 +91,12 @@ impl Evolution {
         point
     }
 
-    /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may
-    /// leave out the last points.
+    /// Takes points that `ask` returned, with their values, in the same order. The caller may have moved points, and
+    /// may leave out the last points.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Largest weight of a point that is better than its parent. The weight is the difference of their values.
-        /// Without a maximum, the weights of settings that break a limit would outweigh all other weights.
+        /// Maximum weight of a point that is better than its parent. Below the maximum, the weight is the difference
+        /// between the values of parent and point. Without a maximum, parents that break a limit would outweigh all
+        /// others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);

@@ -7,14 +7,16 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Figures over the scored parts of stretches of a recording. Each stretch is coded in one piece.
+/// Figures of settings, such as the RMSE, over the scored samples of one or more stretches. Each stretch is coded in
+/// one piece.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Figures {
     /// Number of samples.
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percentage of samples without a spike, for a code that has at most one spike a sample.
+    /// Efficiency in percent: 100 less the number of spikes for every 100 samples. For a code with at most one spike a
+    /// sample, this is the percentage of samples without a spike.
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,

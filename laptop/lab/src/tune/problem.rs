@@ -45,7 +45,8 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Returns the percentage of samples without a spike.
+    /// Returns the efficiency in percent: 100 less the number of spikes for every 100 samples. For a code with at most
+    /// one spike a sample, this is the percentage of samples without a spike.
     pub fn efficiency(&self) -> f64 {
         (1.0 - self.spikes as f64 / self.samples as f64) * 100.0
     }
@@ -302,8 +303,8 @@ impl<'a> Problem<'a> {
         excess
     }
 
-    /// Returns the value of scored settings for a goal. A smaller value is better. Settings that break a limit are
-    /// worse than all settings that break none.
+    /// Rates scored settings by a goal; a smaller value is better. Settings that break a limit are worse than all
+    /// settings that break none.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, squares, .. } = scored.tally;
         let limits = scored
@@ -315,8 +316,8 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// Returns the value, for a goal, of a number of spikes and a sum of squared errors. Limits are not regarded. A
-    /// smaller value is better.
+    /// Rates a number of spikes and a sum of squared errors by a goal; a smaller value is better. Ignores all limits
+    /// that are not part of the goal.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();

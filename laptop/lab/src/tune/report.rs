@@ -51,9 +51,9 @@ pub struct Row {
     pub quantisation: Option<f64>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were listed and compared in exact arithmetic.
+    /// Number of outcomes of thresholds that were listed and compared in exact arithmetic, without the codec.
     pub listed: usize,
-    /// Whether every possible outcome was listed.
+    /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent.
     pub is_cut_short: bool,

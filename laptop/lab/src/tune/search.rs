@@ -21,7 +21,7 @@ pub struct Budget<'a> {
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Called with the number of settings scored so far, and the best of them.
+    /// Called after each batch with the number of settings scored so far, and the best of them.
     pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
 }
 
@@ -33,13 +33,13 @@ pub struct Found {
     pub front: Vec<Scored>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were listed and compared in exact arithmetic, if the scheme can list them.
+    /// Number of outcomes of thresholds that were listed and compared in exact arithmetic, without the codec.
     pub listed: usize,
-    /// Whether every possible outcome was listed.
+    /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
-    /// The bounds of the search at which the best settings lie, if the scheme allows values beyond these bounds.
+    /// The parameters whose best value lies at a bound of the search, if the scheme allows values beyond this bound.
     pub bounds: Vec<Bound>,
 }
 
@@ -58,7 +58,7 @@ pub(super) const BATCH: usize = 64;
 const PARENTS: (usize, usize) = (10, 100);
 /// Efficiencies in percent. To find a Pareto front, settings are searched for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
-/// Smallest maximum that [`Run::tighten`] sets.
+/// Smallest value that [`Run::tighten`] gives to a parameter that is a maximum.
 const ROOM: usize = 16;
 /// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
@@ -248,9 +248,9 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample. The parameter becomes
-    /// twice the number that the signal needs, because a higher maximum costs time. It stays at [`ROOM`] or above,
-    /// because held-out blocks and other recordings may jump further.
+    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample, because a high maximum
+    /// costs time. The new value is twice the number of spikes that the signal needs, but at least [`ROOM`], because
+    /// held-out blocks and other recordings may need more.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;

@@ -22,7 +22,7 @@ impl Extent {
     }
 }
 
-/// An axis of the search: one number from which a parameter is computed, with its bounds.
+/// An axis of the search: a number from which a parameter is computed, and the bounds of this number.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub name: &'static str,
@@ -31,14 +31,14 @@ pub(super) struct Axis {
     pub high: f64,
 }
 
-/// The conversion of a number on an axis to a parameter.
+/// The meaning of the numbers on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     /// The natural logarithm of a quotient: the parameter divided by the given unit.
     Log(f64),
-    /// Offset of the parameter from the first given value, divided by the second given value.
+    /// The difference between the parameter and the first given value, divided by the second given value.
     Around(f64, f64),
-    /// The parameter divided by the sum of the taps of the scheme's filter.
+    /// The parameter divided by the sum of the absolute values of the filter's taps.
     OfFilter,
     /// The natural logarithm of a quotient: the parameter divided by the threshold.
     Thresholds,
@@ -51,8 +51,8 @@ pub(super) enum Role {
     Shape,
     Alpha,
     /// The natural logarithm of a quotient: the sum of the filter's taps divided by the height of the signal's mean
-    /// above the shift. The quotient is the number of samples for each spike while the signal is at its mean. The two
-    /// values are the bounds of the sum of the taps.
+    /// above the parameter `shift`. The quotient is the number of samples for each spike while the signal is at its
+    /// mean. The two values are the bounds of the sum of the taps.
     Sum(f64, f64),
     /// A tap of the filter divided by the given unit.
     Tap(f64),
@@ -74,7 +74,7 @@ pub(crate) struct Space {
 pub(crate) struct Inner {
     /// Index of the axis.
     pub axis: usize,
-    /// If true, the axis is the sum of the filter's taps, and the compared values are factors of this sum. If false,
+    /// Whether the axis is the sum of the filter's taps. The compared values are then factors of this sum. Otherwise,
     /// the axis is the threshold, and the compared values are thresholds.
     pub is_factor: bool,
 }
@@ -93,8 +93,8 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// Returns the space in which the filter's single taps replace its shape, length and sum, and integer parameters
-    /// keep their values in `found`.
+    /// Returns a space for the single taps of the filter, instead of its shape, length and sum. In this space, integer
+    /// parameters keep their values in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -131,8 +131,8 @@ impl Space {
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns the axis along which a scheme can compare many values in one pass: the threshold as a share of the
-    /// filter's sum, or the sum itself if the scheme has no threshold.
+    /// Returns the axis along which a scheme can compare many values in one pass. This is the threshold, divided by the
+    /// sum of the absolute values of the taps, or the sum of the taps if the scheme has no threshold.
     pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
         let has_threshold =
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
@@ -145,9 +145,8 @@ impl Space {
         Some(Inner { axis, is_factor: !has_threshold })
     }
 
-    /// Returns `count` points to start from, spread over each axis, for a code that may spike at the share `share` of
-    /// the samples. The sums of filters are such that the code reaches the largest sample if it spikes at every sample,
-    /// and reaches the mean with as many spikes as allowed.
+    /// Returns `count` points to start from, spread over each axis. `share` is the share of samples at which the code
+    /// may spike. The sums of filters are such that about this share of spikes decodes to the signal's mean.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);

@@ -13,8 +13,8 @@ const SCALES: [f64; 14] =
     [1.0, 0.97, 0.94, 0.91, 0.88, 0.85, 0.8, 0.75, 0.7, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Largest absolute value of a weight in integers.
 const LARGEST: f64 = 127.0;
-/// Maximum left shift of a layer's weights, which gives potentials more binary digits than weights. The shift is
-/// smaller if thresholds would leave their range.
+/// Maximum left shift of a layer's weights. The shift gives potentials more binary digits than weights. It is smaller
+/// if thresholds would leave their range.
 const SHIFT: u32 = 8;
 /// Largest absolute value of a bias, threshold or reset value in integers.
 const MOST: f64 = (1 << 27) as f64;
@@ -217,8 +217,8 @@ impl Column {
         Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
     }
 
-    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. The other
-    /// neurons of its layer fire as in `own`, their spikes in double precision.
+    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. The neurons of
+    /// its layer act on it with their spikes in double precision, `own`.
     fn distance(
         &self,
         rule: Rule,

@@ -70,7 +70,8 @@ pub enum Current {
     Whole,
 }
 
-/// The parts of a rule that the user gave. The framework may imply further parts; the others are open.
+/// The parts of the rule for decay, firing and reset that the user gave. The framework may imply further parts; the
+/// others are open.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The training framework, which implies some of the other parts.
@@ -224,8 +225,8 @@ impl Asked {
         }
     }
 
-    /// Returns the reset of the first layer that the user gave. If the user gave no reset, returns the reset in `says`,
-    /// which contains the parts of the rule that the framework implies.
+    /// Returns the first of the resets that the user gave. If the user gave none, returns the reset in `says`, which
+    /// contains the parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }

@@ -209,8 +209,9 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
 
 impl ChipLayer {
     /// Runs the layer as the chip does: all neurons compare their potentials with their thresholds after each spike,
-    /// and the layer's own spikes wait behind earlier spikes. Returns the neurons that fire in each step. In a
-    /// recurrent layer, `own` is the number of its first neuron among the inputs.
+    /// and the layer's own spikes wait behind earlier spikes. Returns the neurons that fire in each step. `own` is the
+    /// index of the weight from the layer's first neuron in each neuron's weights. `None` if the layer is not
+    /// recurrent.
     fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
         let mut potentials = vec![0_i32; self.neurons.len()];
         let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {

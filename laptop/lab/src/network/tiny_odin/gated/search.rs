@@ -9,8 +9,8 @@ use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
 /// Values to try for a neuron's largest weight on the chip, for each row of synapses that a weight takes. Values above
-/// 7 are clipped to the chip's range; the smaller weights are then rounded less. The last value rounds weights of up to
-/// 4 rows to 0, so that the neuron stays silent.
+/// 7 are clipped to the chip's range; the smaller weights are then rounded less. If a weight takes up to 4 rows, the
+/// last value rounds all weights to 0, so that the neuron stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
 /// Amounts by which a rung (an event that raises the neurons) raises a potential, in the initial choices of the search.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
