@@ -20,7 +20,7 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN, which takes 128 bits of memory. The driver does not support the chip's
+/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory. The driver does not support the chip's
 /// Izhikevich neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -47,9 +47,9 @@ impl OdinNeuron {
 }
 
 /// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A
-/// presynaptic spike strengthens a synapse if the neuron's potential is high and its calcium lies between the outer
-/// two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower two
-/// thresholds.
+/// presynaptic spike strengthens a synapse if the neuron's potential is high and the neuron's calcium lies between the
+/// outer two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower
+/// two thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -143,12 +143,12 @@ pub enum OdinInput {
         /// Whether the weight lowers the potential.
         is_inhibitory: bool,
     },
-    /// A time step for one neuron, which waits in the chip's queue with virtual events and spikes.
+    /// A time step for one neuron. This event waits in the chip's queue with virtual events and spikes.
     VirtualLeak {
         /// The neuron that takes the time step.
         neuron: u8,
     },
-    /// A time step for one neuron, which does not wait in the chip's queue.
+    /// A time step for one neuron. This event does not wait in the chip's queue.
     Leak {
         /// The neuron that takes the time step.
         neuron: u8,

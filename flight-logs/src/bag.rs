@@ -69,7 +69,7 @@ impl<'a> Fields<'a> {
         Some(String::from_utf8_lossy(self.get(name)?).into_owned())
     }
 
-    /// Reads the field `name`, a time stored as seconds and nanoseconds; returns it in ns.
+    /// Reads the field `name`, a time stored as seconds and nanoseconds; returns the time in ns.
     fn time(&self, name: &str) -> Option<i64> {
         let mut field = self.get(name)?;
         let (seconds, nanoseconds) = (u32_from(&mut field)?, u32_from(&mut field)?);

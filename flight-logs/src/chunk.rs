@@ -135,8 +135,8 @@ pub(crate) trait Chunked {
     /// Returns an error if the log is damaged and damage is refused.
     fn record(&mut self) -> Result<Option<Self::Record>>;
 
-    /// Processes a record outside of chunks. If the record is a message, returns its entry; if it is a chunk, makes it
-    /// the current one.
+    /// Processes a record outside of chunks. If the record is a message, returns its entry. If the record is a chunk,
+    /// makes it the current chunk.
     ///
     /// # Errors
     /// Returns an error if the log is damaged and damage is refused.

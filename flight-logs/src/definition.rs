@@ -215,7 +215,7 @@ impl Definition {
         Some(Path(vec![Step::Field(index)]))
     }
 
-    /// Returns the number of padding bytes at the end of a PX4 message, which loggers usually leave out.
+    /// Returns the number of padding bytes at the end of a PX4 message. Loggers usually leave these bytes out.
     pub fn padding(&self) -> usize {
         let fields = self.root().fields.iter().rev();
         let padding = fields.take_while(|field| field.name.starts_with(PADDING));
@@ -227,7 +227,7 @@ impl Definition {
         padding.map(size).sum()
     }
 
-    /// Returns the layout of the message itself, without those of nested messages.
+    /// Returns the layout of the message itself, without the layouts of nested messages.
     pub fn root(&self) -> &Struct {
         self.structs.first().unwrap_or(const { &Struct { fields: Vec::new() } })
     }

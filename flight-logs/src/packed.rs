@@ -35,7 +35,7 @@ impl Packing {
         }
     }
 
-    /// Returns a reader of the decompressed content of `input`, which must be at its first byte.
+    /// Returns a reader of the decompressed content. `input` must start with the first byte of the file.
     pub fn reader(self, input: impl Read + 'static) -> Box<dyn Read> {
         const BUFFER: usize = 1 << 18;
         fn buffered(input: impl Read + 'static) -> Box<dyn Read> {

@@ -1,9 +1,9 @@
 //! Compares the model of `ReckOn` with the chip's register-transfer code, clock cycle by clock cycle. Usage:
 //! `reckon_rtl SIMULATION [CLOCKS [SEED]]`.
 //!
-//! SIMULATION is a program that Verilator builds from the register-transfer code and from `rtl/reckon.cpp`, which
-//! drives it. Model and simulation get the same random programs, networks, samples and faults. Their pins and registers
-//! must be equal after each clock cycle and each edge of a pin, and their memories after each session.
+//! SIMULATION is a program that simulates the register-transfer code: Verilator builds it from this code and from
+//! `rtl/reckon.cpp`. Model and simulation get the same random programs, networks, samples and faults. Their pins and
+//! registers must be equal after each clock cycle and each edge of a pin, and their memories after each session.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};

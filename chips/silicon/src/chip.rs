@@ -30,7 +30,7 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     /// Returns the bits of a neuron after an event, and whether the neuron fires. Ignores the bit that disables the
     /// neuron.
     fn update(neuron: u128, drive: Drive, registers: &Registers) -> (u128, bool);
-    /// Returns whether the neuron's disabling bit is set, so that it never fires.
+    /// Returns whether the neuron's disabling bit is set, so that the neuron never fires.
     fn is_disabled(neuron: u128) -> bool;
     /// Returns whether a bistability event may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
@@ -532,7 +532,7 @@ impl<K: Kind> Chip<K> {
         }
     }
 
-    /// Reads or writes the memory of neurons; returns the number of the neuron that fires, if it fires.
+    /// Reads or writes the memory of neurons; returns the number of the neuron if the neuron fires.
     fn neuron_memory(
         &mut self,
         control: &Control,

@@ -1,5 +1,5 @@
-//! Models of the chips tinyODIN, ODIN and [`ReckOn`], exact to the clock cycle. They were written from the chips'
-//! public register-transfer code; nothing is copied from it.
+//! Models of the chips tinyODIN, ODIN and [`ReckOn`], exact to the clock cycle. The models were written from the chips'
+//! public register-transfer code; none of that code is copied.
 //!
 //! `ReckOn` has a module of its own, [`reckon`]. The models of tinyODIN and ODIN share their [SPI slave](spi), [output
 //! bus](output), [pins](board) and [controller](chip), and differ in their [`Kind`]: [`TinyOdin`] or [`Odin`].

@@ -39,7 +39,7 @@ impl<E> From<E> for AerError<E> {
 pub(super) enum Carries {
     /// A word from [`Running::send`](super::Running::send).
     Word,
-    /// A probe: a word that the chip acknowledges only if it runs.
+    /// A probe: a word that the chip acknowledges only if the chip runs.
     Probe,
     /// A leak event, which is a time step.
     Step,
@@ -47,8 +47,8 @@ pub(super) enum Carries {
     Event(Event),
 }
 
-/// State of the ACK on the output bus, which the driver controls. After a port call that failed, the level of the pin
-/// is unknown.
+/// State of the output bus's ACK. The driver controls this pin; after a port call that failed, the level of the pin is
+/// unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     /// ACK is low; the next REQ announces a new output.

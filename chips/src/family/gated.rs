@@ -8,7 +8,7 @@ use super::{AerPort, ChipError, Input, OdinChip, Outcome, Running, State};
 use crate::error::at_most;
 
 /// Number of the chip's clock cycles for which the driver waits for the answer to a probe. A probe is a time step of
-/// one neuron, which takes 10 clock cycles.
+/// one neuron, and takes 10 clock cycles.
 const PROBE_CLOCKS: u32 = 1_000;
 
 /// A gated chip: its memories can be accessed, and it takes no events. Its loop is open (spikes do not reach other

@@ -21,8 +21,8 @@ pub struct Progress {
 const NEURONS: u16 = 256;
 
 impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
-    /// Writes a network to the chip, disables all neurons that it does not use, and then reads everything back. Leaves
-    /// synapses onto the disabled neurons as they are. Calls `progress` after each neuron and each row.
+    /// Writes a network to the chip, disables all neurons that the network does not use, and then reads everything
+    /// back. Leaves synapses onto the disabled neurons as they are. Calls `progress` after each neuron and each row.
     ///
     /// **Time:** two frames of 5 bytes, a write and a read, for each byte of memory. A neuron takes 4 bytes (tinyODIN)
     /// or 16 bytes (ODIN), and two synapses take one byte. 256 neurons of tinyODIN with 256 rows take 67 584 frames,

@@ -102,8 +102,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// times.
     ///
     /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If polls are
-    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies their number. With fewer polls, words that
-    /// take long time out, and a later call must finish them.
+    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies the number of polls. With fewer polls,
+    /// the wait for a slow word times out, and a later call must finish the word.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -128,7 +128,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Sets the length of a time step in µs: [`Running::feed`] and [`Running::advance`] then send a leak event for
-    /// every `step` µs that pass. By default they send none.
+    /// every `step` µs that pass. Without this setting they send no leak events.
     ///
     /// Call [`Running::advance`] at least every 70 minutes. If a tick comes more than 70 minutes after the previous
     /// one, the driver takes it for a late tick and sends no leak.

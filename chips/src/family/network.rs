@@ -134,8 +134,8 @@ pub trait Describe<I: Input> {
 pub enum Inputs<const IN: usize, const N: usize> {
     /// A row of synapses for each input: the weights from that input to all neurons.
     Rows([[i8; N]; IN]),
-    /// A virtual event for each input, which acts on one neuron without a synapse. An entry is that neuron and the
-    /// weight. In tinyODIN only the first 16 neurons can receive virtual events.
+    /// A virtual event for each input. It acts on one neuron without a synapse. An entry is that neuron and the weight.
+    /// In tinyODIN only the first 16 neurons can receive virtual events.
     Virtual([(u8, i8); IN]),
 }
 

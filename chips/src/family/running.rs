@@ -75,8 +75,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         }
     }
 
-    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it. The chip's memories can then
-    /// be accessed; its neurons keep their potentials.
+    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates the chip. The chip's memories can
+    /// then be accessed; the neurons keep their potentials.
     ///
     /// # Errors
     /// Returns the errors of [`quiesce`](Self::quiesce), after which the chip still runs. Also returns an error if the

@@ -185,7 +185,7 @@ impl Steps<'_> {
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Runs one time step of a network. `inputs` are the numbers of the inputs that fire, in any order. A number that
     /// is not an input of the network is dropped and [counted](super::Counters::unmapped_events). Neurons that fire are
-    /// passed to `on_output` immediately, each at most once in a step. They include neurons of all layers;
+    /// passed to `on_output` immediately, each at most once in a step. These neurons belong to any layer;
     /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
     ///
     /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. Each input or spike

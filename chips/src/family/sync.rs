@@ -188,8 +188,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores the byte `value` at `address` as the beacon if it is a byte of a neuron, and if one of its bits in `mask`
-    /// is 1 and belongs to a parameter. (The chip does not change parameters.)
+    /// Stores the byte `value` at `address` as the beacon, if `address` is in the memory of neurons, and if a bit of
+    /// the byte is 1, lies in `mask` and belongs to a parameter. (The chip does not change parameters.)
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

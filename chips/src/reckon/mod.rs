@@ -66,7 +66,7 @@ use wire::{Address, Wire};
 ///   writes all 128 pairs.
 /// - If the number of neurons is odd, the last neuron would never fire. Therefore the driver gives the chip a number
 ///   that is one higher.
-/// - A frame that announces more than one word to a register writes them all to the same register.
+/// - If a frame announces more than one word for a register, the chip writes all of the words to that register.
 /// - An input sent twice within a step counts once. Inputs that are sent after the last tick of a sample are lost.
 /// - Reset clears no memory.
 /// - With a [`keep`](ReckOnPair::keep) above 32 768, a potential that grows beyond its range wraps around and changes

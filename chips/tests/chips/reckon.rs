@@ -447,8 +447,8 @@ impl ReckOnPort for FaultyPort<'_> {
     }
 }
 
-/// Begins a sample on a chip that was never loaded, which has 16 outputs; then sets faults with `set`, and returns the
-/// result of `act`.
+/// Begins a sample on a chip without a network, whose answers have 16 outputs. Then sets faults with `set`, and returns
+/// the result of `act`.
 fn with_faults<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),

@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// First two bytes of a message. The third byte is the message's type.
 const HEAD: &[u8] = &[0xa3, 0x95];
-/// Offset of a message's content, which is the length of the message's header, in bytes.
+/// Offset of the content in a message, in bytes: the length of the header.
 const CONTENT: usize = 3;
 
 /// Reader of a binary log.

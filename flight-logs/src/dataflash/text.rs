@@ -36,8 +36,8 @@ impl Text {
         })
     }
 
-    /// Processes a line of the log; `at` is its offset in the file. Returns the message's entry, or `None` if the line
-    /// is no message.
+    /// Processes a line of the log; `at` is the offset of the line in the file. Returns the message's entry, or `None`
+    /// if the line is no message.
     fn line(&mut self, at: u64, line: &str) -> Result<Option<Entry>> {
         let (name, rest) = line.split_once(',').unwrap_or((line, ""));
         let name = name.trim();

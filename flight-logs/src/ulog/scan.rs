@@ -110,7 +110,7 @@ pub(crate) struct Series {
 }
 
 impl<'a> Scan<'a> {
-    /// Finds all messages in a log, which must be at least as long as its header.
+    /// Finds all messages in a log. `bytes` must be at least as long as the file header.
     pub(crate) fn run(bytes: &'a [u8]) -> Self {
         let mut scan = Self {
             bytes,
