@@ -31,8 +31,8 @@ pub enum ChipError<B, P = Infallible> {
     /// The chip did not answer after its gate was opened: reset the chip first.
     NotStarted,
     /// The driver could not verify that the chip runs. The check needs a neuron that can take a time step without harm,
-    /// but each neuron learns, or its potential is at the threshold or at the end of its range. The chip is still
-    /// gated, and nothing was changed.
+    /// but each neuron learns, or has a potential at its threshold or at the end of the range. The chip is still gated,
+    /// and nothing was changed.
     NoProbe,
     /// The chip keeps sending outputs, so that it cannot be gated; see [`open_loop`](super::Running::open_loop).
     Busy,

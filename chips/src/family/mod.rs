@@ -55,11 +55,12 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   and its check, this goes unnoticed, because registers cannot be read back. After an error of the bus, or a byte
 ///   that reads back differently, the driver refuses all calls until the next reset. All memory is then in doubt: load
 ///   it again.
-/// - **Waits:** the driver reads the pins a given number of times, then returns an error.
+/// - **Waits:** the driver waits for the chip by reading pins. After as many reads as [`new`](Self::new) was told, it
+///   returns an error.
 /// - **Pending words:** a word that the chip has not acknowledged when a wait ends stays pending. Every call that sends
 ///   a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
-/// - **Unsent events:** an event that could not be sent is kept, and is sent first at the next call, even after a
-///   reset.
+/// - **Unsent events:** the driver keeps an event that [`Running::feed`] could not send. The next call of `feed` sends
+///   this event first, even after a reset.
 /// - **Losses** are counted; see [`counters`](Self::counters).
 ///
 /// # What to know about the chips

@@ -44,7 +44,8 @@ use wire::{Address, Wire};
 ///   already held the same weights. In the third case, the pair turns a read into a write while a load compares memory.
 ///   [`Programmed::verify`] after the load detects this in weights and parameters, but not in the potential of a neuron
 ///   or an output.
-/// - **Waits:** the driver reads the pins a given number of times, then returns an error.
+/// - **Waits:** the driver waits for the chip by reading pins. After as many reads as [`new`](Self::new) was told, it
+///   returns an error.
 ///
 /// # A time step
 /// Inputs that are sent before a tick act after that tick. At the next tick, neurons leak and fire, and then their

@@ -163,8 +163,8 @@ fn sample<'a, 'b>(
     Ok(((answers, fired), started))
 }
 
-/// Each port call takes 26 clock cycles. In small networks the ready pin is low for less time than that: in a step with
-/// up to 10 neurons, and at the tick that begins a sample with up to 25 neurons. The answers must not change.
+/// Each port call takes 26 clock cycles. In small networks the ready pin is low for a shorter time: with up to 10
+/// neurons in a step, and with up to 25 neurons at the first tick of a sample. The answers must not change.
 #[test]
 fn pins_that_are_read_seldom_change_no_answer() {
     for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {
