@@ -10,9 +10,9 @@ use std::str::FromStr;
 /// The header of a file of spikes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// The scheme.
+    /// The scheme of the spikes.
     pub scheme: Scheme,
-    /// The sample type.
+    /// The sample type of the encoder.
     pub sample: SampleType,
     /// All parameters that decoding needs. Each channel has a set of its own.
     pub channels: Vec<Settings>,
@@ -22,8 +22,8 @@ pub struct Header {
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters.
-/// It uses parameters that were derived from them.
+/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters,
+/// but the parameters that were derived from them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =

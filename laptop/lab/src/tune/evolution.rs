@@ -1,7 +1,7 @@
 //! Adaptive differential evolution with a shrinking number of parents: L-SHADE, after Tanabe and Fukunaga (2014).
 //!
-//! The number of parents shrinks with the share of the caller's budget that is spent, which makes even a small budget
-//! converge as far as it can. Points lie in the unit cube.
+//! The number of parents shrinks with the share of the caller's budget that is spent. Even a search with a small budget
+//! thus converges as far as possible. Points lie in the unit cube.
 
 use super::chance::Chance;
 

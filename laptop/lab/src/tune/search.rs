@@ -1,4 +1,5 @@
-//! Searches settings. If the scheme can list its outcomes, the search is exact; otherwise, it uses evolution.
+//! Searches settings. If the scheme can list the outcomes of all thresholds, the search is exact; otherwise, the search
+//! is an evolution.
 //!
 //! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
 //! every machine.

@@ -255,8 +255,8 @@ impl Space {
         options
     }
 
-    /// Returns the height of the signal's mean above `shift`, or above the signal's minimum if `None`. The height is at
-    /// least 1 % of the signal's range.
+    /// Returns the height of the signal's mean above `shift` or, if `shift` is `None`, above the signal's minimum. The
+    /// height is at least 1 % of the signal's range.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())
