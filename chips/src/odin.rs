@@ -54,7 +54,8 @@ impl OdinNeuron {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinLearning {
-    /// Potential at or above which synapses grow; below it they shrink. Bits 18 to 25.
+    /// Potential at or above which a presynaptic spike can strengthen a synapse; below this potential the spike can
+    /// weaken the synapse. Bits 18 to 25.
     pub potential: u8,
     /// The three thresholds of the calcium, 0 to 7 each. Bits 26 to 34, 3 bits each.
     pub calcium: [u8; 3],
@@ -87,7 +88,7 @@ pub struct OdinRegisters {
     pub inhibitory: [u16; 16],
     /// Register 18: interval between the spikes of a burst, in clock cycles, 20 bits; 0 disables bursts.
     pub burst_clocks: u32,
-    /// Register 19: which spikes go to the output bus.
+    /// Register 19: the spikes that go to the output bus.
     pub output_source: OutputSource,
     /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. If set, the output bus shows
     /// the states of the neuron and the synapse instead of spikes.
@@ -120,7 +121,7 @@ impl OdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OdinInput {
-    /// A spike of neuron `pre` that acts on one synapse only. The synapse acts if it has the mapping bit, or if
+    /// A spike of neuron `pre` that acts through one synapse only. The synapse acts if it has the mapping bit, or if
     /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is set.
     Synapse {
         /// The presynaptic neuron.
@@ -128,7 +129,7 @@ pub enum OdinInput {
         /// The postsynaptic neuron.
         post: u8,
     },
-    /// A spike of neuron `pre` that acts on all of its synapses.
+    /// A spike of neuron `pre`, which acts through all synapses of that neuron.
     Spike {
         /// The neuron that fired.
         pre: u8,

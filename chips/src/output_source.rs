@@ -1,6 +1,6 @@
 //! The setting that selects which spikes tinyODIN and ODIN send to their output bus.
 
-/// Which spikes the chip sends to its output bus.
+/// The spikes that the chip sends to its output bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

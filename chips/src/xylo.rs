@@ -50,7 +50,7 @@ pub enum InputBank {
 /// The register addresses and masks of a chip of the Xylo family.
 ///
 /// Checked only against the sources of `rockpool`: `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for
-/// A2. Both poll for the end of a time step as [`step`](Xylo::step) does.
+/// A2. Both sources poll for the end of a time step as [`step`](Xylo::step) does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -105,18 +105,18 @@ impl XyloMap {
 
 /// Xylo Audio 3 and A2 in manual mode: set the counts, run a time step, and get the outputs that fired.
 ///
-/// Count the events of a time step with [`Bins<16>`](spikewire::Bins), with a limit of 15 so that events beyond it are
-/// counted as saturated.
+/// Count the events of a time step with [`Bins<16>`](spikewire::Bins). Set its limit to 15, so that it reports events
+/// beyond this limit as saturated.
 ///
 /// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which
 ///   bank the next step reads, and writes the counts to that bank.
 /// - **Order:** set the counts, then run the step. While the chip runs a step the driver accepts no counts, and
 ///   [`step`](Self::step) waits for the step without triggering a second one.
-/// - **Counts stay** in the chip. A step without new counts uses the old counts of its bank again, unless they are
-///   [cleared](Self::clear_input), as in the vendor's programs.
+/// - **Counts stay** in the chip. A step without new counts uses the old counts of its bank again. To prevent this,
+///   [clear](Self::clear_input) the counts, as the vendor's programs do.
 /// - **Faults:** the chip does not confirm writes, and the public sources do not say which registers can be read back.
 ///   Therefore the [`Registers`] that you supply must report every write that fails. If the write of counts is lost,
-///   the chip keeps the old counts. If the trigger is lost, it keeps the outputs of the step before.
+///   the chip keeps the old counts. If the trigger is lost, the chip keeps the outputs of the previous step.
 ///
 /// Checked against the vendor's sources alone, never against a chip.
 ///

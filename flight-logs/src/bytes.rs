@@ -95,7 +95,8 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
 }
 
 /// Decompresses `packed`, whose decompressed size should be `size` bytes. `how` is the name of the compression. Returns
-/// the decompressed bytes. Also returns a description of the fault if bytes are missing, or if there are too many.
+/// the bytes that could be decompressed. Also returns a description of the fault if the bytes are damaged, if too few
+/// or too many are decompressed, or if the compression is unknown.
 pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
     let mut bytes = Vec::new();
     let mut limited =

@@ -1,4 +1,4 @@
-//! Layouts of messages, parsed from the definitions in a log, and paths to the numbers and texts in a message.
+//! Layouts of messages, parsed from the message definitions in a log, and paths to the numbers and texts in a message.
 //!
 //! A definition has a line `type name` for each field. In ROS, definitions of nested messages follow after a line `MSG:
 //! package/Type`.

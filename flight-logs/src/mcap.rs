@@ -138,7 +138,7 @@ impl Mcap {
 }
 
 impl Chunked for Mcap {
-    /// Kind of the record, and its offset in the file. Its content is in `data`.
+    /// A record, given by its kind and its offset in the file. The record's content is in `data`.
     type Record = (u8, u64);
 
     fn walk(&self) -> &Walk {

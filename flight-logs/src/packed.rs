@@ -47,7 +47,8 @@ impl Packing {
             Self::Bzip2 => buffered(MultiBzDecoder::new(input)),
             #[cfg(not(target_family = "wasm"))]
             Self::Xz => {
-                /// Limit of a file's dictionary, in KiB; `xz -9` needs half of it.
+                /// Limit of the memory for decompression, in KiB. A file written by `xz -9` needs about half of this
+                /// memory.
                 const MOST: u32 = 1 << 17;
                 let input = BufReader::new(input);
                 buffered(lzma_rust2::XzReader::new_mem_limit(input, true, MOST))

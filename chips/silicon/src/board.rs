@@ -47,7 +47,7 @@ pub enum CallFault {
     After,
 }
 
-/// The chip, the state of its wires, and the faults that are planned.
+/// The chip, its clock settings, and the planned faults of its wires.
 #[derive(Debug)]
 pub struct Pins<C> {
     /// The model of the chip.
@@ -56,8 +56,8 @@ pub struct Pins<C> {
     pub ratio: u32,
     /// Number of the chip's clock cycles that one call of the port takes.
     pub call_clocks: u32,
-    /// Extra clock cycles of the chip between the read of an output and its ACK; each output takes the next entry, or 0
-    /// at the end.
+    /// Extra clock cycles of the chip between the read of an output and the ACK for it. Each output takes the next
+    /// entry, or 0 if no entry is left.
     pub output_delays: VecDeque<u32>,
     /// Number of SPI clock cycles so far.
     pub spi_clocks: u64,
@@ -183,7 +183,7 @@ fn transact(
     Ok(())
 }
 
-/// Removes and returns the first fault if it is planned for `now`.
+/// Removes and returns the first planned fault if its number is `now`.
 fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
     let &(at, fault) = faults.front()?;
     (at == now).then(|| {

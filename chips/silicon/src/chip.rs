@@ -16,7 +16,7 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     const NEURON_BYTES: u16;
     /// Number of spikes and virtual events that the queue holds.
     const QUEUE: usize;
-    /// Whether a spike stays in the queue after it was applied to all neurons, until the output bus is free.
+    /// Whether a spike that was applied to all neurons stays in the queue until the output bus is free.
     const POPS_AFTER_OUTPUT: bool;
     /// Whether the gate shuts only when the controller is idle.
     const GATE_WAITS: bool;
@@ -34,8 +34,8 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     fn is_disabled(neuron: u128) -> bool;
     /// Returns whether a bistability event may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Returns whether a spike from the queue goes to the output bus while the chip applies the spike to `neuron`. Only
-    /// for registers with which the output bus carries the spikes of the queue.
+    /// Returns whether a spike from the queue goes to the output bus while the chip applies the spike to `neuron`.
+    /// Asked only if [`outputs_are_popped`](Self::outputs_are_popped) is true.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 
@@ -48,7 +48,8 @@ pub enum Input {
     Bistability(Option<u8>),
     /// A spike on one synapse: the presynaptic and the postsynaptic neuron.
     Synapse(u8, u8),
-    /// An event that goes to the queue: the bits of a virtual event, or 0 for a spike; then the neuron.
+    /// An event that goes to the queue. The first value has the bits of a virtual event, and is 0 for a spike; the
+    /// second is the neuron.
     Queued(u8, u8),
 }
 
@@ -57,7 +58,7 @@ pub enum Input {
 pub struct Drive {
     /// Whether an event acts on the neuron. False if the neuron is accessed over SPI.
     pub is_event: bool,
-    /// Whether the event is a time step of the controller.
+    /// Whether the event is a time step from a leak word. (A virtual leak is a virtual event.)
     pub is_leak: bool,
     /// The bits of a virtual event; 0 for other events.
     pub virtual_bits: u8,

@@ -24,6 +24,6 @@ pub struct Counters {
     /// Number of outputs lost at resets: the chip had raised REQ for the output, but the driver had not read it yet.
     pub lost_outputs: u32,
     /// Number of times that the chip's queue was seen to become full; each time, any number of spikes between neurons
-    /// may be lost. Always 0 without the [pin](super::AerPort::queue_full).
+    /// may be lost. Always 0 if the pin [`SCHED_FULL`](super::AerPort::queue_full) is not wired.
     pub overflows: u32,
 }

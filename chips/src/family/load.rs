@@ -26,7 +26,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
     ///
     /// **Time:** two frames of 5 bytes, a write and a read, for each byte of memory. A neuron takes 4 bytes (tinyODIN)
     /// or 16 bytes (ODIN), and two synapses take one byte. 256 neurons of tinyODIN with 256 rows take 67 584 frames,
-    /// 4.1 s at 656 kHz.
+    /// 4.1 s at an SCK of 656 kHz.
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,

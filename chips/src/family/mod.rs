@@ -41,7 +41,7 @@ pub use port::AerPort;
 pub use running::Running;
 pub use steps::{Steps, StepsLayer, StepsState};
 
-/// A chip of the ODIN family, on an SPI device and a port.
+/// The driver of a chip of the ODIN family, on an SPI device and a port (the chip's pins other than SPI).
 ///
 /// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select. Therefore no other device
 ///   may share its SPI bus, and the chip-select pin of the SPI device stays unconnected.

@@ -61,7 +61,7 @@ pub trait AerPort {
     /// See [`set_input`](Self::set_input).
     fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `SCHED_FULL`, which is high while the chip's queue is full, so that spikes between neurons are lost.
+    /// Reads `SCHED_FULL`. This pin is high while the chip's queue is full; spikes between neurons are lost then.
     /// Returns `None`, as the default does, if the pin is not wired.
     ///
     /// # Errors

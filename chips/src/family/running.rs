@@ -23,8 +23,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Self { chip }
     }
 
-    /// Sends one input to the chip, and passes neurons that fire meanwhile to `on_output`. When this returns, the chip
-    /// has taken the input, but works on it for another 2 clock cycles for every neuron in use.
+    /// Sends one input to the chip, and passes neurons that fire meanwhile to `on_output`. When this call returns, the
+    /// chip has taken the input, but may work on it for about 2 more clock cycles for every neuron in use.
     ///
     /// # Errors
     /// Returns an error if the input is invalid, the chip does not answer, or the port failed. With

@@ -35,7 +35,7 @@ use wire::{Address, Wire};
 ///   the bus, of a handshake or of a step, the driver refuses all calls until the next reset.
 /// - **Checks:** the driver reads memories back. Registers cannot be read. Therefore, after each register, the driver
 ///   writes two words to an address that no network uses, and reads each of them back. This detects a clock pulse that
-///   was lost or doubled before.
+///   was lost or doubled earlier.
 /// - **Undetected faults:** if one clock pulse is lost and another is doubled, chip and bus are in sync again
 ///   afterwards. Three cases of such a pair may go unnoticed. In the first case, one of the two faults lies in the
 ///   frame of a register or in the frame before: the register may keep its old value or take a wrong one, or a
@@ -47,9 +47,9 @@ use wire::{Address, Wire};
 /// - **Waits:** the driver reads the pins a given number of times, then returns an error.
 ///
 /// # A time step
-/// The inputs sent before a tick act after that tick. At the second tick, neurons leak and fire, and then their spikes
-/// act. At the third tick, the outputs show these spikes. With N inputs and N neurons, a step takes 2 N + 4 clock
-/// cycles of the chip, and N more for each event.
+/// Inputs that are sent before a tick act after that tick. At the next tick, neurons leak and fire, and then their
+/// spikes act. At the tick after that, the outputs show these spikes. With N inputs and N neurons, a step takes 2 N + 4
+/// clock cycles of the chip, and N more for each event.
 ///
 /// # What to know about the chip
 /// - After reset learning is on: at the first tick with `TARGET_VALID` the chip would wait for a target without end.
@@ -59,8 +59,8 @@ use wire::{Address, Wire};
 ///   2 N + 4 clock cycles, which a driver that reads its pins rarely would miss. Therefore the driver always sets the
 ///   chip to send an answer in each step. The pin then stays low until the last byte of the answer is taken, and a step
 ///   without an answer is an error.
-/// - If `SAMPLE` falls while the chip learns, and the chip is not set to send an answer in each step, it goes on
-///   learning without end, through all weights.
+/// - If `SAMPLE` falls while the chip learns, the chip goes on learning without end, through all weights, unless it is
+///   set to send an answer in each step.
 /// - The chip processes neurons in pairs, up to the largest of three numbers: that of neurons, of inputs and of
 ///   outputs. A pair that the network does not use fires at every step if its memory holds a threshold of 0. Therefore
 ///   [`Programmed::load`] writes all 128 pairs.
@@ -150,12 +150,14 @@ const RESET_US: u32 = 10;
 const OPEN: u16 = 0;
 
 impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
-    /// Longest time step, in clock cycles of the chip: all 256 neurons fire, and the chip learns.
+    /// Duration of the longest time step, in clock cycles of the chip. In this step all 256 neurons fire, and the chip
+    /// learns.
     pub const MAX_CLOCKS: u32 = 76_000;
 
     /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
     /// times. [`MAX_CLOCKS`](Self::MAX_CLOCKS) polls suffice if each poll takes at least one clock cycle of the chip.
-    /// If several polls fit into one clock cycle, multiply `MAX_CLOCKS` by their number, rounded up.
+    /// If several polls fit into one clock cycle, multiply `MAX_CLOCKS` by the number of polls in a clock cycle,
+    /// rounded up.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         let wire = Wire { device };
         let sizes = Sizes { input: 255, neuron: 255, output: 15 };

@@ -6,7 +6,7 @@
 /// |---|---|---|
 /// | `AERIN_ADDR`, `AERIN_TAR_EN` | to the chip | an input's number, or a byte of a target: nine lines, written with one store |
 /// | `AERIN_REQ`, `AERIN_ACK` | to the chip, from it | the handshake of an input |
-/// | `OUT_DATA` | from the chip | a byte of its answer, eight lines |
+/// | `OUT_DATA` | from the chip | a byte of the chip's answer, eight lines |
 /// | `OUT_REQ`, `OUT_ACK` | from the chip, to it | the handshake of a byte of the answer |
 /// | `SAMPLE`, `TIME_TICK` | to the chip | high during a sample; rises for each time step |
 /// | `TARGET_VALID`, `INFER_ACC` | to the chip | whether a step learns, and whether it counts for the label |

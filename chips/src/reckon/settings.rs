@@ -7,12 +7,12 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnAnswers {
-    /// Returns a label after the sample: the number of the output with the most points. In each step with
+    /// A label after the sample: the number of the output with the most points. In each step with
     /// [`counts`](super::ReckOnStep::counts) set, the output with the highest potential gets a point.
     Label,
-    /// Returns the outputs' potentials after the sample.
+    /// The outputs' potentials after the sample.
     Potentials,
-    /// Returns the outputs' potentials after every step and after the sample.
+    /// The outputs' potentials after every step and after the sample.
     PotentialsEachStep,
 }
 
@@ -31,10 +31,10 @@ impl ReckOnAnswers {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnTask {
-    /// A target is the number of the output that should have the highest potential. Give it in the first step of a
+    /// A label: the number of the output that should have the highest potential. Give the label in the first step of a
     /// sample that learns.
     Classification,
-    /// A target is a potential for each output. Give it in every step that learns.
+    /// A potential for each output. Give the potentials in every step that learns.
     Regression,
 }
 
@@ -52,13 +52,12 @@ pub struct ReckOnLearning {
     pub learns: [bool; 3],
     /// Number of extra binary places of the traces of inputs, neurons and outputs, in this order; 0 to 7 each.
     pub traces: [u8; 3],
-    /// Shift of the learning signal, 0 to 15.
+    /// Left shift of the learning signal, 0 to 15. (After this shift, the chip divides the signal by 4096.)
     pub signal: u8,
-    /// Four potentials, ascending. They divide the range of the potential into five, and [`slopes`](Self::slopes) has a
-    /// value for each of the five.
+    /// Four potentials, ascending. They divide a neuron's potential into five ranges, for which
+    /// [`slopes`](Self::slopes) gives the slopes.
     pub thresholds: [i16; 4],
-    /// A slope for each of the five ranges of a neuron's potential, -16 to 15. The slope stands in for the derivative
-    /// of firing.
+    /// Slope of the surrogate gradient in each of the five ranges of a neuron's potential, -16 to 15.
     pub slopes: [i8; 5],
     /// Shifts that set how likely a weight is to change, as pairs of a right shift and a left shift, 0 to 31 each. The
     /// three pairs are for the weights from inputs, between neurons and to outputs, in this order.

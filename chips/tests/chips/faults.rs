@@ -1,5 +1,5 @@
-//! Tests that the driver of tinyODIN and ODIN causes none of the faults that calls in the wrong order cause in these
-//! chips, even if clock pulses are lost or doubled.
+//! Tests of the driver of tinyODIN and ODIN. Accesses in the wrong order damage memory or potentials in these chips.
+//! The driver must prevent this, even if clock pulses are lost or doubled.
 
 use std::num::NonZeroU32;
 
@@ -41,8 +41,7 @@ fn events(addresses: impl IntoIterator<Item = u16>) -> impl Iterator<Item = Even
     addresses.into_iter().map(event)
 }
 
-/// Fills the memory of neurons with neurons whose potential is 0, without leak and with thresholds that they do not
-/// reach.
+/// Writes all neurons with potential 0, no leak, and a threshold that they do not reach.
 fn at_rest(board: &TinyBoard) {
     board.pins().chip.neurons.fill(neuron(2047, 0, 0));
 }
@@ -109,7 +108,7 @@ proptest! {
     }
 }
 
-/// The gate is shut too early here, as if the driver read the pins too few times for each clock cycle of the chip.
+/// This test shuts the gate too early, as a driver does that expects too few pin reads in each clock cycle of the chip.
 #[test]
 fn parameters_stay_whole_even_where_the_gate_shuts_on_a_chip_that_works() {
     for clocks in 0..200 {

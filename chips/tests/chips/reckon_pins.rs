@@ -1,5 +1,5 @@
-//! Tests of the driver of `ReckOn` with slow pins: the driver reads them rarely and late, and must return the same
-//! answers as with fast pins, for networks of any size.
+//! Tests of the driver of `ReckOn` with slow pins: each call of the port takes many clock cycles of the chip, and the
+//! driver must return the same answers as with fast pins, for networks of any size.
 
 use std::cell::Cell;
 
@@ -11,12 +11,13 @@ use spikewire_chips::{
     ReckOnSettings, ReckOnShared, ReckOnStep, Started,
 };
 
-/// A network with random weights, a given number of neurons, up to eight inputs and three outputs.
+/// A network with random weights, the given number of neurons, as many inputs but at most eight, and three outputs.
 struct RandomNetwork {
     neurons: u16,
 }
 
-/// Returns the random weight of a kind (0 from inputs, 1 between neurons, 2 to outputs) for this sender and receiver.
+/// Returns a random weight that depends only on the arguments. `kind` is 0 for weights from inputs, 1 between neurons,
+/// and 2 to outputs.
 fn weight(kind: u64, from: u16, to: u16) -> i8 {
     let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
     Pcg32::seed_from_u64(place).next_u32() as i8

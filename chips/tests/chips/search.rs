@@ -74,7 +74,7 @@ impl Random {
     }
 }
 
-/// What the caller of the driver expects of the chip.
+/// The state of the chip that the caller of the driver expects.
 struct Known {
     neurons: Vec<u128>,
     synapses: Vec<u32>,
@@ -86,7 +86,7 @@ struct Known {
 }
 
 impl Known {
-    /// Takes the chip's present memories as expected, for a chip that was just reset.
+    /// Returns the chip's present memories as the expected state, for a chip that was just reset.
     fn of(board: &TinyBoard) -> Self {
         let pins = board.pins();
         let (neurons, synapses) = (pins.chip.neurons.clone(), pins.chip.synapses.clone());
@@ -107,7 +107,7 @@ impl Known {
         }
     }
 
-    /// Applies an input to the expected neurons.
+    /// Updates the expected neurons as the chip does for an input.
     fn take(&mut self, input: TinyOdinInput) {
         let Some(TinyOdinRegisters { last_neuron, .. }) = self.registers else { return };
         let none = Drive { is_event: true, is_leak: false, virtual_bits: 0, synapse: 0, pre: 0 };

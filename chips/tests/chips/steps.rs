@@ -31,8 +31,8 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// The chip lowers a neuron at rest to `below` rungs below 0, and its threshold is `above` rungs higher than that
-    /// of the reference.
+    /// Between steps, each potential on the chip is `below` rungs lower than in the reference. Each threshold on the
+    /// chip is `above` rungs higher than in the reference.
     below: u16,
     above: u16,
     leaks: Vec<Vec<u16>>,

@@ -10,9 +10,9 @@ use crate::window::Window;
 use crate::{Entry, Log, Result};
 use std::path::Path;
 
-/// First two bytes of a message. The third is its type.
+/// First two bytes of a message. The third byte is the message's type.
 const HEAD: &[u8] = &[0xa3, 0x95];
-/// Length of a message's header in bytes.
+/// Offset of a message's content, which is the length of the message's header, in bytes.
 const CONTENT: usize = 3;
 
 /// Reader of a binary log.

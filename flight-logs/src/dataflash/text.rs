@@ -108,7 +108,7 @@ impl Text {
         Ok(instance)
     }
 
-    /// Parses the columns of an `FMT` message, and stores the format; returns whether they are valid.
+    /// Parses the columns of an `FMT` message, and stores the format; returns false if the columns are invalid.
     fn define(&mut self, line: &str) -> bool {
         let mut words = line.splitn(5, ',').map(str::trim);
         let mut word = || words.next().unwrap_or_default();

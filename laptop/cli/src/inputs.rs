@@ -127,7 +127,7 @@ impl ChannelOptions {
     }
 }
 
-/// The file to which a log from standard input was copied.
+/// Temporary copy of standard input; `None` if no copy was needed.
 static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 
 /// Returns the path from which a recording can be read. A log, a `NumPy` archive or a Parquet file on standard input is

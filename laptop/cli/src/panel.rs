@@ -27,18 +27,18 @@ const PERIOD: Duration = Duration::from_millis(50);
 /// Maximum time, in µs, by which the panel's clock advances at a received tick. After a restart of the sender, ticks
 /// may jump farther.
 const MOST_STEP: u32 = 1_000_000;
-/// Number of lines below the channels. They show the counts of the link, and the reasons that values are not exact.
+/// Number of lines for the lower part of the panel: the counts of the link, and the reasons that values are not exact.
 const FOOTER: u16 = 3;
 /// Maximum number of channels that are drawn.
 const MOST_CHANNELS: usize = 24;
 
-/// The content of the picture: the state of every channel, as far as it has been received.
+/// The content of the picture: the values and spikes of every channel that have been received.
 pub(crate) struct Panel {
     channels: Vec<Channel>,
     /// Number of neurons of each channel.
     neurons: u16,
     now: Option<Tick>,
-    /// Time of the sender's clock since the first frame, in µs.
+    /// Time since the first frame, by the sender's clock, in µs.
     elapsed: u64,
     spikes: u64,
 }
@@ -48,15 +48,15 @@ struct Channel {
     name: String,
     unit: String,
     value: Option<f64>,
-    /// Reason that the value is not exact, if there is one.
+    /// Reason that the value is not exact; `None` if it is exact.
     withheld: Option<Withheld>,
     /// Time and direction of the spikes that the raster shows.
     spikes: VecDeque<(Tick, Polarity)>,
 }
 
 impl Panel {
-    /// Makes an empty panel, for channels with `neurons` neurons each. A channel's line appears when the channel first
-    /// sends; its name is its number.
+    /// Makes an empty panel for channels with `neurons` neurons each. A channel is added when it first sends, and is
+    /// named by its number.
     pub(crate) fn new(neurons: usize) -> Self {
         let neurons = u16::try_from(neurons).unwrap_or(u16::MAX).max(1);
         Self { channels: Vec::new(), neurons, now: None, elapsed: 0, spikes: 0 }
@@ -173,7 +173,7 @@ impl Panel {
         cells.into_iter().map(|cell| GLYPHS[cell]).collect()
     }
 
-    /// Formats the counts of the link. Appends the reason for each channel whose value is not exact.
+    /// Formats the counts of the link, followed by the channels whose values are not exact, with the reasons.
     fn counts(&self, tally: &LinkTally) -> String {
         let LinkTally { frames, lost, gaps, .. } = tally;
         let (seconds, spikes) = (self.elapsed as f64 / 1e6, self.spikes);
@@ -208,8 +208,7 @@ struct Noting<'a> {
 }
 
 impl Noting<'_> {
-    /// Copies the values in `items` to the panel. Also copies, for every channel, the reason that its value is not
-    /// exact.
+    /// Copies the values in `items` to the panel, and for each channel the reason if its value is not exact.
     fn note(&self, items: &[Item]) {
         let mut panel = self.panel.borrow_mut();
         for item in items {

@@ -31,7 +31,7 @@ pub(crate) fn handle() -> Result<()> {
     Ok(())
 }
 
-/// Condition that ends a command which would otherwise run forever: a time limit or Ctrl-C.
+/// Condition that ends a command early: Ctrl-C or a time limit.
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,

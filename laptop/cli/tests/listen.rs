@@ -47,7 +47,7 @@ fn waves<S: Sample>(sample: u32) -> [S; CHANNELS] {
     [0.05, 0.07, 0.11].map(|pace: f64| S::from_f64((f64::from(sample) * pace).sin() * 100.0))
 }
 
-/// The items that a bank has output.
+/// List of the items that a bank of encoders puts out.
 #[derive(Default)]
 struct Items(Vec<Item>);
 
@@ -448,7 +448,7 @@ fn serial_line() -> (File, String, File) {
     (board.into(), name, open)
 }
 
-/// Waits until the program ends, checks that it succeeded, and returns its standard error.
+/// Waits until the program ends, checks that its exit status is 0, and returns its standard error.
 fn finish(child: Child) -> String {
     let done = child.wait_with_output().unwrap();
     let report = String::from_utf8(done.stderr).unwrap();

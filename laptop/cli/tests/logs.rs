@@ -77,7 +77,7 @@ fn packed(how: &str, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Every log is read with every compression, from a file and from standard input. The compressed files consist of two
-/// streams, as packers that use several cores write them.
+/// streams, as compressors that use several cores write them.
 #[test]
 fn any_log_is_read_in_any_packing() {
     let logs = [

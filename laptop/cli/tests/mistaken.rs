@@ -1,5 +1,5 @@
-//! `listen` must not call a value exact if it decodes with another flight file than the sender's. The test tries
-//! pairs of flight files that differ in one field.
+//! `listen` must not mark a value as exact if its flight file differs from the sender's. The test tries pairs of flight
+//! files that differ in one field.
 
 use catalogue::run::Known;
 use lab::flight::Flight;
@@ -107,8 +107,8 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
-/// A sender. `text` is its flight file, and `frames` are the bytes that it sends. `kinds` has the names of the fields
-/// that the test varies in this file.
+/// A simulated sender: `text` is its flight file, and `frames` are the bytes that it sends. `kinds` names the fields in
+/// which other flight files of the test differ from this one.
 struct Sender {
     text: String,
     kinds: BTreeSet<&'static str>,

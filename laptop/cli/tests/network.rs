@@ -20,8 +20,8 @@ fn network(file: &str) -> String {
     format!("network {file} {CODE} {AS_THE_CHIP} --reset zero {}", flight("hexarotor.csv"))
 }
 
-/// Options for tests with the chip's own rule: neurons compare after each spike. The whole recording is used for
-/// tuning.
+/// Options for tests with the chip's own rule: neurons compare potential and threshold after each spike. The whole
+/// recording is used for tuning.
 const AS_THE_CHIP: &str = "--compare spike --no-held-out";
 
 /// Returns the numbers in one line of `report`, the first that begins with `start`.
@@ -211,8 +211,8 @@ fn a_file_of_spikes_drives_a_network_that_answers_step_by_step() {
 }
 
 /// A rise and a fall in the same step cancel out in the trained network. They do not cancel out on a chip whose neurons
-/// compare after each spike. A comparison once a step takes more events, but loses nothing here. The command therefore
-/// chooses `--compare step`.
+/// compare potential and threshold after each spike. A comparison once a step takes more events, but loses nothing
+/// here. The command therefore chooses `--compare step`.
 #[test]
 fn neurons_compare_once_a_step_if_that_agrees_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},

@@ -57,8 +57,8 @@ fn other_encodings_and_compressed_tables_are_read() {
     assert_eq!(decoded, good("decode", &spikes).output.as_bytes());
 }
 
-/// A Zstandard file may consist of several frames, and some of them may be skippable. Packers that use several cores
-/// write such files.
+/// A Zstandard file may consist of several frames, and some of them may be skippable. Compressors that use several
+/// cores write such files.
 #[test]
 fn all_frames_of_zstandard_are_read() {
     let skipped = b"\x5a\x2a\x4d\x18\x03\0\0\0abc";

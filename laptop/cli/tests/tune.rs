@@ -140,8 +140,8 @@ fn held_out_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     }
 }
 
-/// In a flight with an impact, some sample needs more than 16 spikes to reach an RMSE of 0.06. The search chooses the
-/// maximum number of spikes in a sample. This number suffices, and is at most twice the number needed.
+/// In a flight with an impact, an RMSE of 0.06 takes more than 16 spikes in one sample. The search sets the scheme's
+/// maximum number of spikes in a sample high enough, but not above twice the number needed.
 #[test]
 fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     let flight = flight("hexarotor.csv");

@@ -1,4 +1,4 @@
-//! A choice of scheme, sample type and parameters. Reads and writes the choice as a TOML file, as tuning does.
+//! A choice of scheme, sample type and parameters. Reads and writes the choice as a TOML file of parameters.
 
 use crate::error::At;
 use crate::scheme::Scheme;

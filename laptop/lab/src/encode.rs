@@ -49,7 +49,7 @@ pub fn encode(
     encode_to(&open, input, (scheme, sample, parameters), format, output)
 }
 
-/// A function that opens the recording at its start, each time it is called.
+/// A function that opens the recording at its start. It may be called several times.
 pub(crate) type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
 
 /// Properties of a recording that a writer of spikes needs at its start.
@@ -243,7 +243,7 @@ fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
     }
 }
 
-/// Formats the numbers of samples and spikes, and the clock's findings in the times, as lines of notes.
+/// Formats the numbers of samples and spikes, and the summary of the times, as lines of notes.
 fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<String> {
     let Summary { samples, rejected, events } = *summary;
     let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };

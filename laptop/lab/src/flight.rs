@@ -99,7 +99,7 @@ pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     own
 }
 
-/// A recording whose samples are converted to the sensor's counts and filtered, as in the flight's sender.
+/// A source of samples that are converted to the sensor's counts and then filtered, as in the flight's sender.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,

@@ -71,8 +71,8 @@ impl Resolution {
         self.off > 0.0
     }
 
-    /// Returns a sentence that describes the lost steps, and names the sample types that hold them. Returns `None` if
-    /// the sample type loses no steps.
+    /// Returns a sentence that describes the lost steps, and names the sample types that would hold these steps.
+    /// Returns `None` if the sample type loses no steps.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -86,8 +86,7 @@ impl Resolution {
         })
     }
 
-    /// Returns words that name the sample types which hold the steps, or words which say that no sample type holds
-    /// them.
+    /// Returns a text that names the sample types which hold the steps, or says that no sample type does.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()

@@ -233,7 +233,8 @@ impl Trial {
     }
 }
 
-/// Returns a note if the mean error of the decoded values exceeds the signal's standard deviation.
+/// Returns a note if the decoded values are too low or too high, on average by more than the signal's standard
+/// deviation.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

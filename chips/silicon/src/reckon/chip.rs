@@ -30,9 +30,9 @@ pub enum State {
     Idle,
     /// Applies spikes of neurons and inputs to neurons, before the next tick.
     Prop,
-    /// After a tick, lets neurons leak and fire.
+    /// Lets neurons leak and fire, after a tick.
     Step,
-    /// The time step is done.
+    /// Ends the time step.
     StepDone,
     /// Waits for a target from which to learn.
     GetTarget,
@@ -48,7 +48,7 @@ pub enum State {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum EventState {
-    /// No event waits.
+    /// Waits for an event.
     #[default]
     Wait,
     /// Searches for the next input or neuron that has an event.

@@ -47,11 +47,11 @@ pub(crate) struct Advise {
     /// Codes whose latency is too long for this bandwidth, or that cannot follow the signal, are not advised
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
-    /// Share of frames that the link loses, in percent, 0 to 10. With --loop-bandwidth, a code is not advised if a
-    /// simulated drone flew badly with it at this loss
+    /// Share of frames that the link loses, in percent, 0 to 10. With --loop-bandwidth, codes with which a simulated
+    /// drone flies badly at this loss are not advised
     #[arg(long, value_name = "PERCENT", default_value_t = AdviseRequest::FRAME_LOSS)]
     frame_loss: f64,
-    /// Core on which instructions were counted, for the costs in the report: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
+    /// Core for which the report counts instructions: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
     /// Stop after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
@@ -63,7 +63,8 @@ pub(crate) struct Advise {
     /// Seed of the search
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Draw one channel's signal, spikes and reconstruction with the advised scheme, as `.svg` or `.png`
+    /// Picture to draw, as `.svg` or `.png`: signal, spikes and reconstruction with the advised scheme; needs a
+    /// recording of one channel, or --channel
     #[arg(long)]
     picture: Option<PathBuf>,
     /// Write the advised bank as a flight file (`flight.toml`), which `emit`, `encode`, `listen`, Python and a
@@ -146,8 +147,8 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     Ok(())
 }
 
-/// Draws the recording, its spikes and its reconstruction with the scheme advised for it, and writes the picture to
-/// `path`.
+/// Draws a recording, its spikes and its reconstruction, and writes the picture to `path`. Spikes and reconstruction
+/// are those of the scheme in `advice`; without such a scheme, nothing is written.
 fn draw_advised(
     options: &Advise,
     path: &Path,

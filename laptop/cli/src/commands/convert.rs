@@ -13,10 +13,10 @@ use std::path::PathBuf;
 /// Convert events from one format to another.
 ///
 /// FORMAT is `link` (spikewire's own frames), `edvs:e0` to `edvs:e4` (the number is the camera's time format), `es`
-/// (Event Stream), `evt2` (a .raw file), `eieio` (consecutive datagrams) or `csv` (`tick,address,polarity`). Options
-/// follow after a comma. `link,period=5000,channels=6,jitter=5` makes frames short. `edvs:e2,up=0` encodes a rise as 0.
-/// `eieio,base=0x70000,step=1000,signed=1` sets the key of address 0, the length of a time step in µs, and two keys for
-/// each address, the first for down and the second for up.
+/// (Event Stream), `evt2` (a .raw file), `eieio` (consecutive datagrams) or `csv` (`tick,address,polarity`). Settings
+/// follow after commas. `link,period=5000,channels=6,jitter=5` makes frames short for 6 channels with a sample every
+/// 5000 µs. `edvs:e2,up=0` sends a rise as bit 0. `eieio,base=0x70000,step=1000,signed=1` sets the key of address 0,
+/// the length of a time step in µs, and two keys for each address, the first for down and the second for up.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -20,8 +20,8 @@ use std::thread;
 /// The directory DIR holds two Parquet files for each log, and the file `manifest.jsonl`. `events/NAME.parquet` holds
 /// the log's spikes in the columns `index`, `channel` and `polarity`, with `neuron` if a channel has several neurons,
 /// and `time_us` if the log has times. `values/NAME.parquet` holds the samples that were encoded. `manifest.jsonl`
-/// holds a row for each log: its hash, the counts of what was read and left out, and its side of the split. A log that
-/// cannot be read has a row with the reason.
+/// holds a row for each log: its hash, the numbers of samples that were read and left out, and whether it is for
+/// training or testing. The row of a log that cannot be read has the reason.
 ///
 /// The same command continues a run that was ended, even if it was killed. A log that has changed is encoded again.
 /// `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
@@ -56,7 +56,8 @@ pub(crate) struct Dataset {
     /// Share of the flights to use for testing, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = 0.2)]
     test: f64,
-    /// Count all logs of a directory as one flight, on one side of the split; default: each log is a flight of its own
+    /// Count all logs of a directory as one flight, which is wholly for training or wholly for testing; default: each
+    /// log is a flight of its own
     #[arg(long)]
     by_directory: bool,
     /// Number of logs to encode at the same time; default: one for each core

@@ -21,7 +21,7 @@ use tempfile::NamedTempFile;
 /// the file itself.
 ///
 /// Writes the columns `index,value`; with several channels, one column for each, under its name. If times were
-/// recorded, the column `time_us` follows. Its times are exact at events and at gaps, and evenly spaced between them.
+/// recorded, the column `time_us` follows. Times are exact at events and at gaps, and evenly spaced in between.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -39,7 +39,7 @@ pub(crate) struct Decode {
     /// CSV file to write, `index,value` and `time_us` if times were recorded; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Write the spikes of a Parquet file as `encode` writes them, instead of values
+    /// Instead of values, write the spikes of a Parquet file, in the format of `encode`
     #[arg(long = "spikes")]
     is_restored: bool,
 }
@@ -98,7 +98,7 @@ fn decode(
     file: &str,
     open: impl FnOnce() -> lab::Result<Output>,
 ) -> Result<()> {
-    /// Events are decoded in batches. A batch is decoded after this number of events, or this number of sample times.
+    /// Number of events, or of sample times, that are read before they are decoded together.
     const BATCH: usize = 4096;
     let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;

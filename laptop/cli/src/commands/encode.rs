@@ -14,8 +14,7 @@ use std::path::PathBuf;
 /// Encode channels of a recording: writes `index,address,polarity` and, if the recording has times, `time_us`.
 ///
 /// With several columns, each has a range of addresses of its own: the neurons of the second column are numbered after
-/// those of the first. All columns share the given parameters; parameters that are calibrated are calibrated for each
-/// column.
+/// those of the first. The given parameters hold for all columns. Calibration is done for each column separately.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

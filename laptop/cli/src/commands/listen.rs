@@ -30,8 +30,8 @@ use std::rc::Rc;
 /// channel, from the channel's first event on.
 ///
 /// A value marked `exact` equals, bit for bit, the value that a decoder on the sender has. Values of a temporal code
-/// are exact from a keyframe until data is lost. Values of a rate code are exact once a filter's length of samples has
-/// arrived without loss. Values of a population code are exact again from the first spike after a loss.
+/// are exact from a keyframe until data is lost. Values of a rate code are exact once enough samples to fill the code's
+/// filter have arrived without loss. Values of a population code are exact again from the first spike after a loss.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -75,7 +75,7 @@ pub(crate) struct Listen {
     /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
     flight: Option<PathBuf>,
-    /// Length in µs of the sender's sub-timesteps; only for schemes that have them
+    /// Length in µs of the sender's sub-timesteps; only for codes that decode a spike by its sub-timestep
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
     /// Draw values, spikes and losses in the terminal while they arrive. A recording is drawn at the pace of its clock.
@@ -142,7 +142,7 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     listened
 }
 
-/// Decodes values, and draws them if `--live` is given.
+/// Decodes the input with `values`. If `--live` is given, draws the decoded values in the panel that `panel` makes.
 fn listen_to(
     options: &Listen,
     values: Box<dyn Values + '_>,

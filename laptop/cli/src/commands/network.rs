@@ -38,11 +38,11 @@ use std::path::{Path, PathBuf};
 /// last one step only). A layer may be recurrent, and on `ReckOn` a last layer of Linear and LI, I or `CubaLI` may
 /// serve as outputs. JSON is {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep":
 /// 0.9, "threshold": 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}. Its weights are listed by
-/// neuron, then by input; `keep` is the factor by which a step multiplies the potential.
+/// neuron, then by input; `keep` is the factor by which a neuron's potential decays in a step.
 ///
 /// The controller takes any number of layers, `CubaLIF` with currents of any length, and a last layer of weights alone.
-/// A NIR file does not contain the order in which neurons decay, fire and reset: --as and the options after it set this
-/// order.
+/// A NIR file does not contain the order in which neurons decay, fire and reset: `--as` and the options after it set
+/// this order.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -57,7 +57,7 @@ pub(crate) struct Network {
     target: &'static str,
     /// Scheme that encodes the columns of INPUT as the network's inputs. Each neuron of each column is one input, or
     /// two (up, then down) if the code has polarities. Without --scheme, INPUT holds spikes: one line for each step,
-    /// with the numbers of the inputs that fire, in order
+    /// with the numbers of the inputs that fire, separated by blanks
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
@@ -105,7 +105,7 @@ pub(crate) struct Network {
 /// Name by which `--on` selects the flight controller rather than a chip.
 const CONTROLLER: &str = "controller";
 
-/// Parses the value of `--on`: the name of a chip, or [`CONTROLLER`].
+/// Returns the parser of `--on`, which accepts the name of a chip or [`CONTROLLER`].
 fn targets() -> impl TypedValueParser<Value = &'static str> {
     let names = || CHIPS.iter().map(|chip: &&dyn Chip| chip.name()).chain([CONTROLLER]);
     PossibleValuesParser::new(names())
@@ -117,7 +117,7 @@ fn compares() -> impl TypedValueParser<Value = Compare> {
         .map(|asked| if asked == "spike" { Compare::Spike } else { Compare::Step })
 }
 
-/// The trained network, converted to the number format of its target.
+/// A trained network in the form for its target: a chip, or the flight controller.
 enum Converted {
     Chip(&'static dyn Chip, Trained),
     Controller(Model),
@@ -241,8 +241,9 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     if options.live { live(&*brought.network, converted.inputs().0) } else { Ok(()) }
 }
 
-/// Simulates the network step by step. Each line of standard input is a step: the numbers of the inputs that fire. Each
-/// line of output answers a step: the number of clock cycles, and the numbers of the outputs that fired.
+/// Simulates the network step by step, for `--live`. Each line of standard input is a step: the numbers of the inputs
+/// that fire. Each line of output answers a step: the number of clock cycles, and the numbers of the outputs that
+/// fired.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| -> lab::Result<_> {
@@ -387,14 +388,14 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// Lower bound of the share of steps in which chip and trained network agree. The report warns if the share is lower.
+/// Share of steps in which chip and trained network agree, below which the report warns.
 const LOW: f64 = 0.5;
-/// Lower bound of the share of steps in which the outputs fire as they did in training. If the share is lower, the
-/// report suggests that `--as`, `--reset` or `--dt` differ from the training.
+/// Share of steps in which the outputs fire as they did in training, below which the report suggests that `--as`,
+/// `--reset` or `--dt` differ from the training.
 const READ: f64 = 0.95;
 
-/// Prints on standard error how the converted network differs from the trained one, for the recording on which it was
-/// tuned and for the held-out recording.
+/// Prints on standard error how the converted network differs from the trained one: first for the recording that the
+/// conversion was tuned on, then for the held-out recording.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out, costs, reading } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));

@@ -22,7 +22,8 @@ pub(crate) struct RuleOptions {
     /// Formula by which a time constant becomes the decay of potentials and currents in a step
     #[arg(long, value_parser = of(&DECAYS))]
     decay: Option<Decay>,
-    /// Synaptic current that changes a neuron's potential in a step; only for neurons with synaptic currents
+    /// Synaptic current that drives a neuron's potential in a step: that of the same step or the step before; only for
+    /// neurons with synaptic currents
     #[arg(long, value_parser = of(&CURRENTS))]
     current: Option<Current>,
     /// Number type of the network on the controller

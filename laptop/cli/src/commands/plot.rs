@@ -16,9 +16,9 @@ use std::path::PathBuf;
 /// Draw signal and reconstruction above the spikes, in the layout of the first figure in the paper, Dupeyroux et al.
 /// (2022).
 ///
-/// A scheme without parameters runs with the paper's settings; with `--all`, every scheme does. A long recording is
-/// decimated to the resolution of the picture. The curve decoded from a rate code is drawn without the code's latency,
-/// which the panel states.
+/// If no parameters are given, a scheme runs with the paper's settings; with `--all`, every scheme does. A long
+/// recording is decimated to the resolution of the picture. If a code has latency, the decoded curve is shifted back by
+/// it, and the panel states the latency.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

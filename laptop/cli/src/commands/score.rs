@@ -16,11 +16,11 @@ use std::io::Write;
 
 /// Score one scheme on one channel of a recording, or all schemes if `--scheme` is not given.
 ///
-/// A scheme without parameters runs with the settings of Dupeyroux et al. (2022). When all schemes are scored, one that
-/// cannot encode the recording gets a table row with the reason.
+/// If no parameters are given, a scheme runs with the settings of Dupeyroux et al. (2022). When all schemes are scored,
+/// a scheme that cannot encode the recording gets a table row with the reason.
 ///
 /// Efficiency is the percentage of samples without a spike. RMSE is in the signal's unit; each decoded value is
-/// compared with the sample that it encodes, so that a rate code's latency does not count. SNR is in dB.
+/// compared with the sample that it stands for, so that a code's latency adds no error. SNR is in dB.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

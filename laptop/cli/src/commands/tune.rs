@@ -58,14 +58,14 @@ pub(crate) struct Tune {
     /// Goal: greatest efficiency, with at most this RMSE, in the signal's unit
     #[arg(long, value_name = "RMSE", conflicts_with = "min_efficiency", value_parser = lab::input::above_zero, help_heading = "Goal")]
     max_rmse: Option<f64>,
-    /// Goal: the Pareto front, all settings that no other settings beat in both RMSE and efficiency; drawn to this
-    /// `.svg` or `.png`
+    /// Goal: the Pareto front, all settings that no other settings beat in both RMSE and efficiency. The front is drawn
+    /// in this `.svg` or `.png`
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["min_efficiency", "max_rmse", "emit"], help_heading = "Goal")]
     front: Option<PathBuf>,
     /// Maximum RAM of a channel's encoder, in bytes
     #[arg(long, value_name = "BYTES", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_ram: Option<f64>,
-    /// Maximum of the mean number of instructions that a sample takes to encode on --core
+    /// Maximum number of instructions to encode a sample on --core, as a mean over samples
     #[arg(long, value_name = "COUNT", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_instructions: Option<f64>,
     /// Maximum delay of the code, in samples
@@ -74,10 +74,10 @@ pub(crate) struct Tune {
     /// Maximum number of events a second
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
-    /// Core on which instructions were counted, for costs and limits: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
+    /// Core for which instructions are counted, in costs and limits: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
-    /// Share of the blocks that is held out, 0 for none
+    /// Share of the blocks to hold out; 0 holds out none
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
     /// Number of blocks of equal length into which each log is cut
@@ -93,10 +93,10 @@ pub(crate) struct Tune {
     /// Seed of the search; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>, help_heading = "Search")]
     seed: u64,
-    /// Search even if the log is a bad guide: nothing but noise, never in the air, full of gaps, or clipped
+    /// Search even if the log is unsuitable: nothing but noise, never in the air, full of gaps, or clipped
     #[arg(long, help_heading = "Search")]
     anyway: bool,
-    /// Also report the RMSE of the error's part below this frequency, such as `40Hz`
+    /// Also report the RMSE of the error's components below this frequency, such as `40Hz`
     #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     below: Option<f64>,
     /// Form in which to write the settings: a constant in Rust, a file for --params, or a flight file (`flight.toml`)
@@ -151,8 +151,8 @@ struct Fixed(Asked);
 
 option_group!(Fixed, |command| augment(command, is_fixable), |matches| given(matches, is_fixable));
 
-/// Returns whether an option can fix this parameter. `seed` cannot be fixed, because `--seed` is the seed of the
-/// search.
+/// Returns whether the command line can fix this parameter. A scheme's `seed` cannot be fixed, because `--seed` is the
+/// seed of the search.
 fn is_fixable(parameter: &Parameter) -> bool {
     parameter.name != "seed"
 }
@@ -213,7 +213,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// Converts the options to a request to the library; the request does not contain the logs yet.
+    /// Converts the options to a request to the library, whose logs are still empty.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Schemes::One(scheme) => vec![scheme],
@@ -336,9 +336,8 @@ impl Tune {
 /// Length of the progress bar in steps.
 const BAR: u64 = 1000;
 
-/// Returns the position of the progress bar, 0 to [`BAR`]. The search has a budget of settings and a budget of time.
-/// `settings` and `time` are the used shares of the two. The bar shows the larger share, because either budget ends the
-/// search.
+/// Returns the position of the progress bar, 0 to [`BAR`]. `settings` and `time` are the used shares, 0 to 1, of the
+/// budget of settings and of the budget of time. The bar shows the larger one, because either budget ends the search.
 fn position(settings: f64, time: f64) -> u64 {
     (settings.max(time).clamp(0.0, 1.0) * BAR as f64) as u64
 }

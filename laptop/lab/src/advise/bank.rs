@@ -50,7 +50,7 @@ struct Bank {
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
-    /// Whether the scheme's simulated flights used a filter that is not possible at the recordings' sample rate.
+    /// Whether the scheme's simulated flights used a filter that the recordings' sample rate does not allow.
     lacks_filter: bool,
     /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code. `None` if no
     /// flights with the code were simulated.

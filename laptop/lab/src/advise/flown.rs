@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 /// because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
-/// A code counts as flying if its error is at most this many times the error without a code.
+/// Largest attitude error with which a code counts as fit to fly, as a multiple of the error without a code.
 const WITHIN: f64 = 1.2;
 
 /// Shares of lost frames in the simulated flights, in percent, lowest first.

@@ -1,6 +1,6 @@
 //! The figures of Tables I and II, as the paper prints them.
 
-/// Durations of the signals of each case, in seconds.
+/// The benchmark's cases: durations of the signals, in seconds.
 pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];
 
 /// Number of signals in each case.

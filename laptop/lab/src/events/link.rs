@@ -25,7 +25,7 @@ pub trait Values {
 /// Reads link frames as events, or as decoded values.
 pub struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
-    /// Number of skipped zeros that `finish` had appended to the input.
+    /// Number of zeros that `finish` appended to the input. They do not count as skipped bytes.
     padding: u64,
     values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,

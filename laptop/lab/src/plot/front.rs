@@ -1,6 +1,7 @@
 //! Draws Pareto fronts of spikes against error. The front of a scheme consists of the settings that no other settings
-//! beat in both spikes and error. A scheme that forms part of the common front of all schemes has a colour, and a name
-//! beside its line. All other schemes are grey.
+//! of the scheme beat in both spikes and error. The common front consists of the settings that no settings of any
+//! scheme beat. A scheme that forms part of the common front has a colour, and a name beside its line. All other
+//! schemes are grey.
 
 use super::FONT;
 use super::palette::{DISTINCT, GRID, INK, OTHERS};
