@@ -112,7 +112,7 @@ impl Part {
         columns.iter().position(|own| own.name() == name)
     }
 
-    /// Makes the clock anew that was used when the log was encoded. The file's metadata contain the arguments of the
+    /// Makes the clock anew that was used when the log was encoded. The file's metadata hold the arguments of the
     /// clock.
     fn clock(&self, is_timed: bool) -> Result<Clock> {
         let number = |key| self.about(key).and_then(|own| own.parse::<f64>().ok());

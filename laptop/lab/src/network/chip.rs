@@ -101,7 +101,7 @@ pub trait OnChip {
 pub struct Ran {
     /// The neurons that fired, by layer, then by step.
     pub fired: Vec<Trains>,
-    /// The outputs' potentials by step, in the units of the training; empty if the outputs are spikes.
+    /// The outputs' potentials by step, in the units of the trained network; empty if the outputs are spikes.
     pub potentials: Vec<Vec<f64>>,
     /// For each step, the number of clock cycles that the chip takes. For the flight controller: the number of weights
     /// that the step adds.

@@ -14,7 +14,7 @@ pub struct Header {
     pub scheme: Scheme,
     /// The sample type of the encoder.
     pub sample: SampleType,
-    /// All parameters that decoding needs. Each channel has a set of its own.
+    /// All parameters that decoding needs, as one set for each channel.
     pub channels: Vec<Settings>,
     /// Sample rate in Hz, if known.
     pub rate: Option<f64>,
@@ -34,7 +34,7 @@ pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
 /// Version of the file format.
 const VERSION: &str = "1";
 
-/// Maximum number of channels, which is the number of addresses.
+/// Maximum number of channels: the number of possible addresses.
 const MOST_CHANNELS: usize = 1 << 16;
 
 /// Keys of the notes in a header, besides the parameters in [`unrecorded`]. Decoding does not need the notes.

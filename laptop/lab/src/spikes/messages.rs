@@ -255,7 +255,7 @@ fn lacks(log: &Reading, name: &'static str) -> Error {
     SpikesKind::NoField { name }.at(log.place())
 }
 
-/// Maximum number of neurons, which is the number of addresses.
+/// Maximum number of neurons: the number of possible addresses.
 const MOST: usize = 1 << 16;
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::chance::Chance;
 
 /// Number of remembered scale factors, and of remembered crossover rates, that gave better points.
 const MEMORY: usize = 6;
-/// Number of parents at the end of the budget.
+/// Number of parents when the budget is spent.
 const FEWEST: usize = 4;
 /// Share of the parents that count as the best. Each new point moves towards one of the best parents.
 const BEST: f64 = 0.15;

@@ -136,7 +136,7 @@ impl Array {
     }
 }
 
-/// Reads a whole array that is stored column by column into memory, and returns its bytes row by row.
+/// Reads an array that is stored column by column, and returns the bytes of the whole array row by row.
 fn by_rows(mut input: impl Read, size: usize, columns: usize, rows: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input.read_to_end(&mut bytes)?;
