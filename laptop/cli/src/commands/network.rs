@@ -305,8 +305,8 @@ impl Driven {
     }
 }
 
-/// Encodes the columns of a recording as input spikes. The scheme runs with the `known` settings; without them, it is
-/// calibrated on the recording.
+/// Encodes the columns of a recording as input spikes. The scheme runs with the settings `known`; if `known` is `None`,
+/// the scheme is calibrated on the recording.
 fn driven(
     options: &Network,
     scheme: Scheme,
