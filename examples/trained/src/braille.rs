@@ -133,7 +133,7 @@ pub type Trained = Then<Layer1, Layer2>;
 pub static NETWORK: Trained = Layer::new(&WEIGHTS_1, &NEURONS_1).recurrent(Full(&OWN_1))
     .then(Layer::new(&WEIGHTS_2, &NEURONS_2));
 
-/// Steps from rest: the inputs that fire, and the neurons of each layer that must.
+/// Steps from rest: for each step, the inputs that fire, and the neurons of each layer that must then fire.
 #[rustfmt::skip]
 static STEPS: [(&[u16], [&[u16]; 2]); 10] = [
     (&[1, 10], [&[], &[]]),

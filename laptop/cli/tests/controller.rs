@@ -247,8 +247,7 @@ fn a_network_becomes_the_module_of_the_firmware() {
     assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.stderr);
 }
 
-/// A network in JSON needs no options for its update rule. The report also compares the potentials of outputs that
-/// never fire.
+/// A network in JSON needs no options for its update rule. For outputs that never fire, the report compares potentials.
 #[test]
 fn json_goes_onto_the_controller_and_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 5.5}], "readout": {"weights": [[1, -2]]}}"#;

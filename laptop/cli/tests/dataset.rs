@@ -368,9 +368,9 @@ fn measured(arguments: &str, dataset: &Path, until: usize) -> f64 {
     most
 }
 
-/// Encoding a thousand logs in one run takes at most 1.2 times the processor time of encoding each on its own. Tables
-/// repeat a real flight, and `ULog` files are cut from one; the other formats hold sine waves. The test takes minutes:
-/// `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`, on Linux.
+/// Encoding a thousand logs in one run takes at most 1.2 times the processor time of encoding each on its own. In these
+/// logs, tables repeat a real flight, `ULog` files are parts of a real flight, and the other formats hold sine waves.
+/// The test takes minutes: `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`, on Linux.
 #[test]
 #[ignore = "a measurement"]
 fn a_thousand_logs_cost_little_more_than_each_alone() {

@@ -362,7 +362,8 @@ impl Advice {
     }
 
     /// Returns the low-pass filter that stood before the scheme's encoder in the simulated flights. Returns `None` if
-    /// no loop bandwidth was given, or if the filter is not possible at the recording's sample rate.
+    /// no loop bandwidth was given, if the flights had no filter, or if the recording's sample rate does not allow the
+    /// filter's corner frequency.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;

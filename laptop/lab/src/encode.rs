@@ -52,7 +52,7 @@ pub fn encode(
 /// A function that opens the recording at its start. It may be called several times.
 pub(crate) type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
 
-/// Properties of a recording that a writer of spikes needs at its start.
+/// Properties of a recording that a writer of spikes needs before the first sample.
 #[cfg_attr(not(feature = "datasets"), allow(dead_code, reason = "a data set reads all fields"))]
 pub(crate) struct Start<'a> {
     pub header: &'a Header,
@@ -60,7 +60,7 @@ pub(crate) struct Start<'a> {
     pub names: Vec<&'a str>,
     /// Whether the samples have times.
     pub is_timed: bool,
-    /// Number of first samples from which the usual time between samples was measured.
+    /// Number of samples at the start of the recording from which the usual time between samples was measured.
     pub first: usize,
     /// Reads the whole recording, and returns the smallest and largest sample of each channel.
     pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,
@@ -104,8 +104,8 @@ fn encode_to(
     Ok((encoded.output, encoded.notes))
 }
 
-/// Encodes channels of a recording to the writer that `write` makes. The writer is made once recording and parameters
-/// are known to be valid.
+/// Encodes channels of a recording, and passes the spikes to the writer that `write` makes. `write` is called once
+/// recording and parameters are known to be valid.
 ///
 /// # Errors
 /// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.

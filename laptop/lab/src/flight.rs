@@ -36,7 +36,7 @@ impl Coding {
 ///
 /// # Errors
 /// Returns an error if there are no channels, if they differ in scheme or in a parameter that is not a plain number,
-/// such as a count or a filter, or if the rate's period cannot be expressed in whole µs.
+/// such as a count or a filter, or if the sample period cannot be expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
@@ -53,7 +53,7 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
 ///
 /// # Errors
 /// Returns an error if there are no channels, if they differ in a parameter that is not a plain number, such as a count
-/// or a filter, or if the rate's period cannot be expressed in whole µs.
+/// or a filter, or if the sample period cannot be expressed in whole µs.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,

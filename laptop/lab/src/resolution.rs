@@ -41,7 +41,7 @@ impl Resolution {
         }
     }
 
-    /// Examines a whole column of samples in the sample type `sample`.
+    /// Examines the steps of a whole column, and the errors that rounding to the sample type `sample` causes in them.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);

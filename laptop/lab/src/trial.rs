@@ -14,8 +14,8 @@ use std::ops::Range;
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, the times after
-    /// the restart are shifted to follow the times before it after a usual step.
+    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, later times are
+    /// shifted such that they continue the earlier times with a step of the usual length.
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,

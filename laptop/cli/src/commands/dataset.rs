@@ -23,8 +23,8 @@ use std::thread;
 /// holds a row for each log: its hash, the numbers of samples that were read and left out, and whether it is for
 /// training or testing. The row of a log that cannot be read has the reason.
 ///
-/// The same command continues a run that was ended, even if it was killed. A log that has changed is encoded again.
-/// `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
+/// The same command, given again, continues a run that was interrupted or killed. A log that has changed is encoded
+/// again. `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -305,8 +305,8 @@ impl Driven {
     }
 }
 
-/// Encodes the columns of a recording as input spikes. The scheme runs with the `known` settings; without them, it is
-/// calibrated on the recording.
+/// Encodes the columns of a recording as input spikes. The scheme runs with the settings `known`; if `known` is `None`,
+/// the scheme is calibrated on the recording.
 fn driven(
     options: &Network,
     scheme: Scheme,
@@ -388,10 +388,10 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// Share of steps in which chip and trained network agree, below which the report warns.
+/// Least share of steps in which chip and trained network must agree; otherwise the report warns.
 const LOW: f64 = 0.5;
-/// Share of steps in which the outputs fire as they did in training, below which the report suggests that `--as`,
-/// `--reset` or `--dt` differ from the training.
+/// Least share of steps in which the outputs must fire as they did in training; otherwise the report suggests that
+/// `--as`, `--reset` or `--dt` differ from the training.
 const READ: f64 = 0.95;
 
 /// Prints on standard error how the converted network differs from the trained one: first for the recording that the

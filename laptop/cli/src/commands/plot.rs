@@ -33,7 +33,7 @@ pub(crate) struct Plot {
     coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    /// Range of samples to show, such as `1000..1400`; samples outside it are encoded too
+    /// Range of samples to show, such as `1000..1400`; samples outside the range are encoded too
     #[arg(long)]
     range: Option<String>,
     /// Unit of the signal, such as `rad/s`; default: the unit in the column's name, such as `gyro_x (rad/s)`

@@ -213,7 +213,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// Converts the options to a request to the library, whose logs are still empty.
+    /// Converts the options to a request to the library. The request holds no logs yet.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Schemes::One(scheme) => vec![scheme],

@@ -72,7 +72,7 @@ impl BankAdvice {
     /// link.
     ///
     /// # Errors
-    /// Returns an error if the rate is unknown, or if its period cannot be expressed in whole µs.
+    /// Returns an error if the sample rate is unknown, or if the sample period cannot be expressed in whole µs.
     pub fn new(request: &AdviseRequest, advice: &[Advice], watch: &Watch) -> Result<Self> {
         let pairs = || advice.iter().zip(&request.recordings);
         let heard: Vec<(&Advice, &Recording)> =

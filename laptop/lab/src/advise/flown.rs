@@ -69,7 +69,8 @@ pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
     BANKS.get(scheme)
 }
 
-/// Returns the reason not to fly the scheme named `scheme` with `loss` percent of its frames lost, if there is one.
+/// Returns the reason not to fly the scheme named `scheme` on a link that loses `loss` percent of the frames; `None` if
+/// the scheme is fit to fly.
 pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
     let Some(own) = flown(scheme) else {
         return Some("was not flown with rotors that shake the sensor".to_owned());

@@ -19,8 +19,8 @@ struct Cell {
     ours: Statistics,
     paper_mean: f64,
     paper_deviation: f64,
-    /// Difference between the measured mean and the paper's mean beyond the paper's rounding, in standard errors of
-    /// that difference.
+    /// Difference between the measured mean and the paper's mean, less the paper's rounding error, in standard errors
+    /// of this difference.
     standard_errors: f64,
     mean_agrees: bool,
     deviation_agrees: bool,

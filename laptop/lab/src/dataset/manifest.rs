@@ -68,7 +68,7 @@ pub struct Row {
     pub seconds: f64,
     /// Number of samples of each channel.
     pub samples: u64,
-    /// Number of samples that are missing or not finite, and emitted nothing.
+    /// Number of samples that are missing or not finite, and therefore have no spikes.
     pub not_finite: u64,
     /// Number of spikes of each channel.
     pub spikes: Vec<u64>,

@@ -59,7 +59,7 @@ pub struct Request {
 pub enum Code {
     /// One scheme for all channels.
     Coding(Box<Coding>),
-    /// The channels and the scheme of a `flight.toml`. Logs are encoded as by the flight's sender.
+    /// The channels and the scheme of a `flight.toml`. Logs are encoded as the flight's sender would encode them.
     Flight(Box<Flight>),
 }
 

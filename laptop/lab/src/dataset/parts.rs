@@ -21,8 +21,8 @@ use std::sync::Arc;
 
 /// Name of the column that holds the times.
 pub(super) const TIME: &str = "time_us";
-/// Keys of a Parquet file's metadata. `HEADER` has the header of the spikes. `FIRST` has the number of first times that
-/// the [`Clock`](crate::input::Clock) was made from, `GAP` and `RATE` its further arguments.
+/// Keys of a Parquet file's metadata. `HEADER` has the header of the spikes. The others have the arguments of
+/// [`Clock::new`](crate::input::Clock::new), except that `FIRST` has only the number of `first_times`.
 pub(super) const HEADER: &str = "spikewire";
 pub(super) const FIRST: &str = "spikewire.first";
 pub(super) const GAP: &str = "spikewire.gap";

@@ -112,8 +112,8 @@ impl Part {
         columns.iter().position(|own| own.name() == name)
     }
 
-    /// Makes the clock that was used when the log was encoded: from as many of the first times, and with the same
-    /// further arguments.
+    /// Makes the clock anew that was used when the log was encoded. The file's metadata hold the arguments of the
+    /// clock.
     fn clock(&self, is_timed: bool) -> Result<Clock> {
         let number = |key| self.about(key).and_then(|own| own.parse::<f64>().ok());
         let first = number(FIRST).ok_or_else(|| other("no number of first samples"))? as usize;

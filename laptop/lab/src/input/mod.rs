@@ -64,8 +64,8 @@ pub struct ChannelOptions {
     /// Columns of a table by name, such as `gyro_x`, or `all`. For a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
-    /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a log's messages have the time
-    /// at which they were recorded.
+    /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use. A log's message has, by default,
+    /// the time at which it was recorded.
     pub time: Option<String>,
     /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
     /// `stamp_ns`, or from the column's values.

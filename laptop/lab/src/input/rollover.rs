@@ -11,7 +11,7 @@ const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 /// longer time.
 const SECOND: i64 = 1_000_000;
 /// Longest time between two samples over which a wrap of the clock is recognised, as a multiple of the latest step
-/// forward. If this time is shorter than [`SECOND`], [`SECOND`] applies.
+/// forward. Even if this multiple is shorter than [`SECOND`], a wrap is recognised over [`SECOND`].
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.

@@ -1,5 +1,5 @@
-//! Brings a trained network onto a chip: quantises the network, runs it on the chip's model, and compares it with the
-//! original.
+//! Brings a trained network onto a chip: quantises the network, runs the quantised network on the chip's model, and
+//! compares the spikes with those of the original.
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
@@ -71,11 +71,12 @@ pub struct Figures {
     pub agreeing: usize,
     /// Number of active steps: those in which an output fires, in double precision or on the chip.
     pub active: usize,
-    /// Number of active steps in which the same outputs fire in double precision and on the chip.
+    /// Number of [`active`](Self::active) steps in which the same outputs fire in double precision and on the chip.
     pub active_agreeing: usize,
     /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
     pub windows: usize,
-    /// Number of these windows in which the same outputs have the most spikes in double precision and on the chip.
+    /// Number of the windows counted in [`windows`](Self::windows) in which the same outputs have the most spikes in
+    /// double precision and on the chip.
     pub windows_agreeing: usize,
     /// Mean number of clock cycles that the chip takes for a step. For the flight controller: mean number of weights
     /// that a step adds.
@@ -121,7 +122,8 @@ pub struct LayerFigures {
     pub distance: f64,
 }
 
-/// Quantises the network for the chip, runs it on the chip's model, and compares it with the original.
+/// Quantises the network for the chip, runs the quantised network on the chip's model, and compares the spikes with
+/// those of the original.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip, if the framework's spikes do not fit the network, or if the
@@ -227,7 +229,7 @@ impl Original {
     }
 }
 
-/// Runs the quantised network on the chip's model, and compares it with the original from step `from` on.
+/// Runs the quantised network on the chip's model, and compares the result with the original from step `from` on.
 pub(super) fn figures(
     original: &Original,
     network: &dyn OnChip,

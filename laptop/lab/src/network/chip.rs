@@ -28,8 +28,8 @@ pub trait Chip: Sync {
     ) -> Result<Box<dyn OnChip>>;
 }
 
-/// When a chip's neurons compare their potentials with their thresholds. The choice exists only on chips that support
-/// both.
+/// The time at which a chip's neurons compare their potentials with their thresholds. The choice exists only on chips
+/// that support both variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
     /// After each spike that arrives, as the chip does by default.
@@ -69,8 +69,8 @@ pub trait OnChip {
     /// outputs are potentials, one more entry counts the outputs' weights.
     fn clipped(&self) -> Vec<usize>;
 
-    /// Returns Rust source that defines the network. It compiles without `std` if `spikewire-chips` has its feature
-    /// `embedded-hal`.
+    /// Returns Rust source that defines the network. The source compiles without `std` if `spikewire-chips` has its
+    /// feature `embedded-hal`.
     fn emit(&self, remarks: &Remarks) -> String;
 
     /// Returns the network as bytes, which the driver can load at run time.
@@ -101,7 +101,7 @@ pub trait OnChip {
 pub struct Ran {
     /// The neurons that fired, by layer, then by step.
     pub fired: Vec<Trains>,
-    /// The outputs' potentials by step, in the units of the training; empty if the outputs are spikes.
+    /// The outputs' potentials by step, in the units of the trained network; empty if the outputs are spikes.
     pub potentials: Vec<Vec<f64>>,
     /// For each step, the number of clock cycles that the chip takes. For the flight controller: the number of weights
     /// that the step adds.

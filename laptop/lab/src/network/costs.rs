@@ -116,7 +116,7 @@ fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) ->
 }
 
 /// Runs one step of neuron `at`; returns whether it fires. A spike resets the neuron in the same step. If `leak` is
-/// given, it is the amount that replaces the neuron's trained leak. If `by_spike` is true, the neuron compares its
+/// given, a fixed leak of this amount replaces the trained leak. If `by_spike` is true, the neuron compares its
 /// potential with its threshold after each spike that arrives, instead of once.
 fn step(
     layer: &Layer,

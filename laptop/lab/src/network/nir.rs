@@ -239,7 +239,7 @@ impl Graph {
         after
     }
 
-    /// Follows the chain of nodes from `first` to `last`. Returns the name of each node on it, with the node's
+    /// Follows the chain of nodes from `first` to `last`. Returns the name of each node on the chain, with the node's
     /// connections back to itself.
     ///
     /// # Errors

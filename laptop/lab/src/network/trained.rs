@@ -259,11 +259,11 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
-    /// Sets how the neurons of each layer reset, and whether they fire at the threshold or only above it. Both follow
-    /// `asked`, which contains at most one reset for all layers, or one reset for each layer.
+    /// Sets how the neurons of each layer reset, and whether they fire at the threshold or only above it. Takes both
+    /// from `asked`, which contains at most one reset for all layers, or one reset for each layer.
     ///
     /// # Errors
-    /// Returns an error if `asked` contains several resets, and their number is not that of the layers.
+    /// Returns an error if `asked` contains more than one reset, but not one for each layer.
     pub(super) fn reset_by(mut self, asked: &Asked) -> Result<Self> {
         let (rule, resets, layers) = (asked.or_plain(), &asked.resets, self.layers.len());
         ensure!(

@@ -35,8 +35,8 @@ enum Place {
     Memory(Vec<u8>),
 }
 
-/// Checks that a path ends as a table does: in `.csv`, in `.txt`, or without an ending. Other programs recognise a
-/// table by its ending. A device may have any name. The error lists the endings of tables, followed by `others`.
+/// Checks that the name of a table ends in `.csv` or `.txt`, or has no ending, because other programs recognise a table
+/// by its ending. A device may have any name. The error lists the endings of tables, followed by `others`.
 ///
 /// # Errors
 /// Returns an error if the path has a different ending.

@@ -44,8 +44,9 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front. For each step along the efficiency axis, it has the scheme with the least error at
-    /// that efficiency or above, and the efficiency and error of the scheme's setting.
+    /// Returns the common front. Its item for a step along the efficiency axis is the scheme with the least error at
+    /// that efficiency or above, with the efficiency and the error that it reaches; `None` if no scheme reaches that
+    /// efficiency.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);

@@ -1,13 +1,13 @@
 //! Adaptive differential evolution with a shrinking number of parents: L-SHADE, after Tanabe and Fukunaga (2014).
 //!
-//! The number of parents shrinks with the share of the caller's budget that is spent, which makes even a small budget
-//! converge as far as it can. Points lie in the unit cube.
+//! The number of parents shrinks with the share of the caller's budget that is spent. Even a search with a small budget
+//! thus converges as far as possible. Points lie in the unit cube.
 
 use super::chance::Chance;
 
 /// Number of remembered scale factors, and of remembered crossover rates, that gave better points.
 const MEMORY: usize = 6;
-/// Number of parents at the end of the budget.
+/// Number of parents when the budget is spent.
 const FEWEST: usize = 4;
 /// Share of the parents that count as the best. Each new point moves towards one of the best parents.
 const BEST: f64 = 0.15;

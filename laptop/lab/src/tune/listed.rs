@@ -10,10 +10,11 @@ use rayon::prelude::*;
 
 /// Smallest threshold whose number of spikes and error are listed, as a share of the signal's range.
 const SMALLEST: f64 = 1e-3;
-/// Maximum number of samples that are processed to list the outcomes of thresholds. It bounds the time to seconds.
+/// Maximum number of samples that are processed to list the outcomes of thresholds. The limit bounds the time to
+/// seconds.
 const PASSES: usize = 4_000_000_000;
 /// Maximum number of samples that are processed to list the outcomes of thresholds, for each setting that the search
-/// may score. It keeps a search with a small budget short.
+/// may score. The limit keeps a search with a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
 /// Number of ranges around good thresholds in which outcomes are listed a second time, for more thresholds.
 const NEIGHBOURHOODS: usize = 24;

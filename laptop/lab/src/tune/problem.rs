@@ -10,7 +10,7 @@ use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
 /// The goal of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The least RMSE, with at least this percentage of samples without a spike.
+    /// The least RMSE with at least this efficiency, in percent.
     LeastError(f64),
     /// The greatest spiking efficiency, with at most this RMSE.
     MostEfficient(f64),
@@ -73,7 +73,7 @@ pub enum Limit {
     Latency,
     /// Events a second, limited from above.
     Rate,
-    /// Percentage of samples without a spike, limited from below.
+    /// Efficiency in percent, limited from below.
     Efficiency,
     /// Root mean square error, limited from above.
     Rmse,
@@ -93,7 +93,7 @@ impl Limit {
     }
 }
 
-/// A limit that settings break.
+/// A limit that settings break, and by how much they break it.
 #[derive(Clone, Debug)]
 pub struct Excess {
     /// The limited quantity.

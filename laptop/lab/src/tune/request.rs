@@ -178,7 +178,7 @@ pub struct Curve {
     pub paper: Option<(f64, f64)>,
 }
 
-/// Searches the parameters of schemes on the channels of logs. If a scheme misses the goal, [`Tuned::missed`] gives the
+/// Searches for parameters of schemes on the channels of logs. If a scheme misses the goal, [`Tuned::missed`] gives the
 /// reason.
 ///
 /// # Errors
@@ -234,7 +234,7 @@ enum Outcome {
     Missed(Words),
 }
 
-/// Searches the parameters of one scheme on one channel.
+/// Searches for parameters of one scheme on one channel.
 fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) -> Result<Outcome> {
     let TuneRequest { sample, fixed, limits, .. } = request;
     let core = costs::core(&request.core)?;

@@ -1,4 +1,5 @@
-//! Searches settings. If the scheme can list its outcomes, the search is exact; otherwise, it uses evolution.
+//! Searches for settings. If the scheme can list the outcomes of all thresholds, the search is exact; otherwise, the
+//! search is an evolution.
 //!
 //! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
 //! every machine.
@@ -63,7 +64,7 @@ const ROOM: usize = 16;
 /// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
 
-/// Searches the best settings for a problem within a budget.
+/// Searches for the best settings for a problem within a budget.
 pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     let rounded: Vec<Vec<f64>> =
         problem.train.iter().map(|stretch| stretch.rounded(problem.sample)).collect();
@@ -168,7 +169,8 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Evolves settings for a goal, until `until` settings have been scored in the whole search.
+    /// Searches for settings that meet a goal by evolution, until `until` settings have been scored in the whole
+    /// search.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
         let own = until.saturating_sub(self.found.evaluated);
         let before = self.found.evaluated;

@@ -93,8 +93,8 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// Returns a space for the single taps of the filter, instead of its shape, length and sum. In this space, integer
-    /// parameters keep their values in `found`.
+    /// Returns a space with an axis for each tap of the filter, instead of axes for the filter's shape, length and sum.
+    /// Integer parameters have no axis, and keep their values in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -131,8 +131,9 @@ impl Space {
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns the axis along which a scheme can compare many values in one pass. This is the threshold, divided by the
-    /// sum of the absolute values of the taps, or the sum of the taps if the scheme has no threshold.
+    /// Returns the axis along which a scheme can compare many values in one pass. This is the axis of the threshold, as
+    /// a share of the sum of the taps' absolute values. If the scheme has no threshold, it is the axis of the sum of
+    /// the taps.
     pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
         let has_threshold =
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
@@ -255,8 +256,8 @@ impl Space {
         options
     }
 
-    /// Returns the height of the signal's mean above `shift`, or above the signal's minimum if `None`. The height is at
-    /// least 1 % of the signal's range.
+    /// Returns the height of the signal's mean above `shift` or, if `shift` is `None`, above the signal's minimum. The
+    /// height is at least 1 % of the signal's range.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())

@@ -87,7 +87,7 @@ pub(super) fn emit<K: Spelled>(
         let count = net.layers.last().map_or(0, |layer| layer.neurons.len());
         _ = write!(
             body,
-            "\n/// The value of a potential of 1, of each output.\npub const UNITS: [f32; {count}] = [{units}];\n"
+            "\n/// For each output, the value of a potential of 1, in the units of the trained network.\npub const UNITS: [f32; {count}] = [{units}];\n"
         );
     }
     body += &checked(net, check);
@@ -288,7 +288,7 @@ fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
     let compared = compared.collect::<Vec<_>>().join("\n            && ");
     let numbers = K::TYPE;
     format!(
-        "\n/// Steps from rest: the inputs that fire, and the neurons of each layer that must.
+        "\n/// Steps from rest: for each step, the inputs that fire, and the neurons of each layer that must then fire.
 #[rustfmt::skip]
 static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
 {rows}];

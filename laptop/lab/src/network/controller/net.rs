@@ -217,7 +217,7 @@ impl<K: Number> Net<K> {
     }
 
     /// Runs one step of all layers. Returns the number of weights that were added, and the number of neurons whose
-    /// potential or current had to be limited to its range.
+    /// potential or current had to be limited to the range of the number type.
     pub(super) fn step(&self, state: &mut [State<K>], inputs: &[u16]) -> (usize, u32) {
         let (mut operations, mut saturated) = (0, 0);
         let mut drive = inputs.to_vec();

@@ -14,8 +14,8 @@ impl Model {
     /// Converts the network to the form that can be brought onto chips.
     ///
     /// # Errors
-    /// Returns an error if a current lasts longer than a step, if neurons that never fire are not the last ones, or if
-    /// they have a bias.
+    /// Returns an error if a current lasts longer than a step. Also returns an error if neurons that never fire have a
+    /// bias or are not in the last layer.
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =

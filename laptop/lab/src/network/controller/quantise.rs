@@ -217,8 +217,8 @@ impl Column {
         Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
     }
 
-    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. The neurons of
-    /// its layer act on it with their spikes in double precision, `own`.
+    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. `own` contains
+    /// the spikes of the neuron's layer in double precision, which act on the neuron through recurrent weights.
     fn distance(
         &self,
         rule: Rule,

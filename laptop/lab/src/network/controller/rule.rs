@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 /// The training framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// The framework snnTorch. It trains with several kinds of reset, and its files do not say with which one.
+    /// The framework snnTorch. It trains with several kinds of reset, and a file does not say which kind was used.
     SnnTorch,
     /// The framework Norse.
     Norse,

@@ -28,7 +28,7 @@ const CLIMBS: usize = 2;
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
 /// Maximum number of neurons of each layer on which the search compares intervals between leaks.
 const SURVEYED: usize = 32;
-/// The value that stands for a leak where a function takes a weight.
+/// The weight that stands for a leak, for functions that take a weight.
 const LEAK: i8 = i8::MIN;
 /// Maximum number of spikes of a layer in a step. The simulation of a step stops after more spikes, because the layer's
 /// recurrent spikes then drive the layer without end.
@@ -53,14 +53,13 @@ pub(super) struct Quantised {
     pub steps_a_leak: usize,
 }
 
-/// The neurons of a layer.
 #[derive(Clone, Debug)]
 pub(super) struct ChipLayer {
     /// Name of the layer in the network's file.
     pub name: String,
-    /// Number of inputs, which for later layers are the neurons of the layer before.
+    /// Number of inputs of the layer: the network's inputs for the first layer, and the neurons of the layer before for
+    /// others.
     inputs: usize,
-    /// The neurons, in order.
     pub neurons: Vec<ChipNeuron>,
 }
 

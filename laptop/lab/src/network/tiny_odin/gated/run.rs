@@ -1,5 +1,5 @@
-//! Runs a network whose neurons compare once a step on tinyODIN's model, which is exact to the clock cycle, through the
-//! driver of `spikewire-chips`.
+//! Runs a network whose neurons compare their potentials with their thresholds once a step. Runs it on tinyODIN's
+//! model, which is exact to the clock cycle, through the driver of `spikewire-chips`.
 
 use super::super::super::chip::{Stepped, refused};
 use super::super::run::{self, RATIO};

@@ -179,8 +179,8 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
 }
 
 /// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, these
-/// leaks move the potential to 0, from which other events of the step may have moved it. If spikes subtract the
-/// threshold, these leaks make up for the difference between the chip's reset and the subtraction.
+/// leaks bring the potential back to 0 after other events of the step have moved it. If spikes subtract the threshold,
+/// these leaks make up for the difference between the chip's reset and the subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {

@@ -15,8 +15,8 @@ const SPARE: f64 = 1.5;
 /// Maximum number of rungs (events that raise the neurons) between two leaks.
 const WIDEST: f64 = 12.0;
 
-/// The sequence of events in each step, which is the same for all neurons. A *rung* is an event that raises the neurons
-/// by a fixed amount. An offset downwards keeps the neurons from firing until enough rungs have raised them.
+/// The sequence of events in each step, which is the same for all neurons. An offset downwards first keeps the neurons
+/// from firing. Then events called *rungs* raise the neurons, each by a fixed amount, until they can fire.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
     /// Number of rows of synapses for each input or sending neuron. A weight is the sum over its rows.
