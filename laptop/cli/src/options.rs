@@ -197,7 +197,7 @@ pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> A
     asked
 }
 
-/// Parses the value that an option gives to a parameter. For a filter, [`FREE`] is accepted too.
+/// Parses the value that an option gives to a parameter. If the parameter is a filter, the text may also be [`FREE`].
 ///
 /// # Errors
 /// Returns a message if the text is not a value of the parameter's kind.
@@ -211,7 +211,7 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
 /// The value of `--filter` with which `tune` searches each tap, rather than the shape of a filter.
 pub(crate) const FREE: &str = "free";
 
-/// An option: its name, and the schemes with a parameter of this name, each with that parameter.
+/// The name of an option, and a pair (scheme, parameter) for each parameter of this name.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
 
 fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {

@@ -27,7 +27,8 @@ const PERIOD: Duration = Duration::from_millis(50);
 /// Maximum time, in µs, by which the panel's clock advances at a received tick. After a restart of the sender, ticks
 /// may jump farther.
 const MOST_STEP: u32 = 1_000_000;
-/// Number of lines for the lower part of the panel: the counts of the link, and the reasons that values are not exact.
+/// Number of lines below the channels. They show the numbers of received and lost frames, and the reasons why values
+/// may differ from the sender's.
 const FOOTER: u16 = 3;
 /// Maximum number of channels that are drawn.
 const MOST_CHANNELS: usize = 24;
@@ -117,8 +118,8 @@ impl Panel {
         }
     }
 
-    /// Draws a line for each channel. Below them, draws the counts of the link and the reasons that values are not
-    /// exact.
+    /// Draws a line for each channel. Below the channels, draws the numbers of received and lost frames, and the
+    /// reasons why values may differ from the sender's.
     fn draw(&self, frame: &mut Frame<'_>, tally: &LinkTally) {
         let [table, footer] =
             Layout::vertical([Constraint::Fill(1), Constraint::Length(FOOTER)]).areas(frame.area());
@@ -157,8 +158,9 @@ impl Panel {
         Row::new(cells).style(style)
     }
 
-    /// Formats the spikes of a channel as a line of text, the latest at the right. The upper half of a character shows
-    /// spikes up, the lower half spikes down.
+    /// Formats the spikes of a channel as a line of `width` characters, with the latest spike at the right. A character
+    /// stands for a short time. The upper half of the character is filled if there was an up spike in this time, and
+    /// the lower half if there was a down spike.
     fn raster(&self, channel: &Channel, width: u16) -> String {
         const GLYPHS: [char; 4] = ['·', '▀', '▄', '█'];
         let mut cells = vec![0; usize::from(width)];
@@ -173,7 +175,8 @@ impl Panel {
         cells.into_iter().map(|cell| GLYPHS[cell]).collect()
     }
 
-    /// Formats the counts of the link, followed by the channels whose values are not exact, with the reasons.
+    /// Formats the time and the numbers of spikes, received frames and lost frames. Further lines name the channels
+    /// whose values may differ from the sender's, each line with the reason.
     fn counts(&self, tally: &LinkTally) -> String {
         let LinkTally { frames, lost, gaps, .. } = tally;
         let (seconds, spikes) = (self.elapsed as f64 / 1e6, self.spikes);
@@ -247,7 +250,7 @@ impl Values for Noting<'_> {
     }
 }
 
-/// The lines of the terminal in which a panel is drawn, below earlier output.
+/// The part of the terminal in which a panel is drawn. Earlier output stays visible above this part.
 pub(crate) struct Screen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
     panel: Rc<RefCell<Panel>>,

@@ -129,8 +129,8 @@ fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
     }
 }
 
-/// `encode --flight` converts a table in physical units to counts, and writes the same events as the firmware's
-/// encoders for that flight file.
+/// For a table in physical units, `encode --flight` writes the same events as the firmware's encoders, which take a
+/// sensor's counts. The flight file has the number of counts in a unit.
 #[test]
 fn a_recording_is_coded_as_the_vehicle_does() {
     let names = flight::NAMES.join(",");

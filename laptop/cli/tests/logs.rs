@@ -193,8 +193,8 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {}", empty.path().display()), "", &["which has a file metadata.yaml"]);
 }
 
-/// Step forward with a threshold of 101 decodes every sample to within 101 of the angular rate in the log. No rate
-/// changes by more than 101 between two frames.
+/// The scheme `sf` with a threshold of 101 encodes an angular rate of the log. Every decoded value differs from the
+/// rate by at most 101, because the rate changes by at most 101 from one frame of the log to the next.
 #[test]
 fn a_blackbox_log_is_read_frame_by_frame() {
     let (_directory, path) = file("log.bbl", blackbox());

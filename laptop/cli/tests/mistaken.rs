@@ -79,7 +79,8 @@ fn sent(flight: &Flight) -> Vec<u8> {
     bytes
 }
 
-/// Returns the word that a keyframe carries for a sample: the bits of the sample in the flight's sample type.
+/// Converts `value` to the flight's sample type, and returns its bits. A keyframe carries these bits, so that a decoder
+/// can continue from the value.
 fn bits(flight: &Flight, value: f64) -> u32 {
     use catalogue::run::SampleType;
     match flight.sample {
@@ -107,12 +108,15 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
-/// A simulated sender: `text` is its flight file, and `frames` are the bytes that it sends. `kinds` names the fields in
-/// which other flight files of the test differ from this one.
+/// A simulated sender.
 struct Sender {
+    /// Text of the sender's flight file.
     text: String,
+    /// Names of fields of the flight file. If two senders of the test have one of these names in common, their flight
+    /// files differ only in the field of this name.
     kinds: BTreeSet<&'static str>,
     flight: Flight,
+    /// The bytes that the sender sends.
     frames: Vec<u8>,
 }
 

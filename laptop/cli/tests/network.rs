@@ -9,7 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Options of the code that drives `roll.nir`, a network whose weights were computed rather than trained.
+/// Options for encoding a recording as the inputs of `roll.nir`, a network whose weights were computed rather than
+/// trained.
 const CODE: &str = "--scheme position --neurons 20 --min -2 --max 2 --column gyro_x";
 
 fn peers(name: &str) -> PathBuf {
@@ -24,7 +25,7 @@ fn network(file: &str) -> String {
 /// recording is used for tuning.
 const AS_THE_CHIP: &str = "--compare spike --no-held-out";
 
-/// Returns the numbers in one line of `report`, the first that begins with `start`.
+/// Finds the first line of `report` that begins with `start`, and returns the numbers that follow in this line.
 fn figures(report: &str, start: &str) -> Vec<f64> {
     let line = report.lines().find_map(|line| line.strip_prefix(start)).expect(start);
     let numbers = line.split([' ', ',', ';', '%', ':']);
@@ -210,9 +211,10 @@ fn a_file_of_spikes_drives_a_network_that_answers_step_by_step() {
     refused(&reckon, "0\n", &["only tinyODIN"]);
 }
 
-/// A rise and a fall in the same step cancel out in the trained network. They do not cancel out on a chip whose neurons
-/// compare potential and threshold after each spike. A comparison once a step takes more events, but loses nothing
-/// here. The command therefore chooses `--compare step`.
+/// In the trained network, two input spikes in the same step cancel out if one raises and the other lowers a neuron's
+/// potential. On a chip with `--compare spike`, the neuron compares its potential with the threshold after each spike,
+/// and may fire between the two. With `--compare step`, the chip's outputs agree in all steps with those of the trained
+/// network. The command therefore chooses `--compare step`, although each step then needs more events.
 #[test]
 fn neurons_compare_once_a_step_if_that_agrees_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},
@@ -319,9 +321,9 @@ fn stretches(is_held_out: bool) -> String {
     table
 }
 
-/// The script `turns.py` trained this recurrent network, and reports its number of spikes. In double precision the
-/// number is the same; on the chip it differs by less than 3 %. The constant equals the one in the firmware
-/// `examples/rate-loop`.
+/// The script `turns.py` trained this recurrent network, and printed how many spikes the network fires. The command
+/// counts the same number of spikes in double precision. On the chip, the number of spikes differs by less than 3 %.
+/// The constant that the command writes equals the one in the firmware `examples/rate-loop`.
 #[test]
 fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     let (_trained, trained) = file("trained.csv", stretches(false));

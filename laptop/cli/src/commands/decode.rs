@@ -20,8 +20,9 @@ use tempfile::NamedTempFile;
 /// messages of `spyke_msgs`, from the toolbox by Dupeyroux et al. (2022). The scheme and its parameters are read from
 /// the file itself.
 ///
-/// Writes the columns `index,value`; with several channels, one column for each, under its name. If times were
-/// recorded, the column `time_us` follows. Times are exact at events and at gaps, and evenly spaced in between.
+/// Writes a table with the columns `index` and `value`. In place of `value`, a table of several channels has a column
+/// for each channel, with the name of the channel. If times were recorded, the column `time_us` follows. Times are
+/// exact at events and at gaps, and evenly spaced in between.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -193,8 +194,8 @@ impl Decoding {
         })
     }
 
-    /// Decodes and writes all samples before index `end`. `events` holds the events before `end`, and is empty
-    /// afterwards.
+    /// Decodes and writes all remaining samples before index `end`. `events` must hold all events of these samples. If
+    /// the function succeeds, it empties `events`.
     fn advance(&mut self, end: u64, events: &mut Vec<Event>) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         for event in events.iter_mut() {

@@ -47,7 +47,8 @@ pub(crate) struct Frames {
     /// Maximum number of events in a frame. Further events are counted, and delayed to later frames
     #[arg(long)]
     budget: Option<u32>,
-    /// Divide the time since the previous frame into --most parts, and spread the events of a pixel over these parts
+    /// Spread each pixel's events over the time since the previous frame. This time is divided into equal parts, as
+    /// many as the value of --most
     #[arg(long)]
     interpolate: bool,
     /// Frames a second, such as `30` or `30000/1001`; default: the video's own rate, or 30 for pictures

@@ -80,8 +80,8 @@ pub(crate) struct Network {
     /// Tune on the whole of INPUT, without a test on held-out data
     #[arg(long, conflicts_with = "held_out")]
     no_held_out: bool,
-    /// Output spikes of the network in the training framework, one line for each step of INPUT. The chip's output
-    /// spikes are compared with them, and so are those of the network in double precision
+    /// File of the output spikes that the network had in the training framework, one line for each step of INPUT. The
+    /// report compares these spikes with the chip's, and with those of the network in double precision
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
     /// Time at which tinyODIN's neurons compare their potentials with their thresholds. With `spike` they compare after
@@ -92,7 +92,7 @@ pub(crate) struct Network {
     /// Rust file to write; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Also write the network as a binary file, which the driver loads at run time
+    /// Also write the network as a binary file, which the firmware's driver of the chip loads at run time
     #[arg(long, value_name = "FILE")]
     bytes: Option<PathBuf>,
     /// After the conversion, run the network on the chip's model, step by step. Each line of standard input is a step:
@@ -273,7 +273,7 @@ fn spikes(line: &str) -> lab::Result<Vec<u16>> {
 
 /// Input spikes for the network, from an encoded recording or from a file of spikes.
 struct Driven {
-    /// The inputs that fire, for each step.
+    /// The numbers of the inputs that fire in each step.
     steps: Trains,
     /// Number of inputs that the network must have. If the spikes come from a file, the network may have more: this is
     /// the highest input that fires, plus one.
@@ -388,10 +388,11 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// Least share of steps in which chip and trained network must agree; otherwise the report warns.
+/// Least agreement between chip and trained network for which the report does not warn. The agreement of two runs is
+/// the share of active steps in which the same outputs fire in both. A step is active if an output fires in either run.
 const LOW: f64 = 0.5;
-/// Least share of steps in which the outputs must fire as they did in training; otherwise the report suggests that
-/// `--as`, `--reset` or `--dt` differ from the training.
+/// Least agreement between the network in double precision and the training framework. If the agreement is lower, the
+/// report suggests that `--as`, `--reset` or `--dt` are wrong.
 const READ: f64 = 0.95;
 
 /// Prints on standard error how the converted network differs from the trained one: first for the recording that the

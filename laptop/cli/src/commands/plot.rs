@@ -25,8 +25,8 @@ Examples:
   spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
   spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
-    /// Draw the paper's figure: panels A-G for the paper's schemes, with the paper's settings, and panel H for their
-    /// efficiency
+    /// Draw the first figure in the paper, Dupeyroux et al. (2022): panels A-G for the paper's schemes, with the
+    /// paper's settings, and panel H for the efficiency of these schemes
     #[arg(long, conflicts_with_all = ["scheme", "params"])]
     all: bool,
     #[command(flatten)]

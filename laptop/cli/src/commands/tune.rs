@@ -27,8 +27,9 @@ use std::time::Instant;
 /// Search a scheme's parameters for a goal: the least RMSE at a given spiking efficiency, the greatest efficiency at a
 /// given RMSE, or the Pareto front of both.
 ///
-/// Some blocks of each log are held out, and the settings found are scored on them too. Settings are scored with the
-/// codec that flies, in the sample type given. Parameters that are given stay fixed; the others are searched. The
+/// The spiking efficiency is 100 less the number of spikes for every 100 samples. Some blocks of each log are held out,
+/// and the settings found are scored on these blocks too. Settings are scored with the encoder and decoder that run on
+/// the drone, in the sample type of --sample. Parameters that are given stay fixed; the others are searched. The
 /// default goal is the least RMSE at the efficiency that the settings of Dupeyroux et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -137,7 +138,7 @@ fn hertz(text: &str) -> lab::Result<f64> {
 /// The value of `--emit`: the form in which settings are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Emit {
-    /// A constant with parameters and taps, which compiles without std
+    /// A Rust constant with parameters and filter coefficients, which compiles without std
     Rust,
     /// A file of parameters, for --params
     Toml,
