@@ -208,7 +208,8 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     parameter.read(text).map_err(|error| error.without_subject().spelled(words::option).to_string())
 }
 
-/// The value of `--filter` with which `tune` searches each tap, rather than the shape of a filter.
+/// The value of `--filter` with which `tune` searches for each coefficient of the filter, rather than for the filter's
+/// shape, length and sum.
 pub(crate) const FREE: &str = "free";
 
 /// The name of an option, and a pair (scheme, parameter) for each parameter of this name.

@@ -24,8 +24,8 @@ use std::time::{Duration, Instant};
 const WINDOW: u32 = 2_000_000;
 /// Minimum time between two drawings of the panel.
 const PERIOD: Duration = Duration::from_millis(50);
-/// Maximum time, in µs, by which the panel's clock advances at a received tick. After a restart of the sender, ticks
-/// may jump farther.
+/// Maximum time, in µs, that a received tick adds to the elapsed time on the panel. If the sender restarts, its ticks
+/// may jump by more.
 const MOST_STEP: u32 = 1_000_000;
 /// Number of lines below the channels. They show the numbers of received and lost frames, and the reasons why values
 /// may differ from the sender's.
@@ -82,7 +82,8 @@ impl Panel {
         Box::new(Noting { panel: Rc::clone(panel), values })
     }
 
-    /// Returns the channel to which an address belongs; `None` beyond [`MOST_CHANNELS`].
+    /// Returns the channel to which an address belongs. The panel adds the channel if it is new. Returns `None` if a
+    /// new channel's number, counted from 0, is [`MOST_CHANNELS`] or higher.
     fn channel(&mut self, address: u16) -> Option<&mut Channel> {
         let place = usize::from(address / self.neurons);
         if place >= self.channels.len() && place < MOST_CHANNELS {
@@ -211,7 +212,8 @@ struct Noting<'a> {
 }
 
 impl Noting<'_> {
-    /// Copies the values in `items` to the panel, and for each channel the reason if its value is not exact.
+    /// Copies the values in `items` to the panel. Also copies the reason that a channel's value is not exact, for every
+    /// channel.
     fn note(&self, items: &[Item]) {
         let mut panel = self.panel.borrow_mut();
         for item in items {

@@ -150,8 +150,8 @@ fn more_lost_frames_than_were_flown_are_refused() {
     refused(&format!("advise {log} --rate 100 --frame-loss 11"), "", refusal);
 }
 
-/// The vibration of the motors is nearly as large as the motion of the flight (noise 0.124, whole signal 0.206), yet
-/// the log is not mistaken for noise.
+/// The vibration of the motors is nearly as large as the motion of the flight: the noise has a standard deviation of
+/// 0.124, and the whole signal has one of 0.206. Still, the log is not mistaken for noise.
 #[test]
 fn a_shaken_flight_is_advised_on() {
     let text = std::fs::read_to_string(flight("hexarotor.csv")).unwrap();

@@ -58,7 +58,8 @@ fn every_spike_is_where_it_was() {
     }
 }
 
-/// With only two signals in each case, and an unlucky seed, means differ too much from the paper's, and `bench` fails.
+/// `bench` fails if its mean values differ too much from the paper's. With only two signals in each case, some seeds
+/// give such means.
 #[test]
 fn a_benchmark_that_differs_is_an_error() {
     let differing = (1..200).find_map(|seed| {

@@ -1,5 +1,5 @@
-//! `dataset` with many logs: a run that was killed is continued, and the Parquet files restore exactly the spikes of a
-//! single `encode`.
+//! `dataset` with many logs: a run that was killed can be continued. The spikes restored from a Parquet file equal
+//! those that `encode` writes for the same log.
 
 mod common;
 

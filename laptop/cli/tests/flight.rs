@@ -21,7 +21,8 @@ impl Put for Items<'_> {
     }
 }
 
-/// Returns a sample of a sine wave with an amplitude of 1.5 units, in a sensor's counts.
+/// Returns one sample of a channel as a raw sensor reading, in counts. The signal is a sine wave with an amplitude of
+/// 1.5 of the channel's units.
 fn count(channel: usize, sample: usize) -> i16 {
     let value = 1.5 * (sample as f64 * 0.02 * (channel as f64 + 1.0)).sin();
     (value * flight::COUNTS[channel]).round() as i16

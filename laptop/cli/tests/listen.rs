@@ -92,8 +92,8 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     Board { frames: sender.1, values }
 }
 
-/// Simulates a board with a rate or population code, whose decoder gives a value for each sample. Each value has the
-/// first address of its channel.
+/// Simulates a board with a rate or population code. The board's decoder returns a value for each channel in each
+/// sample. The address of a value is the address of its channel's first neuron.
 fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
     // With sub-timesteps, the receiver measures the sample period from heartbeats.
     board_since_boot(scheme, slot_ticks, 0, if slot_ticks > 0 { 20 } else { 100 })

@@ -1,5 +1,5 @@
-//! `listen` must not mark a value as exact if its flight file differs from the sender's. The test tries pairs of flight
-//! files that differ in one field.
+//! `listen` must not mark a decoded value as exact if the receiver's flight file differs from the sender's. The test
+//! tries pairs of flight files that differ in one field.
 
 use catalogue::run::Known;
 use lab::flight::Flight;
@@ -12,7 +12,8 @@ mod list;
 
 const SAMPLES: usize = 60;
 
-/// Simulates the sender of a flight; returns its frames, which carry the flight's fingerprint.
+/// Simulates the sender of a flight. Returns the frames that it sends, which carry a fingerprint of the flight's
+/// settings.
 fn sent(flight: &Flight) -> Vec<u8> {
     let mut filters = flight.filters().unwrap();
     let mut items: Vec<Vec<Item>> = vec![Vec::new(); SAMPLES];

@@ -50,8 +50,9 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     assert!(winners[0] > 80.0, "{}", ran.stderr);
 }
 
-/// Writes a network to a JSON file, in a new directory. Returns the directory, and the arguments that convert the
-/// network. The network's inputs are the spikes of step forward.
+/// Writes a network to a JSON file in a new directory. Returns the directory, and the arguments that convert the
+/// network. The network's inputs are spikes of the column `gyro_x`, encoded by the scheme `sf` (step forward) with
+/// `threshold`.
 fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
     let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
     let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
@@ -292,8 +293,9 @@ fn a_reset_by_subtraction_is_corrected_for_reckon() {
     }
 }
 
-/// The Python example `on_chip.py` trained this network in tinyODIN's arithmetic. In 99 % of the active steps, the chip
-/// agrees with a run in double precision, although only the chip's potentials have a lower bound, -2048.
+/// The Python example `on_chip.py` trained this network in tinyODIN's arithmetic. In at least 99 % of the steps in
+/// which an output fires, the same outputs fire on the chip as in double precision. Only the chip's potentials have a
+/// lower bound, -2048.
 #[test]
 fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let network = peers("on_chip.json").display().to_string();
@@ -365,8 +367,8 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
-/// Two forms of NIR graphs are read: layers that are nested graphs, as snnTorch and Norse write them, and a recurrent
-/// layer.
+/// A NIR graph whose layers are nested graphs, as snnTorch and Norse write them, gives the same constants as a flat
+/// graph, apart from the names of nodes. The weights of a recurrent layer are read too.
 #[test]
 fn nested_and_recurrent_graphs_are_taken() {
     let whole = good(&network(&peers("roll.nir").display().to_string()), "");

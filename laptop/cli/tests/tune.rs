@@ -98,8 +98,9 @@ fn a_search_that_ran_out_of_time_is_reported() {
     assert!(whole.contains("all of") && !whole.contains("cut short"), "{whole}");
 }
 
-/// The tuned blocks hold square waves, and the held-out blocks hold sine waves. Settings with a few large steps fit
-/// only the square waves. The report says so, although the paper's settings, which give more spikes, fit both.
+/// The blocks for tuning hold square waves, and the held-out blocks hold sine waves. Settings with a few large steps
+/// fit only the square waves. The paper's settings fit both, but give more spikes. The report still warns that the
+/// found settings fit only the blocks for tuning.
 #[test]
 fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
     let before = |block: usize| (block as f64 * 0.3 + 0.35).floor();
@@ -142,8 +143,8 @@ fn held_out_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     }
 }
 
-/// In a flight with an impact, an RMSE of 0.06 takes more than 16 spikes in one sample. The search sets the scheme's
-/// maximum number of spikes in a sample high enough, but not above twice the number needed.
+/// In a flight with an impact, an RMSE of 0.06 is possible only with more than 16 spikes in one sample. The search
+/// finds a maximum number of spikes in a sample that is high enough, but at most twice the number needed.
 #[test]
 fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     let flight = flight("hexarotor.csv");

@@ -97,7 +97,6 @@ pub(crate) fn run(options: &Frames) -> Result<()> {
 /// Returns an error that names `option` if the number of steps is outside 1 to 5673. From black to white there are 5673
 /// steps.
 fn levels(option: &str, contrast: f64) -> Result<u16> {
-    /// Number of steps for a difference of 1 in the natural logarithm.
     const SCALE: f64 = 1024.0;
     const MOST: f64 = 5673.0;
     let levels = (SCALE * contrast).round();

@@ -76,7 +76,8 @@ pub(crate) struct Listen {
     /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
     flight: Option<PathBuf>,
-    /// Length in µs of the sender's sub-timesteps; only for codes that decode a spike by its sub-timestep
+    /// Length in µs of the sender's sub-timesteps. Needed if the decoded value depends on the sub-timestep in which a
+    /// spike comes, otherwise not allowed
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
     /// Draw values, spikes and losses in the terminal while they arrive. A recording is drawn at the pace of its clock.
