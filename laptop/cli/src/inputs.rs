@@ -48,8 +48,8 @@ pub(crate) struct ChannelOptions {
     )]
     columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: the column
-    /// with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas gives to times; in a ROS log: the time at which a
-    /// message was recorded
+    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a ROS log: the time at which
+    /// a message was recorded
     #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     time: Option<String>,
     /// Unit of the time column; default: the unit in its name, such as `time (us)` or `stamp_ns`, or else a guess from

@@ -197,7 +197,7 @@ pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> A
     asked
 }
 
-/// Parses the value that an option gives to a parameter. For a filter, [`FREE`] is accepted too.
+/// Parses the value that an option gives to a parameter. If the parameter is a filter, the text may also be [`FREE`].
 ///
 /// # Errors
 /// Returns a message if the text is not a value of the parameter's kind.
@@ -208,10 +208,11 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     parameter.read(text).map_err(|error| error.without_subject().spelled(words::option).to_string())
 }
 
-/// The value of `--filter` with which `tune` searches each tap, rather than the shape of a filter.
+/// The value of `--filter` with which `tune` searches for each coefficient of the filter, rather than for the filter's
+/// shape, length and sum.
 pub(crate) const FREE: &str = "free";
 
-/// An option: its name, and the schemes with a parameter of this name, each with that parameter.
+/// The name of an option, and a pair (scheme, parameter) for each parameter of this name.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
 
 fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {

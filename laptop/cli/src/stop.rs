@@ -38,8 +38,8 @@ pub(crate) struct Stop {
 }
 
 impl Stop {
-    /// Creates a condition that is met after Ctrl-C and, if `seconds` is given, when this number of seconds has passed.
-    /// A second Ctrl-C ends the program at once.
+    /// Creates a condition for the end of a command. The command is due to end after Ctrl-C. If `seconds` is given, the
+    /// command is also due to end after that time. A second Ctrl-C ends the program at once.
     ///
     /// # Errors
     /// Returns an error if `seconds` is not above 0.

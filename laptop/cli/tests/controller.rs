@@ -42,7 +42,8 @@ fn differing(one: &Trains, other: &Trains) -> usize {
     one.iter().zip(other).map(|(one, other)| only(one, other) + only(other, one)).sum()
 }
 
-/// Two recurrent networks read Braille. The spikes of their hidden layers equal the published spikes.
+/// Two recurrent networks for reading Braille were published with the spikes of their hidden layers. Here, these layers
+/// fire exactly the same spikes, in the controller's arithmetic and in double precision.
 #[test]
 fn networks_that_snntorch_trained_fire_as_was_published() {
     let inputs = trains("braille.txt");
@@ -247,7 +248,8 @@ fn a_network_becomes_the_module_of_the_firmware() {
     assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.stderr);
 }
 
-/// A network in JSON needs no options for its update rule. For outputs that never fire, the report compares potentials.
+/// A network in JSON needs no options for its update rule, the order of decay, firing and reset. If the outputs never
+/// fire, the report compares their potentials on the controller with those in double precision.
 #[test]
 fn json_goes_onto_the_controller_and_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 5.5}], "readout": {"weights": [[1, -2]]}}"#;

@@ -154,7 +154,7 @@ fn a_binary_file_is_no_file_of_spikes() {
     }
 }
 
-/// A table whose first 20 000 rows have no value is read.
+/// The program reads a table even if the values in its first 20 000 rows are missing.
 #[test]
 fn missing_values_may_come_first() {
     let late = [vec![f64::NAN; 20_000], vec![0.0, 1.0]].concat();

@@ -22,7 +22,7 @@ pub(crate) struct Bench {
     /// Number of signal lengths to run, 1 to 5, starting with the shortest
     #[arg(long, default_value_t = paper::CASES.len())]
     cases: usize,
-    /// Seed of the noise
+    /// Seed of the noise in the signals
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Print the figures as JSON

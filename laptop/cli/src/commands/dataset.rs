@@ -20,8 +20,8 @@ use std::thread;
 /// The directory DIR holds two Parquet files for each log, and the file `manifest.jsonl`. `events/NAME.parquet` holds
 /// the log's spikes in the columns `index`, `channel` and `polarity`, with `neuron` if a channel has several neurons,
 /// and `time_us` if the log has times. `values/NAME.parquet` holds the samples that were encoded. `manifest.jsonl`
-/// holds a row for each log: its hash, the numbers of samples that were read and left out, and whether it is for
-/// training or testing. The row of a log that cannot be read has the reason.
+/// holds a row for each log. A row has the hash of the log, the number of samples read, the number of samples left out,
+/// and whether the log is for training or testing. If a log cannot be read, its row gives the reason.
 ///
 /// The same command, given again, continues a run that was interrupted or killed. A log that has changed is encoded
 /// again. `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
@@ -34,7 +34,8 @@ Examples:
 pub(crate) struct Dataset {
     #[command(flatten)]
     coding: Coding,
-    /// Flight file (`flight.toml`) that `advise -o` wrote: encodes the file's channels as the sender on the drone does
+    /// Flight file (`flight.toml`) that `advise -o` wrote. It sets the channels to encode, and the encoders, which are
+    /// those of the sender on the drone
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
     /// Files, directories and patterns such as 'logs/**/*.ulg'. In a directory, logs are recognised by their content,
@@ -44,8 +45,8 @@ pub(crate) struct Dataset {
     #[arg(long, value_name = "FILE")]
     list: Option<PathBuf>,
     /// Channels to read from logs of one kind, in place of the channels of --flight or --columns. KIND is table, ulog,
-    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. The option may be given several times for a kind; each log is
-    /// then read with the first channels that it has
+    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. If the option is given several times for a kind, each log is
+    /// read with the first NAMES that are all in the log
     #[arg(long, value_name = "KIND=NAMES", help_heading = "Input")]
     channels_of: Vec<ChannelsOf>,
     #[command(flatten)]

@@ -26,8 +26,8 @@ Examples:
 pub(crate) struct Encode {
     #[command(flatten)]
     coding: Coding,
-    /// Flight file (`flight.toml`) that `advise -o` wrote: encodes the file's channels exactly as the sender on the
-    /// drone does
+    /// Flight file (`flight.toml`), as written by `advise -o`. The channels in the file are encoded exactly as the
+    /// sender on the drone encodes them
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
     #[command(flatten)]

@@ -47,7 +47,8 @@ pub(crate) struct Frames {
     /// Maximum number of events in a frame. Further events are counted, and delayed to later frames
     #[arg(long)]
     budget: Option<u32>,
-    /// Divide the time since the previous frame into --most parts, and spread the events of a pixel over these parts
+    /// Spread each pixel's events over the time since the previous frame. This time is divided into equal parts, as
+    /// many as the value of --most
     #[arg(long)]
     interpolate: bool,
     /// Frames a second, such as `30` or `30000/1001`; default: the video's own rate, or 30 for pictures
@@ -96,7 +97,6 @@ pub(crate) fn run(options: &Frames) -> Result<()> {
 /// Returns an error that names `option` if the number of steps is outside 1 to 5673. From black to white there are 5673
 /// steps.
 fn levels(option: &str, contrast: f64) -> Result<u16> {
-    /// Number of steps for a difference of 1 in the natural logarithm.
     const SCALE: f64 = 1024.0;
     const MOST: f64 = 5673.0;
     let levels = (SCALE * contrast).round();

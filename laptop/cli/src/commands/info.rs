@@ -161,7 +161,8 @@ fn json(name: &str, content: &Content) -> serde_json::Value {
     }
 }
 
-/// Adds figures of the times to a JSON description: rate, duration, gaps, steps back and restarts of the clock.
+/// Adds statistics of the sample times to the JSON description `all`: the rate, the duration, the gaps, the steps back,
+/// the restarts of the clock, a summary as text, and a note if the clock's counter has wrapped.
 fn add_times(all: &mut serde_json::Value, clock: &Clock, rollover: &Rollover) {
     all["rate"] = json!(clock.rate());
     all["seconds"] = json!(clock.seconds());

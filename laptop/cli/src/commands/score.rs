@@ -93,9 +93,9 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     Ok(())
 }
 
-/// Returns the schemes to run, and their sample type and parameters. A scheme that the user named runs with the
-/// parameters given, or with the paper's if none are given. Without a name, all schemes run with the paper's
-/// parameters.
+/// Returns the schemes to run, and their sample type and parameters. If the user named a scheme, only this scheme runs,
+/// with the parameters given. If no parameters are given, the scheme runs with those of the paper, Dupeyroux et al.
+/// (2022). If the user named no scheme, all schemes run with the paper's parameters.
 ///
 /// # Errors
 /// Returns an error if parameters are given without a scheme.
