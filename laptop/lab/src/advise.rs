@@ -30,9 +30,9 @@ use std::time::{Duration, Instant};
 /// that cause 80°.
 const PHASE: f64 = 20.0;
 
-/// Largest share of a log's samples at which the decoded value of a step code may fall behind the signal. In the
-/// flights of `docs/loop.md` the drone flies well if the code falls behind at 0.9 % of the samples. If it falls behind
-/// at 3.9 %, the code loses steps, and the drone flips.
+/// Largest share of a log's samples at which the signal may change by more than a step code can follow: the decoded
+/// value moves by at most one threshold a sample. In the flights of `docs/loop.md`, the drone flies well at a share of
+/// 0.9 %. At a share of 3.9 %, the code loses steps, and the drone flips.
 const STEEP: f64 = 0.02;
 
 /// Smallest sample rate with which a control loop works, as a multiple of the loop's bandwidth. The Nyquist rate, twice
@@ -499,8 +499,8 @@ impl Advice {
     }
 }
 
-/// Returns the number of bytes that a trial's events take on the crate's link, in full frames. A scheme whose decoder
-/// needs keyframes sends one keyframe a second.
+/// Returns the number of bytes that a trial's events take on the crate's link, if each frame is sent once it is full. A
+/// scheme whose decoder needs keyframes sends one keyframe a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.

@@ -13,7 +13,8 @@ use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorde
 use crate::tune::RequestKind;
 use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
 
-/// Encodes the channels of a `flight.toml` from a recording, as the sender on the drone does; see [`encode`].
+/// Encodes a recording as the sender on the drone does. `flight` gives the scheme and the channels; for the other
+/// arguments and the results, see [`encode`].
 ///
 /// # Errors
 /// Returns an error if the recording lacks a channel, or if the output cannot be written.

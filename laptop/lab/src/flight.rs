@@ -1,5 +1,5 @@
-//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the flight's link frames to
-//! values.
+//! The laptop's part in a flight. A `flight.toml` describes the scheme and the channels of the drone's sender. This
+//! module reads the channels from a recording, and decodes the sender's frames to values.
 
 use crate::Result;
 use crate::coding::Coding;

@@ -265,8 +265,8 @@ mod tests {
         (0..count).map(next).collect()
     }
 
-    /// Uniform noise of width 1, whose deviation is √(1/12), is measured within 25 %, both alone and on a slow wave of
-    /// amplitude 40.
+    /// The estimated standard deviation of uniform noise of width 1 is within 25 % of the true one, √(1/12). The
+    /// estimate is as good if the noise lies on a slow wave of amplitude 40.
     #[test]
     fn noise_is_found_under_a_wave() {
         let noisy = white(6400);

@@ -25,7 +25,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Starts with a column that has no samples yet, for the sample type `sample`.
+    /// Makes the record of a column that has no samples yet. `sample` is the sample type to check.
     pub fn new(sample: SampleType) -> Self {
         let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
         Self {

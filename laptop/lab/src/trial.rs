@@ -165,7 +165,7 @@ fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
 
 /// A scheme's spikes and decoded values for a recording.
 pub struct Trial {
-    /// The scheme.
+    /// The scheme that encodes and decodes.
     pub scheme: Scheme,
     /// The parameters that were used.
     pub settings: Settings,

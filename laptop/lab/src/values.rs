@@ -236,8 +236,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of decoded values that were dropped because their channel does not exist. Events with addresses beyond
-    /// `N` channels are counted by the receiver instead.
+    /// Number of decoded values that were dropped because their channel does not exist. Events beyond the receiver's
+    /// `N` channels are not included; the receiver counts these itself.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,

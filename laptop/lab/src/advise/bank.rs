@@ -68,8 +68,8 @@ struct BankChannel {
 }
 
 impl BankAdvice {
-    /// Finds the schemes that suit all channels, leaving out channels unfit for tuning, and ranks them by bytes on the
-    /// link.
+    /// Finds the schemes that suit every channel, apart from channels that are unfit for tuning. Ranks these schemes by
+    /// the number of bytes that they send on the link.
     ///
     /// # Errors
     /// Returns an error if the sample rate is unknown, or if the sample period cannot be expressed in whole µs.
@@ -295,8 +295,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// Returns the values of the parameters that all channels of a bank must share. A count gets the largest of the
-/// channels' values, and any other parameter gets the first channel's value.
+/// Returns the values of the parameters that all channels of a bank must share. If the parameter is a count, its value
+/// is the largest of the channels' values. Otherwise, its value is that of the first channel.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;

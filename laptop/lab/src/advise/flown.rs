@@ -118,8 +118,9 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of this code's attitude errors to the errors of the code `other`. Only entries of
-    /// `everywhere` in which both codes have an error count.
+    /// Returns the mean ratio of this code's attitude error to the attitude error of the code `other`. The mean is over
+    /// those entries of `everywhere` in which both codes have an attitude error. Returns `None` if there is no such
+    /// entry.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

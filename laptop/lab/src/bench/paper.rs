@@ -29,7 +29,7 @@ impl Table {
     }
 }
 
-/// Table I, spiking efficiency in percent.
+/// The paper's Table I: spiking efficiency in percent.
 pub const EFFICIENCY: Table = Table {
     title: "Table I, spiking efficiency in %",
     means: [
@@ -49,7 +49,7 @@ pub const EFFICIENCY: Table = Table {
     decimals: 1,
 };
 
-/// Table II, root mean square error.
+/// The paper's Table II: root mean square error.
 pub const RMSE: Table = Table {
     title: "Table II, root mean square error",
     means: [

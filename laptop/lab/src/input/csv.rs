@@ -429,7 +429,8 @@ impl<R: Read> Read for Comments<R> {
     }
 }
 
-/// Reads the rows that are examined first. The position of each record is set to the line at which its row begins.
+/// Reads the first rows, from which the header and the format of the times are found. Sets the position of each record
+/// to the line at which its row begins.
 fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     let mut records = VecDeque::new();
     let mut record = ByteRecord::new();

@@ -61,7 +61,8 @@ impl Deref for InputOptions {
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
-    /// Columns of a table by name, such as `gyro_x`, or `all`. For a log, fields as `TOPIC.FIELD`.
+    /// Columns of a table by name, such as `gyro_x`. The name `all` stands for all columns except times and counts. For
+    /// a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
     /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use. A log's message has, by default,
@@ -289,7 +290,8 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// Returns these options. If the input is a table and no column is chosen, all columns are chosen.
+    /// If the input is a table and no column was chosen, returns a copy of these options with all columns chosen.
+    /// Otherwise, returns an unchanged copy.
     ///
     /// # Errors
     /// Returns an error if the file cannot be opened.

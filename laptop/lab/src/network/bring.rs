@@ -20,8 +20,8 @@ pub struct Request<'a> {
     pub tuned: &'a Trains,
     /// A second recording, on which the quantised network is only tested; `None` to test it on `tuned` only.
     pub held_out: Option<HeldOut<'a>>,
-    /// Spikes of the outputs that the training framework computed, by step: for the recording `tuned`, then for
-    /// `held_out`. `None` if these spikes are not known.
+    /// Output spikes that the training framework computed, by step. The first entry is for the recording `tuned`, the
+    /// second for `held_out`. `None` if the framework's spikes are not known.
     pub framework: Option<(&'a Trains, &'a Trains)>,
     /// When neurons compare their potentials with their thresholds. `None` tries both possibilities and chooses the one
     /// whose spikes agree better with double precision. Has no effect on chips that offer no choice.
@@ -36,8 +36,8 @@ pub struct Request<'a> {
 pub struct HeldOut<'a> {
     /// Input spikes of all steps, including those before `from`.
     pub steps: &'a Trains,
-    /// Index of the first step that is compared. The steps before it only bring the network into its state at this
-    /// step; parameters may have been tuned on those steps.
+    /// Index of the first step that is compared. The steps before `from` only bring the network into its state.
+    /// Parameters may have been tuned on those earlier steps.
     pub from: usize,
 }
 

@@ -32,9 +32,9 @@ pub trait Chip: Sync {
 /// that support both variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// After each spike that arrives, as the chip does by default.
+    /// Comparison after each spike that arrives: the chip's default.
     Spike,
-    /// Once in each time step, as in training. For this, the driver sends extra events to the chip.
+    /// Comparison once in each time step, as in training. The driver sends extra events to the chip for this purpose.
     Step,
 }
 
@@ -146,7 +146,7 @@ pub(super) fn lines(items: impl Iterator<Item = String>) -> String {
 
 /// Calls `write` with a buffer that has room for the largest network; returns the bytes written.
 pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> Result<Vec<u8>, E> {
-    /// Size of the buffer in bytes: more than any network needs on any chip.
+    /// Size of the buffer in bytes. No network for any of the chips takes more bytes.
     const LARGEST: usize = 256 * 1024;
     let mut bytes = vec![0; LARGEST];
     let length = write(&mut bytes)?;

@@ -175,7 +175,7 @@ kinds! {
 }
 room!(ModelKind, Model);
 
-/// Returns the error `$kind` from the function that contains the macro, unless `$condition` is true.
+/// Leaves the enclosing function with the error `$kind`, unless `$condition` is true.
 macro_rules! ensure {
     ($condition:expr, $kind:expr) => {
         let holds: bool = $condition;

@@ -39,8 +39,8 @@ pub trait Record {
     /// Returns an error if the file cannot hold the samples.
     fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
 
-    /// Writes events. `decided` is a number of finite samples whose events are complete: no event that is passed later
-    /// may belong to one of the first `decided` finite samples.
+    /// Writes events. `decided` counts the finite samples, from the first one, whose events are complete after this
+    /// call. Later calls must only pass events of later samples.
     ///
     /// # Errors
     /// Returns an error if the spikes cannot be written.

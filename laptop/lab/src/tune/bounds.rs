@@ -18,7 +18,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Returns a sentence for the user that reports the parameter.
+    /// Returns a sentence for the user: the parameter, its value, and the bounds within which the value was searched.
     pub fn words(&self) -> String {
         let Self { parameter, value, searched: [low, high] } = self;
         format!(

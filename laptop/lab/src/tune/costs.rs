@@ -37,7 +37,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Looks up the costs of settings on `core`, a core with measured counts.
+    /// Looks up what settings cost on `core`, one of the processor cores whose instructions were counted.
     pub fn new(scheme: Scheme, settings: &Settings, latency: usize, core: &str) -> Self {
         let counted = scheme.counted(settings).ok();
         let measured = counted.and_then(|counted| {

@@ -131,7 +131,7 @@ mod tests {
     use super::{Chance, Evolution};
 
     /// In a bowl of five dimensions, the evolution comes within a squared distance of 1e-3 of the minimum with 400
-    /// points. As many random points would not come so near.
+    /// points. 400 random points would not come so near.
     #[test]
     fn a_bowl_is_descended() {
         let value = |point: &[f64]| point.iter().map(|own| (own - 0.3).powi(2)).sum::<f64>();

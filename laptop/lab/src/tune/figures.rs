@@ -104,7 +104,8 @@ impl Figures {
     }
 }
 
-/// Longest lag that is tried in either direction, in samples.
+/// Largest lag between the signal and the decoded values for which the correlation is computed, in samples. Lags in
+/// both directions are tried.
 const FARTHEST: usize = 100;
 
 #[derive(Default)]
@@ -155,8 +156,8 @@ fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>,
     *codes.entry(Vec::new()).or_default() += silent;
 }
 
-/// Adds a stretch's correlation with its decoded values to `correlations`, for each lag from `-FARTHEST` to `FARTHEST`
-/// samples.
+/// Computes the correlation of a signal with its decoded values for each lag from `-FARTHEST` to `FARTHEST` samples.
+/// Adds the results to `correlations`, which has an entry for each lag.
 fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let (center, middle) = (mean(values), mean(decoded));

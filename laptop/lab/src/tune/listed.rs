@@ -16,7 +16,7 @@ const PASSES: usize = 4_000_000_000;
 /// Maximum number of samples that are processed to list the outcomes of thresholds, for each setting that the search
 /// may score. The limit keeps a search with a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
-/// Number of ranges around good thresholds in which outcomes are listed a second time, for more thresholds.
+/// Maximum number of ranges around good thresholds in which the outcomes of further thresholds are listed.
 const NEIGHBOURHOODS: usize = 24;
 /// Number of combinations of integer parameters that are listed before the search checks again whether to stop.
 const COMBINATIONS: usize = 8;
@@ -28,9 +28,9 @@ const MOST_SCORED: usize = 1000;
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
-    /// Lists the spikes and errors of all thresholds for every combination of integer parameters, and scores the best
-    /// with the codec. Returns false if the scheme cannot list them, or if the user fixed a parameter that the list
-    /// would choose.
+    /// Lists the number of spikes and the error at all thresholds, for every combination of integer parameters. Scores
+    /// the best of these outcomes with the codec. Returns false if the scheme cannot list outcomes, or if the user
+    /// fixed a parameter that the list would choose.
     pub(super) fn exactly(&mut self, space: &Space) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];

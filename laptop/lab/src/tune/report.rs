@@ -37,7 +37,7 @@ pub struct Row {
     pub sample: String,
     /// The parameters, by the names that files and other commands use.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
     /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,
@@ -69,7 +69,7 @@ pub struct Row {
 /// Figures of the paper's settings on the stretches of a channel.
 #[derive(Debug, Serialize)]
 pub struct Paper {
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
     /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,

@@ -172,7 +172,7 @@ pub struct Tuned {
 pub struct Curve {
     /// The scheme.
     pub scheme: Scheme,
-    /// Efficiency in percent and RMSE of each setting.
+    /// Efficiency in percent and RMSE at each point of the front.
     pub points: Vec<(f64, f64)>,
     /// Efficiency in percent and RMSE of the paper's settings, if the scheme has any.
     pub paper: Option<(f64, f64)>,

@@ -117,7 +117,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
 pub(super) struct Run<'a> {
     pub problem: &'a Problem<'a>,
     pub budget: &'a Budget<'a>,
-    /// The stretches to tune on, rounded to the sample type.
+    /// Samples of the stretches (parts of the recording) that are used for tuning, rounded to the sample type.
     pub rounded: &'a [Vec<f64>],
     pub found: Found,
     least: f64,
@@ -200,9 +200,10 @@ impl Run<'_> {
         }
     }
 
-    /// Moves each point along one axis to the best of several positions, which the scheme compares in a single pass
-    /// over the signal. The positions span the whole axis, or the share `width` of the axis around the point. Leaves
-    /// the points as they are if the scheme cannot compare values in this way.
+    /// Moves each point along one axis to the best of several positions. The scheme encodes the signal for all
+    /// positions in a single pass. If `width` is given, the positions lie around the point, within this share of the
+    /// axis. Otherwise, the positions span the whole axis. Leaves the points as they are if the scheme cannot process
+    /// several values in one pass.
     fn swept(
         &self,
         space: &Space,

@@ -54,7 +54,7 @@ pub(super) enum Role {
     /// above the parameter `shift`. The quotient is the number of samples for each spike while the signal is at its
     /// mean. The two values are the bounds of the sum of the taps.
     Sum(f64, f64),
-    /// A tap of the filter divided by the given unit.
+    /// A tap of the filter, as a multiple of the given unit.
     Tap(f64),
 }
 
@@ -72,7 +72,7 @@ pub(crate) struct Space {
 /// The axis along which a scheme compares many values in one pass over the signal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inner {
-    /// Index of the axis.
+    /// Index of the axis in the space.
     pub axis: usize,
     /// Whether the axis is the sum of the filter's taps. The compared values are then factors of this sum. Otherwise,
     /// the axis is the threshold, and the compared values are thresholds.

@@ -21,7 +21,7 @@ const NPZ: &[u8] = b"PK\x03\x04";
 #[cfg(feature = "datasets")]
 const PARQUET: &[u8] = b"PAR1";
 
-/// A source of rows, which are read as lines of CSV.
+/// A table in a format other than CSV. Its rows are converted to lines of CSV.
 trait Rows {
     /// Appends the next row to `text` as a line of CSV, with its line end. Returns false at the end of the table.
     fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool>;

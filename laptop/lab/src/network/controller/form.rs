@@ -16,7 +16,8 @@ const LARGEST: f64 = 1e15;
 /// step of the recording may be a little longer than a step of the training.
 const A_STEP: f64 = 0.98;
 
-/// Gains that differ from 1 by less than this are taken for exactly 1, in files of snnTorch and `SpikingJelly`.
+/// Rounding error of gains in files of snnTorch and `SpikingJelly`. A gain that differs from 1 by less than this error
+/// is taken for exactly 1.
 const ROUNDING: f64 = 1e-5;
 
 impl Model {

@@ -14,8 +14,12 @@ impl Model {
     /// Converts the network to the form that can be brought onto chips.
     ///
     /// # Errors
-    /// Returns an error if a current lasts longer than a step. Also returns an error if neurons that never fire have a
-    /// bias or are not in the last layer.
+    /// Returns an error in one of these cases:
+    /// - A synaptic current lasts longer than one step.
+    /// - The last layer never fires, and one of its neurons has a bias.
+    /// - A neuron outside such a last layer never fires.
+    ///
+    /// Also returns the errors of [`Trained::with_readout`].
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =

@@ -58,7 +58,8 @@ pub(super) struct Integers {
     pub shifts: Vec<u32>,
     /// Number of weights that exceeded 8 bits and were clipped, for each layer.
     pub clipped: Vec<usize>,
-    /// For each neuron of the last layer, the value of an integer potential of 1, in the units of the trained network.
+    /// For each neuron of the last layer, the factor that converts its integer potential to the units of the trained
+    /// network.
     pub units: Vec<f64>,
 }
 
@@ -119,7 +120,7 @@ struct Column {
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
-    /// Value of an integer potential of 1, in the units of the trained network.
+    /// Factor that converts an integer potential to the units of the trained network.
     unit: f64,
 }
 

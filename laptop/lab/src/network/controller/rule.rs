@@ -65,8 +65,8 @@ pub enum Current {
     New,
     /// The current of the step before.
     Old,
-    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`, and not its
-    /// weight times `dt / tau`.
+    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`. With `New`,
+    /// a spike adds its weight times `dt / tau`.
     Whole,
 }
 

@@ -38,7 +38,8 @@ pub const FIRED: u32 = {FIRED};"
 
 use spikewire_chips::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
 {bias}
-/// Number of steps from inputs to the answer that shows their effect. A step is a tick{micros}.
+/// Delay of the chip's answers, in steps: an answer shows the effect of the inputs of `LATE` steps before.
+/// A step is a tick{micros}.
 pub const LATE: usize = {late};
 
 {answer}

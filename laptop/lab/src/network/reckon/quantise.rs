@@ -55,9 +55,9 @@ pub(super) struct Quantised {
     /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
     /// these weights.
     pub(super) changes: Vec<Change>,
-    /// Number of neurons and outputs whose leak on the chip differs from the trained one. They differ because pairs of
-    /// neurons share a leak, and all outputs share one. The second number is the largest difference between a decay
-    /// factor on the chip and the trained one.
+    /// Differences between the leaks on the chip and the trained leaks. The leaks differ because two neurons of a pair
+    /// share one, and all outputs share one. The first figure is the number of neurons and outputs whose leak differs.
+    /// The second figure is the largest difference between a decay factor on the chip and the trained factor.
     pub(super) shared_keeps: (usize, f64),
 }
 

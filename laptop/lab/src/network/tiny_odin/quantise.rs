@@ -66,8 +66,8 @@ pub(super) struct ChipLayer {
 /// A neuron, and the weights that lead to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ChipNeuron {
-    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
-    /// inputs.
+    /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
+    /// neuron of the layer follows.
     pub weights: Vec<i8>,
     /// Weight that acts in every step.
     pub bias: i8,

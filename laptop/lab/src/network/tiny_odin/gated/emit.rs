@@ -1,5 +1,5 @@
-//! Writes a network whose neurons compare their potentials with their thresholds once a step as Rust source: constant
-//! data for `spikewire_chips`.
+//! Writes Rust source for a network whose neurons compare their potentials with their thresholds once a step. The
+//! source is constant data for `spikewire_chips`.
 
 use super::super::super::chip::{Remarks, lines, list};
 use super::Gated;

@@ -206,8 +206,8 @@ impl Gated {
         None
     }
 
-    /// Returns the number of rows of synapses for inputs, bias and neurons, and the number of all rows. The second
-    /// number also counts the rows that raise or lower neurons.
+    /// Returns two numbers of rows of synapses. The first number counts the rows for inputs, bias and neurons. The
+    /// second number also counts the rows that raise or lower the potentials of whole layers.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }

@@ -50,7 +50,7 @@ pub(super) struct Aim<'a> {
 /// The parameters of a neuron that the search varies.
 #[derive(Clone, Copy, PartialEq)]
 struct Choice {
-    /// Value of a weight of 1 on the chip, in the units of the trained network.
+    /// Factor that converts a weight on the chip to the units of the trained network.
     unit: f64,
     threshold: u16,
     leak: u8,
