@@ -81,8 +81,8 @@ pub struct OdinSynapse {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(clippy::struct_excessive_bools, reason = "each is a register")]
 pub struct OdinRegisters {
-    /// Register 1: whether the loop is open, that is, whether the spikes of neurons go only to the output bus and not
-    /// to other neurons.
+    /// Register 1: whether the loop is open. In open loop the spikes of neurons go only to the output bus, and not to
+    /// other neurons.
     pub is_open_loop: bool,
     /// Registers 2 to 17: bit `n % 16` of word `n / 16` is 1 if neuron `n` inhibits.
     pub inhibitory: [u16; 16],
@@ -102,8 +102,8 @@ pub struct OdinRegisters {
 }
 
 impl OdinRegisters {
-    /// Registers for an open loop with excitatory neurons only, without bursts and monitoring, in which synapses
-    /// without the mapping bit neither act nor learn.
+    /// Registers for a simple network: the loop is open, all neurons are excitatory, and bursts and monitoring are off.
+    /// Synapses without the mapping bit neither act nor learn.
     pub const PLAIN: Self = Self {
         is_open_loop: true,
         inhibitory: [0; 16],

@@ -22,8 +22,8 @@ pub type TinyOdin<D, P> = OdinChip<TinyOdinInput, D, P>;
 pub type TinyOdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<TinyOdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of tinyODIN. In the chip it takes 32 bits: potential in bits 0 to 11, threshold in
-/// 12 to 23, leak in 24 to 30, and the disabling bit 31.
+/// A leaky integrate-and-fire neuron of tinyODIN. It takes 32 bits of memory: bits 0 to 11 hold the potential, bits 12
+/// to 23 the threshold, and bits 24 to 30 the leak. Bit 31 disables the neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -51,8 +51,8 @@ impl TinyOdinNeuron {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinRegisters {
-    /// Register 1: whether the loop is open, that is, whether the spikes of neurons go only to the output bus and not
-    /// to other neurons.
+    /// Register 1: whether the loop is open. In open loop the spikes of neurons go only to the output bus, and not to
+    /// other neurons.
     pub is_open_loop: bool,
     /// Register 2: the spikes that go to the output bus.
     pub output_source: OutputSource,

@@ -41,9 +41,9 @@ pub fn pack_counts(counts: [u8; 16]) -> [u32; 2] {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum InputBank {
-    /// The first bank.
+    /// The bank whose registers begin at [`XyloMap::input`].
     First,
-    /// The second bank.
+    /// The bank whose registers begin two registers after [`XyloMap::input`].
     Second,
 }
 
@@ -69,8 +69,8 @@ pub struct XyloMap {
     pub outputs: u16,
     /// Mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
-    /// The bit that shows which input bank the next time step reads, as the address of its register and its mask. The
-    /// bit is 1 for the second bank. `None` if the public sources do not give this bit.
+    /// Register address and mask of the bit that shows which input bank the next time step reads. The bit is 1 for the
+    /// second bank. `None` if the public sources do not give this bit.
     pub next_bank: Option<(u16, u32)>,
 }
 

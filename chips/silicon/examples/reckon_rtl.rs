@@ -2,8 +2,9 @@
 //! `reckon_rtl SIMULATION [CLOCKS [SEED]]`.
 //!
 //! SIMULATION is a program that simulates the register-transfer code: Verilator builds it from this code and from
-//! `rtl/reckon.cpp`. Model and simulation get the same random programs, networks, samples and faults. Their pins and
-//! registers must be equal after each clock cycle and each edge of a pin, and their memories after each session.
+//! `rtl/reckon.cpp`. The model and the simulation get the same random sessions. A session sets registers, loads a
+//! network and runs samples, with faults in between. The pins and registers of the two must be equal after each clock
+//! cycle and each edge of a pin. The memories of the two must be equal after each session.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};

@@ -183,7 +183,7 @@ fn transact(
     Ok(())
 }
 
-/// Removes and returns the first planned fault if its number is `now`.
+/// Removes and returns the first planned fault if it is planned for `now`, the number of a clock pulse or of a call.
 fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
     let &(at, fault) = faults.front()?;
     (at == now).then(|| {

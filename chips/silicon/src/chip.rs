@@ -58,9 +58,11 @@ pub enum Input {
 pub struct Drive {
     /// Whether an event acts on the neuron. False if the neuron is accessed over SPI.
     pub is_event: bool,
-    /// Whether the event is a time step from a leak word. (A virtual leak is a virtual event.)
+    /// Whether the event is a time step from the input word [`Leak`](Input::Leak). False for a virtual leak of ODIN,
+    /// which is a virtual event.
     pub is_leak: bool,
-    /// The bits of a virtual event; 0 for other events.
+    /// Bits of the input word of a virtual event: the weight for tinyODIN; the weight, the sign and whether the event
+    /// is a leak for ODIN. 0 for other events.
     pub virtual_bits: u8,
     /// The 4 bits of the synapse through which the event acts.
     pub synapse: u8,
@@ -126,7 +128,7 @@ struct Control {
     is_bistability: bool,
 }
 
-/// A tinyODIN or an ODIN, by its [`Kind`].
+/// The model of a tinyODIN or an ODIN; the type `K` selects which of the two.
 #[derive(Clone, Debug)]
 pub struct Chip<K> {
     /// Level of the reset pin RST.
@@ -248,7 +250,8 @@ impl<K: Kind> Chip<K> {
         self.queue.len()
     }
 
-    /// Returns whether the gate is shut as the controller sees it, after synchronisation.
+    /// Returns whether the chip is gated. After a write to register 0 this changes only some clock cycles later, when
+    /// the new value has passed the synchroniser to the chip's clock.
     pub fn is_gated(&self) -> bool {
         self.clocked.gate[1]
     }
@@ -291,8 +294,8 @@ impl<K: Kind> Chip<K> {
         self.word = word;
     }
 
-    /// Runs the chip for `clocks` clock cycles. Stops early if no further clock cycle can change anything; the skipped
-    /// cycles are not counted.
+    /// Runs the chip for `clocks` clock cycles. Skips the rest of them if no further clock cycle can change anything;
+    /// [`clocks`](Self::clocks) counts the skipped cycles, too.
     pub fn run(&mut self, clocks: u32) {
         self.clocks += u64::from(clocks);
         for _ in 0..clocks {

@@ -1,6 +1,6 @@
 //! The counters of a chip's driver.
 
-/// The driver's counters of resets, and of time steps, events, words and outputs that were skipped, lost, late or sent
+/// The driver's counters: of resets, of what was lost, dropped or skipped, of late events, and of events that were sent
 /// again. Each counter saturates at its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

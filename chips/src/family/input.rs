@@ -43,7 +43,7 @@ pub trait Input: Copy {
     /// Returns an error if a value is out of its range, or if a virtual event has weight 0.
     fn word<B, P>(self) -> Result<u32, ChipError<B, P>>;
 
-    /// Returns the input that is a spike on row `pre` of the synapses.
+    /// Returns the input that sends a spike through all synapses in row `pre`.
     fn spike(pre: u8) -> Self;
 
     /// Returns the input that lets one neuron take a time step; `neuron` is at most [`PROBED`](Self::PROBED). A running

@@ -128,11 +128,11 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Sets the length of a time step in µs: [`Running::feed`] and [`Running::advance`] then send a leak event for
-    /// every `step` µs that pass. Without this setting they send no leak events.
+    /// Sets the length of a time step to `step` µs. [`Running::feed`] and [`Running::advance`] then send a leak event
+    /// for every `step` µs that pass. Without this setting they send no leak events.
     ///
-    /// Call [`Running::advance`] at least every 70 minutes. If a tick comes more than 70 minutes after the previous
-    /// one, the driver takes it for a late tick and sends no leak.
+    /// Call [`Running::advance`] at least every 70 minutes. The driver takes a tick (a time stamp) more than 70 minutes
+    /// after the previous tick for a late one, and then sends no leak event.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
@@ -174,7 +174,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Returns a chip that an earlier call left gated.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), or [`NotGated`](ChipError::NotGated) if the chip runs.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, or [`NotGated`](ChipError::NotGated)
+    /// if the chip runs.
     pub fn gated(&mut self) -> Outcome<Gated<'_, I, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

@@ -14,8 +14,8 @@ pub trait Describe<I: Input> {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
 
-    /// Returns the parameters of a neuron; those of a [disabled](Input::DISABLED) neuron if the network has no neuron
-    /// of this number.
+    /// Returns the parameters of a neuron. If the network has no neuron of this number, returns the parameters of a
+    /// [disabled](Input::DISABLED) neuron.
     fn neuron(&self, neuron: u8) -> I::Neuron;
 
     /// Returns the number of inputs.

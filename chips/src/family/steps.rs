@@ -86,23 +86,25 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// The neurons' initial potentials contain the offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps<'a> {
-    /// Number of inputs, without the bias.
+    /// Number of inputs. The bias (see [`has_bias`](Self::has_bias)) does not count.
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
     /// Number of rows of synapses for each input. Each neuron whose spikes act on neurons takes as many rows. The
     /// weight of an input or neuron is the sum of the weights in its rows.
     pub rows: u16,
-    /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
+    /// The layers, from the input to the output. The first layer has the chip's neurons from 0 on. Each other layer has
+    /// the neurons that follow those of the layer before.
     pub layers: &'a [StepsLayer],
     /// Number of events (rungs) that raise each layer in a step. The same number of events later lowers all neurons.
     pub rungs: u16,
-    /// The leaks of all neurons, as a list for each step. After the last list, the next step takes the first list
-    /// again. An entry in a list stands for one leak, and is the number of lowering events that are sent before this
-    /// leak. Entries are in ascending order.
+    /// The leaks of all neurons: one list for each step. After the last list, the next step takes the first list again.
+    /// A list has one entry for each leak: the number of lowering events that the driver sends before this leak. The
+    /// entries are in ascending order.
     pub leaks: &'a [&'a [u16]],
-    /// Number of events that raise all neurons before the leaks of [`own_leaks`](Self::own_leaks) are sent. The same
-    /// number of events lowers all neurons after these leaks. 0 if these leaks need no raising.
+    /// Number of events that raise the potentials of all neurons before the leaks of [`own_leaks`](Self::own_leaks).
+    /// After these leaks, the same number of events lowers the potentials again. With 0, these leaks are sent without
+    /// raising the potentials.
     pub lift: u16,
     /// For each neuron, the number of leaks that only this neuron receives after it has fired.
     pub own_leaks: &'a [u16],

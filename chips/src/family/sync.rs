@@ -29,8 +29,8 @@ fn anchor() -> Address {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
-    /// Shuts the gate of a chip at rest, opens its loop, and checks that the gate is shut and that chip and bus are in
-    /// sync.
+    /// Gates a chip at rest, and opens its loop, so that spikes no longer reach other neurons. Then checks that the
+    /// chip is gated and in sync with the bus.
     pub(super) fn shut(&mut self) -> Outcome<(), D, P> {
         self.state = State::NotReset;
         self.registers = None;
@@ -159,7 +159,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
+    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -171,7 +171,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Reads a byte, and returns an error unless it equals `value` outside the bits in `ignored`.
+    /// Reads a byte, and returns an error if it differs from `value`. Bits that are 1 in `ignored` are not compared.
     pub(super) fn expect_byte(
         &mut self,
         address: Address,

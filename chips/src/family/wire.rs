@@ -53,7 +53,7 @@ impl<D: SpiDevice> Wire<D> {
         self.write(register.into(), value)
     }
 
-    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
+    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
     pub(super) fn write_byte(
         &mut self,
         address: Address,

@@ -37,13 +37,13 @@ use wire::{Address, Wire};
 ///   writes two words to an address that no network uses, and reads each of them back. This detects a clock pulse that
 ///   was lost or doubled earlier.
 /// - **Undetected faults:** if one clock pulse is lost and another is doubled, chip and bus are in sync again
-///   afterwards. Three cases of such a pair may go unnoticed. In the first case, one of the two faults lies in the
-///   frame of a register or in the frame before: the register may keep its old value or take a wrong one, or a
-///   different register may be written. In the second case, the pair lies in the first bits of a frame that writes
-///   weights between neurons: the frame may then write a register instead. The driver notices this unless the memory
-///   already held the same weights. In the third case, the pair turns a read into a write while a load compares memory.
-///   [`Programmed::verify`] after the load detects this in weights and parameters, but not in the potential of a neuron
-///   or an output.
+///   afterwards. Such a pair of faults may go unnoticed in three cases:
+///   1. One of the two faults lies in the frame that writes a register, or in the frame before. The register may then
+///      keep its old value or take a wrong one, or the chip may write a different register.
+///   2. Both faults lie in the first bits of a frame that writes weights between neurons. The frame may then write a
+///      register instead. The driver does not notice this if the memory already held the same weights.
+///   3. The pair turns a read into a write while [`Programmed::load`] compares memory. [`Programmed::verify`] after the
+///      load detects this in weights and parameters, but not in the potential of a neuron or an output.
 /// - **Waits:** the driver waits for the chip by reading pins. After as many reads as [`new`](Self::new) was told, it
 ///   returns an error.
 ///
@@ -60,8 +60,8 @@ use wire::{Address, Wire};
 ///   2 N + 4 clock cycles, which a driver that reads its pins rarely would miss. Therefore the driver always sets the
 ///   chip to send an answer in each step. The pin then stays low until the last byte of the answer is taken, and a step
 ///   without an answer is an error.
-/// - If `SAMPLE` falls while the chip learns, the chip goes on learning without end, through all weights, unless it is
-///   set to send an answer in each step.
+/// - If `SAMPLE` falls while the chip learns, the chip goes on learning without end, through all weights. The setting
+///   to send an answer in each step, which the driver always makes, prevents this.
 /// - The chip processes neurons in pairs, up to the largest of the numbers of neurons, inputs and outputs. A pair that
 ///   the network does not use fires at every step if its memory holds a threshold of 0. Therefore [`Programmed::load`]
 ///   writes all 128 pairs.
@@ -125,7 +125,7 @@ pub struct ReckOn<D, P> {
     sizes: Sizes,
 }
 
-/// The highest number of an input, of a neuron and of an output in the network.
+/// The numbers of the network's last input, last neuron and last output, as the driver gives them to the chip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sizes {
     input: u8,
@@ -194,10 +194,11 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         port.set_infer(false)
     }
 
-    /// Returns a chip that an earlier call left with open memories.
+    /// Returns a chip that an earlier call left stopped, with its memories open to access.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), or [`NotGated`](ChipError::NotGated) if the chip runs.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, or [`NotGated`](ChipError::NotGated)
+    /// if the chip runs.
     pub fn programmed(&mut self) -> Outcome<Programmed<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -223,8 +224,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// Returns a chip that an earlier call left within a sample.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated) if the chip does not run, or
-    /// [`NotStarted`](ChipError::NotStarted) if it is between samples.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, [`Gated`](ChipError::Gated) if the
+    /// chip does not run, or [`NotStarted`](ChipError::NotStarted) if the chip is between samples.
     pub fn sample(&mut self) -> Outcome<ReckOnSample<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

@@ -59,13 +59,13 @@ pub trait ReckOnPort {
     /// See [`set_input`](Self::set_input).
     fn set_sample(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Drives `TIME_TICK`.
+    /// Drives `TIME_TICK`, whose rising edge begins a time step.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn set_tick(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Drives `TARGET_VALID`.
+    /// Drives `TARGET_VALID`, which is high in a time step from which the chip learns.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -77,7 +77,7 @@ pub trait ReckOnPort {
     /// See [`set_input`](Self::set_input).
     fn set_infer(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `TIMING_ERROR_RDY`.
+    /// Reads `TIMING_ERROR_RDY`, which is high while a tick may come.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

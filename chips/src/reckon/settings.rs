@@ -31,10 +31,10 @@ impl ReckOnAnswers {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnTask {
-    /// A label: the number of the output that should have the highest potential. Give the label in the first step of a
-    /// sample that learns.
+    /// The target is a label: the number of the output that should have the highest potential. Give the label once in a
+    /// sample, in the first step that learns.
     Classification,
-    /// A potential for each output. Give the potentials in every step that learns.
+    /// The target is a potential for each output. Give the potentials in every step that learns.
     Regression,
 }
 
@@ -54,8 +54,8 @@ pub struct ReckOnLearning {
     pub traces: [u8; 3],
     /// Left shift of the learning signal, 0 to 15. (After this shift, the chip divides the signal by 4096.)
     pub signal: u8,
-    /// Four potentials, ascending. They divide a neuron's potential into five ranges, for which
-    /// [`slopes`](Self::slopes) gives the slopes.
+    /// Four potentials, in ascending order. They divide the potentials of a neuron into five ranges. For each range,
+    /// [`slopes`](Self::slopes) gives a slope of the surrogate gradient.
     pub thresholds: [i16; 4],
     /// Slope of the surrogate gradient in each of the five ranges of a neuron's potential, -16 to 15.
     pub slopes: [i8; 5],

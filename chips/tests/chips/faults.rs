@@ -436,8 +436,8 @@ fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
     assert!(pairs_within_an_access(77) > 10_000);
 }
 
-/// Two faults may cancel out in the last frames of a sync check and leave a wrong value in the byte that the check
-/// writes. The driver must return an error.
+/// To check that chip and bus are in sync, the driver writes a byte and reads it back. Two faults in the last frames of
+/// this check may cancel out, and leave a wrong value in that byte. The driver must then return an error.
 #[test]
 fn a_pair_within_a_sync_check_is_an_error() {
     use ClockFault::{Doubled, Lost};

@@ -50,7 +50,8 @@ impl DescribeReckOn for RandomNetwork {
     }
 }
 
-/// Duration of the port's calls: clock cycles of the chip before a pin is read or set, and after it.
+/// Pace of the port: the chip's clock cycles that pass in each call before the pin is read or set, and those that pass
+/// afterwards. Also selects a tick that is lost.
 #[derive(Default)]
 struct Pace {
     before: Cell<u32>,
@@ -131,8 +132,8 @@ const SETTINGS: [ReckOnSettings; 3] = [
     ReckOnSettings::POTENTIALS,
 ];
 
-/// Makes a board, and a driver for its chip. Each call of the driver's port lasts as long as `pace` says at that
-/// moment.
+/// Makes a board, and a driver for its chip. Each call of the driver's port takes the clock cycles that `pace` holds at
+/// the time of the call.
 fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     let board = Board::new(10, 0);
     let port = Slow { port: board.port(), board: board.clone(), pace };
@@ -163,8 +164,9 @@ fn sample<'a, 'b>(
     Ok(((answers, fired), started))
 }
 
-/// Each port call takes 26 clock cycles. In small networks the ready pin is low for a shorter time: with up to 10
-/// neurons in a step, and with up to 25 neurons at the first tick of a sample. The answers must not change.
+/// Calls of the port that take up to 26 clock cycles must not change the answers. With up to 10 neurons, the ready pin
+/// is low for at most that time in each step, so that the driver may miss it. With up to 25 neurons, this is so only at
+/// the first tick of a sample.
 #[test]
 fn pins_that_are_read_seldom_change_no_answer() {
     for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {
@@ -199,8 +201,8 @@ fn pins_that_are_read_seldom_change_no_answer() {
     }
 }
 
-/// If a tick does not reach the chip, the driver returns an error instead of the answer to a different step, for any
-/// duration of the port's calls.
+/// If a tick does not reach the chip, the driver must return an error, and never the answer to a different step. The
+/// test tries fast and slow calls of the port.
 #[test]
 fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
     for neurons in [2, 16, 64] {

@@ -373,8 +373,8 @@ fn running(
     }
 }
 
-/// Updates the expected state of a chip that was just gated. If the loop was closed, the test no longer compares spikes
-/// and potentials.
+/// Updates the expected state of a chip that was just gated. If the chip ran in closed loop (spikes reach other
+/// neurons), the test cannot predict spikes and potentials, and the next comparison leaves them out.
 fn finish(known: &mut Known) {
     if !known.is_open_loop() {
         known.fired.clear();

@@ -7,15 +7,15 @@ use spikewire_chips::{
     Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
 };
 
-/// A neuron of the reference, in plain arithmetic. Its potential does not contain the offset by which the chip lowers
-/// all potentials during a step.
+/// A neuron of the reference: the test's own computation of the network, with which the chip's spikes must agree.
+/// `potential` leaves out the offset by which the chip lowers all potentials during a step.
 #[derive(Clone, Debug)]
 struct Neuron {
     threshold: i32,
     leak: i32,
     /// Amount by which an event that raises the neuron (a rung) changes its potential.
     rung: i32,
-    /// Number of leaks that only this neuron receives after a spike.
+    /// Number of leaks that act only on this neuron, at the end of each step in which it fires.
     own: u16,
     /// Weights from the previous layer (without the bias and the neuron's own layer). Each neuron of that layer has one
     /// weight for each of its rows of synapses. The weights of the layer's first neuron come first.

@@ -226,7 +226,8 @@ impl Learning {
         self.neuron
     }
 
-    /// Advances the counters, and stores the slopes and learning signals of sixteen neurons.
+    /// Advances the counters of learning. Stores the slope and the learning signal of the current neuron, in its place
+    /// among sixteen neurons.
     pub(super) fn clock(&self, chip: &ReckOn, new: &mut Clocked, next: State) {
         let now = &chip.now;
         let only_outputs = chip.register(9) == 4;

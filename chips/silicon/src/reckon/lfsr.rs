@@ -58,7 +58,8 @@ impl Lfsr {
         bits
     }
 
-    /// Returns the bits of this clock cycle as a number, for generators of at most 32 bits.
+    /// Returns the bits that the generator produces in this clock cycle, as one number. Only for generators of at most
+    /// 32 bits in a clock cycle.
     pub(super) fn word(&self) -> u32 {
         self.bits()[0] as u32
     }

@@ -29,7 +29,7 @@ pub(super) struct SpiSlave {
     pub(super) address: u16,
     /// The word that the core is to write.
     pub(super) data: u32,
-    /// Flags of the writes that the core is to make, the `PROG_` constants.
+    /// The writes that the core is to make, with one bit for each kind of write: the `PROG_` constants.
     pub(super) writing: u16,
     /// Flags of the reads that the core is to make: bit `n - 1` is for the memory with code `n`.
     pub(super) reading: u8,
