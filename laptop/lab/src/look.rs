@@ -241,8 +241,8 @@ fn bandwidth(values: &[f64]) -> f64 {
     bin.unwrap_or_default() as f64 / values.len() as f64
 }
 
-/// Returns the standard deviation of the time between samples, in ms and without the gaps, and the number of gaps.
-/// `times` are in µs.
+/// Returns the standard deviation of the time between samples in ms, and the number of gaps. The standard deviation
+/// leaves out the gaps. `times` are in µs.
 fn steps(times: &[i64]) -> (Option<f64>, usize) {
     let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
     let mut sorted = steps.clone();

@@ -33,8 +33,8 @@ pub struct Recording {
 impl Recording {
     /// Makes a recording of evenly spaced samples, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// Longest step in time that does not count as a gap, in usual steps. Any value serves, because all steps of
-        /// this recording are equal.
+        /// Longest step in time that does not count as a gap, as a multiple of the usual step. The value has no effect,
+        /// because the samples have no times.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -140,8 +140,8 @@ impl Recording {
     }
 }
 
-/// Splits `samples` samples into segments. For each segment except the first, `bounds` holds the index of its first
-/// sample.
+/// Returns the index range of each segment of a recording. `samples` is the number of samples. `bounds` holds the index
+/// at which each segment begins, except for the first segment, which begins at 0.
 fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.insert(0, 0);
     bounds.push(samples);

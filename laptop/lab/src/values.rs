@@ -89,7 +89,7 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 }
 
 impl Receive<'_> {
-    /// Makes a receiver of up to `N` channels and passes it to `then`.
+    /// Makes a receiver of up to `N` channels, and passes the receiver to the function `self.then`.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
         let Self { scheme, sample, settings, link, then } = self;
         let Link { slot_ticks, fingerprint, clock_ppm } = link;
@@ -284,11 +284,13 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Converts the decoded values to items, and appends these to `items`. The first `keyframes` values come from
-    /// keyframes. `before` says which channels were exact before the frame.
+    /// Converts the decoded values to items, and appends the items to `items`. The first `keyframes` values come from
+    /// keyframes. `before` says for each channel whether it was exact before the frame: the decoded value was known to
+    /// equal the encoder's value.
     ///
-    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on,
-    /// which ensures that no estimate is marked exact.
+    /// A channel may become exact in the middle of a frame. If keyframes resynchronize the code, the frame's values are
+    /// then marked exact. Otherwise, the channel's values are marked exact only from the next frame on, so that no
+    /// estimate is marked exact.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {

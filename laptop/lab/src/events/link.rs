@@ -121,7 +121,7 @@ pub(super) struct Writer {
     tick: Tick,
     /// Number of sender restarts so far, which numbers the sessions.
     starts: u32,
-    /// Whether no frame of this session has been written yet.
+    /// Whether no frame has been written since the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
     /// Whether a loss or a restart is still to be reported in a frame.

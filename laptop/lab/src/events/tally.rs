@@ -50,8 +50,8 @@ pub struct LinkTally {
     pub withheld: Option<Withheld>,
 }
 
-/// Comparison of keyframes with the decoder's values just before each keyframe, for codes whose decoder should already
-/// hold the keyframe's value.
+/// Comparison of each keyframe with the value that the decoder held just before the keyframe. Only codes whose decoder
+/// should already hold the keyframe's value are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
     /// Number of keyframes that followed an exact value.

@@ -89,8 +89,8 @@ impl Table {
         Self::of_text(text, 0, cut, file, options)
     }
 
-    /// Opens a table whose file has a format other than CSV. `rows` is the table converted to CSV. Its header line is
-    /// not counted as a line of the file.
+    /// Opens a table from a file that is not CSV. `rows` is the table converted to CSV. The file has no line for the
+    /// header line of `rows`, so line numbers in errors do not count the header line.
     ///
     /// # Errors
     /// See [`open`](Self::open).

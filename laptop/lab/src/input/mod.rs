@@ -315,12 +315,12 @@ impl InputOptions {
         if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
     }
 
-    /// Returns the columns that were chosen.
+    /// Returns the table columns that the options choose.
     fn columns(&self) -> impl Iterator<Item = &str> {
         self.column.iter().chain(&self.columns).map(String::as_str)
     }
 
-    /// Returns the fields that were chosen.
+    /// Returns the message fields that the options choose.
     fn fields(&self) -> impl Iterator<Item = &str> {
         self.field.iter().chain(&self.fields).map(String::as_str)
     }

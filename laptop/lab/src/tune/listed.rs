@@ -8,7 +8,7 @@ use super::space::Space;
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
-/// Smallest threshold whose number of spikes and error are listed, as a share of the signal's range.
+/// Smallest threshold in the list of thresholds, as a share of the signal's range.
 const SMALLEST: f64 = 1e-3;
 /// Maximum number of samples that are processed to list the outcomes of thresholds. The limit bounds the time to
 /// seconds.

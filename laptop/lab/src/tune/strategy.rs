@@ -55,7 +55,8 @@ impl Strategy {
         (0..POINTS).map(|_| point()).collect()
     }
 
-    /// Takes the points that `ask` returned, with their values, and adapts mean, step size and variances.
+    /// Takes the points that `ask` returned, each with the function's value there. Adapts the mean, the step size and
+    /// the variances from which `ask` draws the next points.
     pub(super) fn tell(&mut self, mut points: Vec<(Vec<f64>, f64)>) {
         points.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let axes = self.mean.len() as f64;

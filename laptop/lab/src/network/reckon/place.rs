@@ -16,7 +16,7 @@ pub(super) struct Places {
     /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
     /// that stays free because a layer has an odd number of neurons.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
-    /// For each layer and each of its neurons, the number of the chip's neuron that holds it.
+    /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
     by_layer: Vec<Vec<usize>>,
 }
 

@@ -23,17 +23,17 @@ const LARGEST: [f64; 20] = [
 ];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 const CLIMBS: usize = 2;
-/// Leaks to try, as multiples of the amount that the trained neuron loses, at a potential of half its threshold,
-/// between two leaks of the chip.
+/// Leaks to try for a neuron, as multiples of a reference. The reference is the amount that the trained neuron loses
+/// between two leaks of the chip, starting from half its threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
-/// Maximum number of neurons of each layer on which the search compares intervals between leaks.
+/// Maximum number of neurons that the search takes from each layer to compare intervals between leaks.
 const SURVEYED: usize = 32;
 /// The weight that stands for a leak, for functions that take a weight.
 const LEAK: i8 = i8::MIN;
 /// Maximum number of spikes of a layer in a step. The simulation of a step stops after more spikes, because the layer's
 /// recurrent spikes then drive the layer without end.
 const MOST_SPIKES: usize = 10_000;
-/// Numbers of steps to try between two leaks of all neurons.
+/// Intervals to try between two leaks, in steps. A leak moves the potential of every neuron towards 0.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
 
 /// A network in tinyODIN's integers. The chip's neurons are those of all layers, one layer after the other. If the

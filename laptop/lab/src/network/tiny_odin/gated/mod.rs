@@ -24,7 +24,7 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Maximum number of neurons of each layer on which the search compares [shapes](Shape).
+/// Maximum number of neurons that the search takes from each layer to compare [shapes](Shape).
 const SURVEYED: usize = 8;
 /// Number of [shapes](Shape) with which the whole network is quantised: those that are best for a sample of the
 /// neurons.

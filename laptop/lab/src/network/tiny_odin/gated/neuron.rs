@@ -26,7 +26,7 @@ pub(super) struct GatedNeuron {
 /// The sums of the weights that act on a neuron in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Added {
-    /// Sum of all weights.
+    /// Sum of all weights that act on the neuron in the step.
     pub all: i32,
     /// Sum of the positive weights only. The potential may rise by this sum during the step, because positive weights
     /// may arrive before negative ones.
