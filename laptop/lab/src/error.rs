@@ -215,7 +215,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the error is a broken pipe, because the program that read the output has closed it.
+    /// Returns whether the error is a broken pipe: the program that reads the output has closed the pipe.
     pub fn is_closed_pipe(&self) -> bool {
         matches!(&*self.kind, ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }

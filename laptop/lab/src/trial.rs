@@ -148,8 +148,8 @@ fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-/// Shifts the times of each segment after the first, such that its earliest time comes `period` after the latest time
-/// of the segment before. Times are in µs.
+/// Shifts the times of the segments such that each segment follows the one before: its earliest time comes `period`
+/// after the latest time of the segment before. The first segment keeps its times. All times are in µs.
 fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     let mut all: Vec<i64> = Vec::with_capacity(times.len());
     let mut latest: Option<i64> = None;

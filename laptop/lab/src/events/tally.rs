@@ -54,9 +54,9 @@ pub struct LinkTally {
 /// should already hold the keyframe's value are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
-    /// Number of keyframes that followed an exact value.
+    /// Number of keyframes that were compared with an exact value, which the decoder held before the keyframe.
     pub compared: u64,
-    /// Number of keyframes that followed an exact value and differed from it.
+    /// Number of compared keyframes that differed from the exact value.
     pub contradicted: u64,
 }
 

@@ -21,7 +21,7 @@ pub struct Step {
     pub kind: Kind,
     /// Index of the sample before the step.
     pub after: u64,
-    /// The length of the step in µs; negative if it goes back.
+    /// Time from the sample before the step to the sample after it, in µs; negative for a step back.
     pub microseconds: i64,
 }
 

@@ -31,7 +31,7 @@ pub struct Request<'a> {
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// A recording for testing a network after its parameters were tuned on another.
+/// A recording on which a network is tested after its parameters were tuned on a different recording.
 #[derive(Clone, Copy)]
 pub struct HeldOut<'a> {
     /// Input spikes of all steps, including those before `from`.

@@ -81,7 +81,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// Returns the name of the request's setting that limits the quantity.
+    /// Returns the name under which a request sets this limit, such as `max_ram`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ram => "max_ram",

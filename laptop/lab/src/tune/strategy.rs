@@ -14,7 +14,7 @@ pub(super) struct Strategy {
     mean: Vec<f64>,
     /// Step size common to all axes.
     step: f64,
-    /// The variance along each axis.
+    /// Variance of the points of a generation along each axis, before the factor `step` is applied.
     variances: Vec<f64>,
     /// Evolution path of the mean, by which the step size is adapted.
     path: Vec<f64>,

@@ -67,8 +67,8 @@ impl Places {
         self.by_layer[layer][neuron]
     }
 
-    /// Returns, for each pair of the chip's neurons, the layer and index of each of the network's neurons that the pair
-    /// holds. A pair holds two neurons, or one if its second neuron stays free.
+    /// Returns, for each pair of neurons on the chip, the network's neurons that the pair holds. Each is given by its
+    /// layer and its index in the layer. A pair holds two neurons, or one if its second place stays free.
     pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
     }

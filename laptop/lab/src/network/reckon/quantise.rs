@@ -125,8 +125,9 @@ impl Source {
     }
 }
 
-/// Returns the largest scale at which the weights and potentials of a pair of neurons fit the chip. `shifts` are the
-/// left shifts of input weights and of weights between neurons.
+/// Returns the scale of a pair of neurons: the largest factor by which the pair's weights and potentials can be
+/// multiplied so that all of them fit the chip. `shifts` are the chip's left shifts of input weights and of weights
+/// between neurons.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -385,8 +386,8 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Runs the neuron on the spikes `drives`, and returns the distance of its spikes from those that neuron `neuron`
-    /// has in `fired`.
+    /// Runs the neuron on the spikes in `drives`. Returns the distance between its spikes and the spikes in `fired` of
+    /// the neuron with index `neuron`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let mut is_over = false;

@@ -212,7 +212,7 @@ impl Gated {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
 
-    /// Returns the weight that row `row` of the chip's synapses has for neuron `post`. `spikewire_chips::Steps`
+    /// Returns the weight of the synapse in row `row` that leads to the chip's neuron `post`. `spikewire_chips::Steps`
     /// documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };
