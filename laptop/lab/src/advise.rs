@@ -61,7 +61,8 @@ pub struct AdviseRequest {
     /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, codes with which a
     /// simulated drone flew badly at this loss are not advised.
     pub frame_loss: f64,
-    /// Processor core, such as `M4F`, whose measured instruction counts apply.
+    /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
+    /// on it.
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,

@@ -15,9 +15,9 @@ pub struct Resolution {
     steps: u64,
     /// Sum of the absolute sizes of the steps from sample to sample.
     moved: f64,
-    /// Sum of the absolute errors that rounding to the sample type causes in the steps.
+    /// Sum of the absolute errors that rounding to `sample` causes in the steps from sample to sample.
     off: f64,
-    /// Sum of the absolute errors that rounding to `f32` causes in the steps.
+    /// Sum of the absolute errors that rounding to `f32` causes in the steps from sample to sample.
     off_single: f64,
     min: f64,
     max: f64,

@@ -34,7 +34,7 @@ pub struct BankAdvice {
     others: Vec<String>,
     /// The names of the channels that are unfit for tuning. The [`Advice`] on each such channel gives the reason.
     left_out: Vec<String>,
-    /// Remarks on what neither the log nor the simulator can show.
+    /// Questions that the advice leaves open, such as how the user's drone flies with the code.
     unknown: Vec<String>,
     /// Share of frames that the link loses, in percent.
     frame_loss: f64,
@@ -264,7 +264,7 @@ fn bank(
     }))
 }
 
-/// Lists remarks on what neither the log nor the simulator can show.
+/// Lists the questions that the advice leaves open, such as how the user's drone flies with the code.
 fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     let mut all = Vec::new();
     if request.loop_bandwidth.is_none() {

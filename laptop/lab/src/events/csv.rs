@@ -199,7 +199,7 @@ fn name_of(kind: SampleKind) -> String {
     }
 }
 
-/// Writes a table of events, or of decoded values if `values` is their sample type.
+/// Writes a table of events or, if `values` holds a sample type, of decoded values of that type.
 pub(super) struct Writer {
     values: Option<SampleType>,
     has_begun: bool,

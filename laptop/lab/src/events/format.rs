@@ -23,7 +23,7 @@ pub enum Format {
     EventStream,
     /// EVT2, in a file `.raw`.
     Evt2,
-    /// EIEIO datagrams.
+    /// EIEIO, the datagrams of `SpiNNaker` boards.
     Eieio(Board),
     /// A table of events in CSV.
     Csv,

@@ -9,7 +9,7 @@ use std::io::Write;
 /// A decoder of link frames to values.
 pub trait Values {
     /// Decodes a frame, and appends the decoded values to `items`. A temporal code gives a value for each keyframe and
-    /// event, and any other code a value for each sample that has ended.
+    /// each event. Any other code gives a value for each sample, once the time of the sample is over.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
     /// Appends the values of the last sample. Call it after the last frame.
@@ -121,7 +121,7 @@ pub(super) struct Writer {
     tick: Tick,
     /// Number of sender restarts so far, which numbers the sessions.
     starts: u32,
-    /// Whether no frame of this session has been written yet.
+    /// Whether no frame has been written since the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
     /// Whether a loss or a restart is still to be reported in a frame.

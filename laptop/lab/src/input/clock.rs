@@ -21,7 +21,7 @@ pub struct Step {
     pub kind: Kind,
     /// Index of the sample before the step.
     pub after: u64,
-    /// The length of the step in µs; negative if it goes back.
+    /// Time from the sample before the step to the sample after it, in µs; negative for a step back.
     pub microseconds: i64,
 }
 
@@ -78,7 +78,7 @@ const RUN: usize = 64;
 /// Longest step back that still counts as samples out of order, as a multiple of the usual step. A longer step back
 /// counts as a restart of the recorder's clock.
 const RESTART: f64 = 10.0;
-/// Factor by which the sample rate must change to be reported.
+/// Factor by which the sample rate must rise or fall before the change is reported.
 const JUMP: f64 = 1.5;
 
 /// The number of findings of one kind, such as gaps, with the first few of them.

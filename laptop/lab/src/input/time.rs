@@ -216,7 +216,7 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
 /// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp are used, while a
 /// float would keep only 15. Returns `None` if the field contains an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
-    /// Maximum number of digits before the decimal point, which keeps the sum within 128 bits.
+    /// Maximum number of digits before the decimal point. The limit keeps the time in ps within 128 bits.
     const MOST: usize = 24;
     let (is_negative, digits) = match field {
         [b'-', digits @ ..] => (true, digits),

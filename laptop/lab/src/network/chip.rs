@@ -159,7 +159,7 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Converts an error of a chip's driver in a run on the chip's model.
+/// Wraps an error that a chip's driver returned while a network ran on the chip's model.
 pub(super) fn refused<B, P>(error: ChipError<B, P>) -> crate::Error
 where
     ChipError<B, P>: std::error::Error + Send + Sync + 'static,

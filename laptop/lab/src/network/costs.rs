@@ -13,7 +13,7 @@ pub enum Cost {
     Order,
     /// Leaks that subtract a fixed amount, instead of a share of the potential.
     Leak,
-    /// Weights of a neuron that are rounded to whole numbers.
+    /// Rounding a neuron's weights to whole numbers.
     Weights {
         /// Largest absolute value of a weight after rounding.
         largest: f64,

@@ -165,7 +165,7 @@ impl Output {
     }
 }
 
-/// Adds a file's name to an error in writing the file, and keeps the error's kind.
+/// Adds the file's name to an error that occurred while the file was written. Keeps the error's kind.
 fn unwritten(name: &str, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{name}: cannot be written: {error}"))
 }

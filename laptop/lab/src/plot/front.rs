@@ -17,7 +17,7 @@ pub struct Panel {
     pub title: String,
     /// The signal's unit, if it is known.
     pub unit: Option<String>,
-    /// The front of each scheme.
+    /// The Pareto front of each scheme: its best settings, by spikes and error.
     pub curves: Vec<Curve>,
 }
 

@@ -63,7 +63,8 @@ impl Costs {
     }
 }
 
-/// Returns the name of the measured sample type that has the same width as `sample`.
+/// Returns the name of the sample type whose measured instruction counts stand for `sample`. Both types have the same
+/// width.
 fn measured_as(sample: SampleType) -> &'static str {
     match sample {
         SampleType::F32 => "f32",

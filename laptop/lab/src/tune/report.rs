@@ -43,7 +43,8 @@ pub struct Row {
     pub held_out: Option<Figures>,
     /// Figures on whole segments of the recordings, each coded in one piece.
     pub whole: Figures,
-    /// Figures of the paper's settings on the same stretches, if the paper has settings for the scheme.
+    /// Figures of the settings that the toolbox paper gives for the scheme, on the same stretches as `tuned_on` and
+    /// `held_out`. `None` if the paper gives none.
     pub paper: Option<Paper>,
     /// Costs on a flight controller.
     pub costs: Costs,
@@ -51,7 +52,8 @@ pub struct Row {
     pub quantisation: Option<f64>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes of thresholds that were listed and compared in exact arithmetic, without the codec.
+    /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
+    /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
     /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
@@ -66,7 +68,8 @@ pub struct Row {
     brief: String,
 }
 
-/// Figures of the paper's settings on the stretches of a channel.
+/// Figures of the settings that the paper *A toolbox for neuromorphic perception in robotics* gives for a scheme. The
+/// figures are computed on the stretches of a channel.
 #[derive(Debug, Serialize)]
 pub struct Paper {
     /// Figures on the stretches (parts of the recordings) that were used for tuning.

@@ -34,7 +34,8 @@ pub struct Found {
     pub front: Vec<Scored>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes of thresholds that were listed and compared in exact arithmetic, without the codec.
+    /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
+    /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
     /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
@@ -57,7 +58,8 @@ pub struct Method {
 pub(super) const BATCH: usize = 64;
 /// Smallest and largest number of parents with which an evolution starts.
 const PARENTS: (usize, usize) = (10, 100);
-/// Efficiencies in percent. To find a Pareto front, settings are searched for each of these efficiencies.
+/// Efficiencies in percent: 100 less the number of spikes for every 100 samples. To find a Pareto front, the search
+/// seeks the settings with the least error for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest value that [`Run::tighten`] gives to a parameter that is a maximum.
 const ROOM: usize = 16;

@@ -147,7 +147,8 @@ impl Space {
     }
 
     /// Returns `count` points to start from, spread over each axis. `share` is the share of samples at which the code
-    /// may spike. The sums of filters are such that about this share of spikes decodes to the signal's mean.
+    /// may spike. The sums of filter taps are chosen such that spikes at about this share of the samples decode to the
+    /// signal's mean.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);

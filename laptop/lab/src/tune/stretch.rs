@@ -64,7 +64,7 @@ pub struct HoldOut {
     pub part: f64,
 }
 
-/// Minimum number of samples in a block.
+/// Minimum number of samples in each block of a recording.
 const SHORTEST: usize = 20;
 
 /// Offset of the held-out blocks, which are spread evenly. If 30 % of 20 blocks are held out, neither the first nor the

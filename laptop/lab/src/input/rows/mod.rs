@@ -106,8 +106,8 @@ pub(super) fn of_file(path: &Path, name: &str) -> Result<Option<Box<dyn Read>>> 
     Ok(None)
 }
 
-/// Converts an input of JSON lines or of a `NumPy` array to CSV. `head` holds the first bytes of the input. If they
-/// belong to neither format, returns the input unchanged, as the inner error.
+/// Converts JSON lines or a `NumPy` array to CSV. `head` holds the first bytes of the input. If these bytes belong to
+/// neither format, returns `Ok(Err(input))` with the input unchanged.
 ///
 /// # Errors
 /// Returns an error if the first line or the header cannot be read, or holds no table.

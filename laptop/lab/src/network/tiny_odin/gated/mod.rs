@@ -24,7 +24,7 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Maximum number of neurons of each layer on which the search compares [shapes](Shape).
+/// Maximum number of neurons that the search takes from each layer to compare [shapes](Shape).
 const SURVEYED: usize = 8;
 /// Number of [shapes](Shape) with which the whole network is quantised: those that are best for a sample of the
 /// neurons.
@@ -212,7 +212,7 @@ impl Gated {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
 
-    /// Returns the weight that row `row` of the chip's synapses has for neuron `post`. `spikewire_chips::Steps`
+    /// Returns the weight of the synapse in row `row` that leads to the chip's neuron `post`. `spikewire_chips::Steps`
     /// documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };

@@ -2,12 +2,12 @@
 
 use super::shape::Shape;
 
-/// A neuron that compares its potential with its threshold once a step, and the weights that lead to the neuron.
-/// Potentials do not include the offset by which the chip lowers the neuron during a step.
+/// A neuron that compares its potential with its threshold once a step, and the weights that lead to the neuron. The
+/// chip lowers the potentials of all neurons by an offset during a step. Potentials are given here without this offset.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
-    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
-    /// inputs. On the chip, a weight is the sum over several rows of synapses.
+    /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
+    /// neuron of the layer follows. On the chip, a weight is the sum over several rows of synapses.
     pub weights: Vec<i16>,
     /// Weight that acts in every step.
     pub bias: i16,
@@ -26,7 +26,7 @@ pub(super) struct GatedNeuron {
 /// The sums of the weights that act on a neuron in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Added {
-    /// Sum of all weights.
+    /// Sum of all weights that act on the neuron in the step.
     pub all: i32,
     /// Sum of the positive weights only. The potential may rise by this sum during the step, because positive weights
     /// may arrive before negative ones.
