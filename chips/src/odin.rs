@@ -46,10 +46,14 @@ impl OdinNeuron {
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
-/// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A
-/// presynaptic spike strengthens a synapse if the neuron's potential is high and the neuron's calcium lies between the
-/// outer two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower
-/// two thresholds.
+/// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP).
+///
+/// The neuron's *calcium* is a number from 0 to 7 that rises by 1 when the neuron fires, and falls with time. A
+/// presynaptic spike strengthens a synapse if the neuron's potential is high, and its calcium is at least the first
+/// threshold and below the third. The spike weakens the synapse if the potential is low, and the calcium is at least
+/// the first threshold and below the second.
+///
+/// The bits that the fields name are bits of the neuron's 128 bits of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -93,9 +97,9 @@ pub struct OdinRegisters {
     /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. If set, the output bus shows
     /// the states of the neuron and the synapse instead of spikes.
     pub monitored: Option<(u8, u8)>,
-    /// Register 23: whether synapses without the mapping bit learn.
+    /// Register 23: whether synapses learn even if their [mapping bit](OdinSynapse::is_mapped) is 0.
     pub updates_unmapped: bool,
-    /// Register 24: whether synapses without the mapping bit act.
+    /// Register 24: whether synapses act even if their [mapping bit](OdinSynapse::is_mapped) is 0.
     pub propagates_unmapped: bool,
     /// Register 25: whether synapses also learn from [`OdinInput::Synapse`] events.
     pub learns_from_synapse: bool,
@@ -171,9 +175,9 @@ impl Input for OdinInput {
     const PROBED: u8 = 255;
     const NEURON_BYTES: u8 = 16;
     const PARAMETERS: [u8; 16] = 0xFFFF_FFFF_FFC0_003F_FFFF_FFFF_FFFF_FFFF_u128.to_le_bytes();
-    /// The slowest word is `BistabilityAll`: it takes 64 clock cycles for each neuron, and waits for up to 33 spikes of
-    /// 512 clock cycles each. All other words take at most 1600 clock cycles: `LeakAll` takes 512, after at most two
-    /// spikes.
+    /// The maximum for the slowest word, `BistabilityAll`, rounded up. This word takes 64 clock cycles for each neuron,
+    /// and waits for up to 33 spikes of 512 clock cycles each. All other words take at most 1600 clock cycles:
+    /// `LeakAll` takes 512, after at most two spikes.
     const MAX_CLOCKS: u32 = 34_000;
     const QUEUE: u32 = 32;
     const OPEN_LOOP: u16 = 1;
@@ -269,7 +273,8 @@ impl Input for OdinInput {
         Some(OdinNeuron { potential: before, ..*neuron })
     }
 
-    /// Encodes a signed weight without its sign. Sets the mapping bit unless the weight is 0.
+    /// Encodes a signed weight as the 4 bits of a synapse, without its sign. Sets the mapping bit, with which the
+    /// synapse acts, unless the weight is 0.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
         in_range("weight", weight.into(), -7, 7)?;
         Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })

@@ -69,7 +69,7 @@ enum Answer {
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// Number of pin reads before a wait times out, if each read takes at least one clock cycle of the chip.
+    /// Number of pin reads before a wait times out, not yet multiplied by `reads_per_clock`.
     polls: u32,
     /// Number of pin reads that fit into one clock cycle of the chip.
     reads_per_clock: NonZeroU32,

@@ -8,8 +8,8 @@ use spikewire::{Code, Event, Polarity, Scheme, Tick};
 /// [`Gated::load`](super::Gated::load) writes the network to the chip.
 ///
 /// The network's neurons are the chip's neurons from 0 on. An input is either a row of synapses onto all neurons, or a
-/// virtual event for one neuron. In open loop the chip's rows of synapses from row 0 on belong to the inputs. In closed
-/// loop the first rows belong to the neurons, and the rows of the inputs follow.
+/// virtual event for one neuron. If the network is not recurrent, the inputs have the chip's rows of synapses from row
+/// 0 on. If it is recurrent, the neurons have the first rows, and the rows of the inputs follow.
 pub trait Describe<I: Input> {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;

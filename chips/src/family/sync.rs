@@ -1,4 +1,5 @@
-//! Checks that the gate is shut and that chip and bus are in sync. Reads and writes memory with these checks.
+//! Checks that the chip is gated (its activity is stopped) and in sync with the bus. Reads and writes memory with these
+//! checks.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -40,9 +41,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_sync()
     }
 
-    /// Opens the gate, after an access to a byte that does not exist. The reason for this access: if the gate is shut
-    /// later while tinyODIN works, the chip overwrites the byte that was last accessed over SPI, in each neuron that it
-    /// has not processed yet.
+    /// Opens the gate, which lets the chip run. First reads a byte that does not exist, to protect the neurons' bytes:
+    /// if the gate is later shut while tinyODIN works, the chip overwrites a byte of each neuron that it has not
+    /// processed yet. The index of this byte is the one that was last accessed over SPI.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)

@@ -221,8 +221,8 @@ fn an_error_at_every_transfer_asks_for_a_reset() {
     }
 }
 
-/// A port whose input ACK a test can hold at a level, and whose output bus a test can keep busy. Counts the reads of
-/// the output bus's REQ.
+/// A port that passes calls on to `port`, with two faults that a test can switch on: the input bus's ACK stays at one
+/// level, or the output bus always seems busy. Counts the reads of the output bus's REQ.
 struct Held<P> {
     port: P,
     acknowledge: Rc<Cell<Option<bool>>>,

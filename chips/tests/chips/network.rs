@@ -420,7 +420,7 @@ proptest! {
     }
 }
 
-/// A reference for ODIN, which applies inputs to the neurons one after the other, without queue and timing.
+/// A reference model of ODIN, without queue and timing. It applies each input to the neurons one after the other.
 #[derive(Clone, Debug)]
 struct Twin {
     neurons: Vec<u128>,

@@ -28,9 +28,9 @@ fn whole_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (registers, memories.chain(outputs.map(|(_, word)| word)).collect())
 }
 
-/// Returns all registers, and the part of the memories that `verify` reads for [`NETWORK`]: the parameters of each pair
-/// of neurons, and the first word of each row of weights. This word holds the weights to two neurons or to one output.
-/// Leaves out potentials.
+/// Returns all registers, and the words of memory that `verify` compares with [`NETWORK`]: the parameters of each pair
+/// of neurons, and the first 32 bits of the rows of weights, which hold all weights of the network. The result contains
+/// no potentials, because `verify` does not compare them.
 fn network_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     let word = |row: u128| row & u128::from(u32::MAX);
     let rows = (0..256).map(|neuron| word(chip.recurrent_weights[neuron << 4]));

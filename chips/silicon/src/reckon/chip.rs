@@ -275,7 +275,7 @@ impl Default for ReckOn {
 /// An access to a memory in this clock cycle.
 struct Access {
     address: usize,
-    /// Data and mask of a write; `None` for a read.
+    /// Data and mask of a write, which changes the bits where the mask is 1; `None` for a read.
     write: Option<(u128, u128)>,
 }
 
@@ -460,7 +460,8 @@ impl ReckOn {
         }
     }
 
-    /// Returns the highest number of a neuron, an input or an output. A time step of the chip counts up to this number.
+    /// Returns the highest number of a neuron, an input or an output. In each time step, the counter `step_count` runs
+    /// from 0 to this number.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }
