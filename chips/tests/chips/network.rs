@@ -334,7 +334,7 @@ fn network(
     }
 }
 
-/// Writing a network as bytes fails if the network would not come back unchanged.
+/// Writing a network as bytes must fail if the bytes would not give the same network when read.
 #[test]
 fn a_network_that_bytes_cannot_hold_is_not_written() {
     let network = network(&[3], &[50], true, false);
@@ -420,7 +420,7 @@ proptest! {
     }
 }
 
-/// A reference for ODIN, which applies inputs to the neurons one after the other, without queue and timing.
+/// A reference model of ODIN, without queue and timing. It applies each input to the neurons one after the other.
 #[derive(Clone, Debug)]
 struct Twin {
     neurons: Vec<u128>,

@@ -12,7 +12,7 @@ use std::num::NonZeroU32;
 /// The mapping of a board's keys and time stamps to addresses and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// The key of address 0.
+    /// Key that stands for address 0. EIEIO gives the source of an event as a number, the key.
     pub base: u32,
     /// Length of a time step, in µs.
     pub step: NonZeroU32,

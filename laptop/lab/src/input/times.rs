@@ -3,7 +3,7 @@
 
 use super::{CHUNK, Clock, Rollover};
 
-/// Summary of the times of a recording that is read once, without storing it.
+/// Summary of the times of a recording. The times are added one by one, and are not all stored.
 pub(super) struct Times {
     gap: f64,
     /// The first times, from which the usual step is computed.

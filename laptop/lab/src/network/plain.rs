@@ -29,8 +29,8 @@ struct Written {
     name: Option<String>,
     /// The weights: one row for each neuron, with one weight for each input.
     weights: Vec<Vec<f64>>,
-    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer, whose spikes
-    /// act one step later.
+    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer. Spikes act
+    /// through these weights one step later.
     #[serde(default)]
     recurrent: Vec<Vec<f64>>,
     #[serde(default)]

@@ -1,4 +1,4 @@
-//! Reads a board's channel through probe-rs.
+//! Reads an RTT channel of a board through a debug probe, with the library probe-rs.
 
 use super::{CaptureKind, Channel};
 use crate::{Error, Result};
@@ -84,7 +84,7 @@ fn hint() -> &'static str {
     }
 }
 
-/// An RTT channel of a board that runs on while the channel is read.
+/// A channel of RTT: a buffer in a board's memory that a debug probe reads. The board keeps running meanwhile.
 struct Probed<'a> {
     core: Core<'a>,
     rtt: Rtt,

@@ -1,5 +1,5 @@
-//! Records spikes as messages in a ROS 1 bag or an MCAP file. The topic `event` has one message for each sample, as in
-//! the paper's toolbox.
+//! Records spikes as messages in a ROS 1 bag or an MCAP file. The topic `event` has one message for each sample. Its
+//! messages are those of the toolbox that belongs to the paper *A toolbox for neuromorphic perception in robotics*.
 //!
 //! A single message on the topic `event_header` holds the header of a file of spikes as text. With this header, every
 //! scheme can be decoded. The channels after the first are on the topics `event_1`, `event_2` and so on.

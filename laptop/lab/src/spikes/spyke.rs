@@ -1,9 +1,10 @@
-//! The message types of the paper's toolbox: the spikes of one sample, with parameters for decoding.
+//! The message types of the toolbox that belongs to the paper *A toolbox for neuromorphic perception in robotics*. A
+//! message holds the spikes of one sample, with parameters for decoding.
 
 use super::recorder::Format;
 use std::time::Duration;
 
-/// The toolbox's message of one sample.
+/// A message of the paper's toolbox: the spikes of one sample, and parameters for decoding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
     /// Number of spikes of each neuron, negative for spikes down. The numbers of all neurons in one sub-timestep
@@ -34,7 +35,8 @@ pub(crate) enum Kind {
     String,
 }
 
-/// Definition of the fields after the spikes, in the language of ROS messages.
+/// Definition of the fields that follow the spikes in the messages `spyke` and `spyke_array`, as text in the format of
+/// ROS.
 const FIELDS: &str = "float32 start
 float32 min_input
 float32 max_input

@@ -37,13 +37,14 @@ pub struct Row {
     pub sample: String,
     /// The parameters, by the names that files and other commands use.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
     /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,
     /// Figures on whole segments of the recordings, each coded in one piece.
     pub whole: Figures,
-    /// Figures of the paper's settings on the same stretches, if the paper has settings for the scheme.
+    /// Figures of the settings that the toolbox paper gives for the scheme, on the same stretches as `tuned_on` and
+    /// `held_out`. `None` if the paper gives none.
     pub paper: Option<Paper>,
     /// Costs on a flight controller.
     pub costs: Costs,
@@ -51,9 +52,10 @@ pub struct Row {
     pub quantisation: Option<f64>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were listed and compared in exact arithmetic.
+    /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
+    /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether every possible outcome was listed.
+    /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent.
     pub is_cut_short: bool,
@@ -66,10 +68,11 @@ pub struct Row {
     brief: String,
 }
 
-/// Figures of the paper's settings on the stretches of a channel.
+/// Figures of the settings that the paper *A toolbox for neuromorphic perception in robotics* gives for a scheme. The
+/// figures are computed on the stretches of a channel.
 #[derive(Debug, Serialize)]
 pub struct Paper {
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
     /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,

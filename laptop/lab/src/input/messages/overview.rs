@@ -25,7 +25,7 @@ pub struct Overview {
     pub count: u64,
     /// The times of the messages: length, rate and gaps.
     pub clock: Clock,
-    /// Wraps of the recorder's 32-bit clock.
+    /// The wraps of the recorder's 32-bit clock: their number, and the sample before the first wrap.
     pub rollover: Rollover,
     /// Number of missing messages, according to the counter in the messages.
     pub missing: u64,
