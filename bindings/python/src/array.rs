@@ -104,8 +104,8 @@ impl Lane<'_> {
         match self {
             Self::F32(lane) => {
                 let place = match lane.as_slice() {
-                    Some(samples) => first_bad(samples, is_finite),
-                    None => lane.iter().position(|value| !is_finite(value)),
+                    Some(samples) => first_bad(samples, |value| value.is_finite()),
+                    None => lane.iter().position(|value| !value.is_finite()),
                 }?;
                 Some(Bad { sample: place, what: format!("{} is not finite", lane[place]) })
             }
@@ -219,10 +219,6 @@ fn first_bad<T>(samples: &[T], is_good: impl Fn(&T) -> bool) -> Option<usize> {
     Some(start + samples[start..].iter().position(|own| !is_good(own))?)
 }
 
-fn is_finite(value: &f32) -> bool {
-    value.is_finite()
-}
-
 /// What a double must be for an encoder of this type.
 fn is_good(sample: SampleType) -> fn(&f64) -> bool {
     if sample == SampleType::F32 {
@@ -240,7 +236,7 @@ pub(crate) fn bad(
     sample: SampleType,
 ) -> Option<(usize, Bad)> {
     let are_good = match whole {
-        Some(run::Samples::F32(all)) => first_bad(all, is_finite).is_none(),
+        Some(run::Samples::F32(all)) => first_bad(all, |value| value.is_finite()).is_none(),
         Some(run::Samples::F64(all)) => first_bad(all, is_good(sample)).is_none(),
         Some(run::Samples::I16(_)) => true,
         None => false,
@@ -305,7 +301,7 @@ fn append<'a, T>(view: ArrayViewD<'a, T>, rows: &mut Vec<ArrayView1<'a, T>>) {
         1 => rows.extend(view.into_dimensionality::<Ix1>()),
         2 => {
             let Ok(view) = view.into_dimensionality::<Ix2>() else { return };
-            rows.extend((0..length).map(|row| view.clone().index_axis_move(Axis(0), row)));
+            rows.extend((0..length).map(|row| view.index_axis_move(Axis(0), row)));
         }
         _ => (0..length).for_each(|part| append(view.clone().index_axis_move(Axis(0), part), rows)),
     }

@@ -141,7 +141,9 @@ impl Coder {
         let settle = |(place, group): (usize, &[Lane])| {
             let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
                 let mut calibrated = Calibrated::of(self.sample, &self.asked);
-                group.iter().for_each(|lane| calibrated.observe(&lane.to_vec()));
+                for lane in group {
+                    calibrated.observe(&lane.to_vec());
+                }
                 calibrated
             });
             let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;

@@ -36,7 +36,9 @@ impl Calibrated {
     pub fn observe(&mut self, samples: &[f64]) {
         self.calibration.observe(samples, self.one);
         if let Some(quantiles) = &mut self.quantiles {
-            samples.iter().for_each(|sample| quantiles.observe(*sample));
+            for sample in samples {
+                quantiles.observe(*sample);
+            }
         }
     }
 
@@ -71,7 +73,9 @@ trait Calibrate {
 
 impl<S: Sample> Calibrate for Calibration<S> {
     fn observe(&mut self, samples: &[f64], one: f64) {
-        samples.iter().for_each(|sample| Self::observe(self, S::from_f64(sample * one)));
+        for sample in samples {
+            Self::observe(self, S::from_f64(sample * one));
+        }
     }
 
     fn range(&self) -> Option<(f64, f64)> {

@@ -207,10 +207,11 @@ enum Sink<'a> {
 }
 
 impl Sink<'_> {
-    /// Writes a block of codes that are a spike each and go to cells, many at once. Returns false if they are not.
-    fn put_spikes<O: 'static>(&mut self, outputs: &Vec<O>, count: usize) -> bool {
+    /// Writes the first `count` outputs of a vector to cells, many at once. Returns false if the outputs are not spikes,
+    /// or do not go to cells.
+    fn put_spikes(&mut self, outputs: &dyn Any, count: usize) -> bool {
         let (Self::Cells { rows, made, .. }, Some(spikes)) =
-            (self, (outputs as &dyn Any).downcast_ref::<Vec<Spike>>())
+            (self, outputs.downcast_ref::<Vec<Spike>>())
         else {
             return false;
         };
@@ -395,8 +396,8 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
             self.block.extend(samples.by_ref().take(most));
             let (block, outputs) = (&self.block, &mut self.outputs);
             let count = self.scheme.encode_slice(&mut self.encoder, block, outputs);
-            if !sink.put_spikes(outputs, count) {
-                sink.put(outputs.iter().take(count).filter_map(|output| output.code()));
+            if !sink.put_spikes(&self.outputs, count) {
+                sink.put(self.outputs.iter().take(count).filter_map(|output| output.code()));
             }
         }
         // Codes of large populations take too much room to be kept for each channel.
