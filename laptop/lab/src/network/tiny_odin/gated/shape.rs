@@ -24,7 +24,7 @@ pub(super) struct Shape {
     /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
     /// They follow the rungs that [`below`](Self::below) counts.
     pub above: u16,
-    /// Number of rungs that raise a neuron at rest from the offset to 0.
+    /// Number of rungs (events that raise the neurons) that raise a neuron at rest from the downward offset to 0.
     pub below: u16,
     /// The leaks that all neurons receive: one list for each step. After the last list, the next step uses the first
     /// list again. A list has one entry for each leak: the number of events that lower the neurons before this leak.
@@ -32,8 +32,8 @@ pub(super) struct Shape {
     /// Number of rungs that raise all neurons again at the end of a step. Each neuron that fired in the step then
     /// receives leaks of its own. 0 if spikes subtract the threshold.
     pub lift: u16,
-    /// Number of rungs between two leaks of a step. Several leaks in a step together reduce a potential by a share of
-    /// its value. 0 if a step sends fewer than two leaks to all neurons.
+    /// Number of rungs (events that raise the neurons) between two leaks of a step. Leaks at several heights together
+    /// reduce each potential by a share of its value. 0 if a step sends fewer than two leaks to all neurons.
     pub spacing: u16,
 }
 
@@ -46,8 +46,8 @@ impl Shape {
         if self.leaks.is_empty() { &[] } else { &self.leaks[step % self.leaks.len()] }
     }
 
-    /// Returns the number of events in a step of a network with `layers` layers. Does not count spikes, or leaks that
-    /// are sent only to neurons that fired.
+    /// Returns the mean number of rungs and leaks in a step of a network with `layers` layers. Counts only leaks that
+    /// all neurons receive.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         usize::from(self.rungs()) * (layers + 1) + leaks / self.leaks.len().max(1)
