@@ -264,8 +264,9 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme briefly, and adds the scheme to `reaching` or, with the reason, to `others`. If the simulated
-    /// drone flew badly with the scheme, the scheme is not tuned, and is added to `others`.
+    /// Decides whether a scheme suits the recording. Tunes the scheme briefly. Adds it to `reaching` if the settings
+    /// found are within the allowed RMSE, and otherwise to `others`, with the reason. A scheme with which the simulated
+    /// drone flew badly is not tuned. It is added to `unflown` and `others`.
     fn consider(
         &mut self,
         request: &AdviseRequest,

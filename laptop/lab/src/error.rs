@@ -44,7 +44,7 @@ pub enum Spot {
     Line(u64),
     /// An entry of a settings file, given by its line, counted from 1.
     Entry(u64),
-    /// A column of a table: the line, counted from 1, and the column's name.
+    /// A field of a table: the number of its line, counted from 1, and the name of its column.
     Column(u64, String),
     /// A byte, counted from 0.
     Byte(u64),

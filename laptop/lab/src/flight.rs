@@ -99,7 +99,8 @@ pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     own
 }
 
-/// A source of samples that are converted to the sensor's counts and then filtered, as in the flight's sender.
+/// A source of samples that are prepared as in the flight's sender: converted to the sensor's counts, and then
+/// filtered.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,

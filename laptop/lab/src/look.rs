@@ -51,7 +51,7 @@ pub struct ChannelSummary {
 pub enum Verdict {
     /// Fit for tuning.
     Good,
-    /// There are too few samples.
+    /// Too few samples for tuning.
     TooShort,
     /// All samples are equal.
     Constant,
@@ -65,8 +65,8 @@ pub enum Verdict {
 
 /// Fewest samples of a channel that is fit for tuning.
 const FEWEST: usize = 200;
-/// Smallest standard deviation with which a white channel is not taken for noise, as a multiple of the channel's
-/// `noise`.
+/// Factor that tells a signal from noise. A white channel (one with a flat spectrum) counts as noise if its standard
+/// deviation is below this multiple of the channel's `noise`.
 const ABOVE_NOISE: f64 = 2.0;
 /// Smallest spectral flatness with which a channel counts as white. Sensors at rest have a flatness of 0.67 to 0.95,
 /// and flights with vibration have 0.2 to 0.33.

@@ -167,11 +167,11 @@ fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
 pub struct Trial {
     /// The scheme that encodes and decodes.
     pub scheme: Scheme,
-    /// The parameters that were used.
+    /// The values of all parameters of the scheme.
     pub settings: Settings,
     /// Numbers of neurons and sub-timesteps.
     pub shape: Shape,
-    /// Latency of the code: the number of samples from a sample to its code.
+    /// Latency of the code: how many samples after a sample the encoder emits its code.
     pub latency: usize,
     /// Notes for the user on whether the parameters suit the recording.
     pub notes: Vec<String>,

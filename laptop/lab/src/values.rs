@@ -19,7 +19,7 @@ const FEWER: usize = 64;
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function that takes the receiver, as a decoder of frames to values.
+/// A function to which the receiver is passed. The receiver decodes link frames to values.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
 /// Properties of a link's sender besides its schemes.
@@ -27,9 +27,9 @@ type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 pub struct Link {
     /// Length of a sub-timestep in µs. `None` if the code does not divide samples into sub-timesteps.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint that the sender's frames carry. If `None`, the fingerprint is computed from the channels' schemes.
-    /// If a single scheme stands for an unknown number of channels, numbers of channels are tried until one gives the
-    /// received fingerprint.
+    /// Fingerprint that the sender's frames carry. If `None`, the receiver computes the fingerprint from the channels'
+    /// schemes. If the number of channels is not known, the receiver tries numbers of channels until one gives the
+    /// fingerprint in the frames.
     pub fingerprint: Option<Fingerprint>,
     /// Largest deviation of the sample period from its nominal length, in parts per million. `None` stands for the
     /// receiver's default.
@@ -229,7 +229,7 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     /// Whether each channel has a value. If keyframes resynchronize the code, all channels have a value from the start.
     /// Otherwise, a channel has a value from its first event on.
     has_fired: [bool; N],
-    /// Tick one sample period after the last received event, at which the event's sample is over.
+    /// End of the sample to which the last received event belongs: one sample period after the event's tick.
     end: Option<Tick>,
     /// Number of keyframes received although the code uses none.
     unused_keyframes: u64,

@@ -315,7 +315,8 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
 }
 
 /// Returns the total number of events of all channels, and the number of bytes that the link sends, including
-/// keyframes. If `in_loop`, a frame is sent for each sample; otherwise, a frame is sent once it is full.
+/// keyframes. If `in_loop` is true, each sample is sent in a frame of its own, as a control loop needs it. Otherwise,
+/// events of several samples share a frame.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

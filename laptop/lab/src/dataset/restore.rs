@@ -191,7 +191,7 @@ struct Spike {
 /// A reader of the rows of a Parquet file of spikes. One row group is in memory at a time.
 struct Rows<'a> {
     part: &'a Part,
-    /// Index of the next row group to read.
+    /// Index of the next row group (a block of rows in a Parquet file) to read.
     group: usize,
     spikes: std::vec::IntoIter<Spike>,
     next: Option<Spike>,
@@ -204,7 +204,7 @@ impl<'a> Rows<'a> {
         Ok(rows)
     }
 
-    /// Returns the next spike, if its index is below `end`.
+    /// Returns the next spike if the index of its sample is below `end`, and otherwise `None`.
     fn next_before(&mut self, end: u64) -> Result<Option<Spike>> {
         let Some(spike) = self.next.filter(|own| own.index < end) else { return Ok(None) };
         self.advance()?;

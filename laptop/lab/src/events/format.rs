@@ -15,7 +15,7 @@ use std::str::FromStr;
 /// An event format and its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Frames of the crate's own link.
+    /// The frames of `spikewire::link`.
     Link(Coding),
     /// eDVS, with the encoding of its events' times.
     Edvs(Edvs, EdvsTime),

@@ -4,7 +4,7 @@ use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
 use std::fmt;
 
-/// Counts that a reader of events keeps.
+/// Counts of everything in a stream that is not an event, kept by the stream's reader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Number of bytes that belong to no item.

@@ -401,8 +401,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the line at which `record`, the row read last, begins. Does not use the position that `record` stores:
-    /// it is the position of any comments before the row.
+    /// Returns the number of the line at which `record`, the row read last, begins. The position that `record` stores
+    /// is of no use here: if comments precede the row, that position is where the comments begin.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);

@@ -310,7 +310,7 @@ impl InputOptions {
         self.input == Path::new("-")
     }
 
-    /// Returns the input's name for messages.
+    /// Returns the name that messages to the user give the input: its path, or `standard input`.
     pub fn name(&self) -> String {
         if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
     }

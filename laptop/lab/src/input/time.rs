@@ -77,7 +77,8 @@ impl fmt::Display for TimeUnit {
 pub(super) enum Named {
     /// The times are in the given unit.
     In(TimeUnit),
-    /// The values decide the unit. Whole numbers that are too small for a time since 1970 are in the given unit.
+    /// The unit follows from the values. The given unit applies to whole numbers that are too small for times since
+    /// 1970.
     Whole(TimeUnit),
     /// The values are times if they are dates; otherwise the column has no times.
     Dates,

@@ -38,7 +38,8 @@ impl Times {
         clock
     }
 
-    /// Returns the length, rate and gaps of the times, and how often the recorder's clock wrapped around.
+    /// Returns two results: the duration, sample rate and gaps that the times show, and the wraps of the recorder's
+    /// 32-bit clock.
     pub(super) fn finish(mut self) -> (Clock, Rollover) {
         let clock = self.clock.take().unwrap_or_else(|| self.started());
         (clock, self.rollover)

@@ -18,7 +18,7 @@ pub struct Request<'a> {
     pub trained: &'a Trained,
     /// Input spikes of the recording on which the chip's parameters are tuned, by step.
     pub tuned: &'a Trains,
-    /// A second recording, on which the quantised network is only tested; `None` to test it on `tuned` only.
+    /// A second recording, which only tests the quantised network. If `None`, the network is tested on `tuned`.
     pub held_out: Option<HeldOut<'a>>,
     /// Output spikes that the training framework computed, by step. The first entry is for the recording `tuned`, the
     /// second for `held_out`. `None` if the framework's spikes are not known.

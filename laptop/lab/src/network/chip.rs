@@ -114,8 +114,8 @@ pub struct Ran {
 pub struct Stepped {
     /// The neurons that fired in the step, by layer.
     pub fired: Vec<Vec<u16>>,
-    /// Number of clock cycles that the chip took for the step. For the flight controller: number of weights that the
-    /// step added.
+    /// Number of clock cycles that the step took on the chip. If the network runs on the flight controller instead,
+    /// this is the number of weights that the step added.
     pub clocks: u64,
 }
 

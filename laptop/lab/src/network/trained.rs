@@ -70,8 +70,9 @@ pub struct Layer {
     pub name: String,
     /// The weights: one row for each neuron, with one weight for each input.
     pub weights: Vec<Vec<f64>>,
-    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer, whose spikes
-    /// act one step later. Empty unless the layer is recurrent.
+    /// The recurrent weights, from the layer's neurons to the same neurons. Each row holds the weights that lead to one
+    /// neuron: one weight from each neuron of the layer. A spike acts one step after it was fired. Empty unless the
+    /// layer is recurrent.
     pub recurrent: Vec<Vec<f64>>,
     /// For each neuron, the amount that every step adds to its potential.
     pub bias: Vec<f64>,
@@ -317,8 +318,8 @@ impl Trained {
         all
     }
 
-    /// Returns the outputs' potentials by step, given the spikes `fired` of all layers; empty if the outputs are the
-    /// spikes of the last layer.
+    /// Computes the potentials of the outputs in each step from `fired`, the spikes of all layers. Returns an empty
+    /// list if the network's outputs are the spikes of the last layer.
     pub fn potentials(&self, fired: &[Trains]) -> Vec<Vec<f64>> {
         let (Some(readout), Some(fired)) = (&self.readout, fired.last()) else { return vec![] };
         readout.run(fired)

@@ -71,7 +71,8 @@ impl Output {
         Self::to(path)
     }
 
-    /// Opens the output at `path`, or standard output if `path` is `None` or `-`, for a command without an input file.
+    /// Opens the output at `path`, or standard output if `path` is `None` or `-`. This function is for commands without
+    /// an input file. It cannot check that the output is a different file from the input.
     ///
     /// # Errors
     /// Returns an error if no file can be written at `path`.

@@ -18,7 +18,7 @@ pub(crate) struct Spyke {
     pub threshold: f32,
     /// The sample that was encoded.
     pub input: f32,
-    /// Name of the scheme in the toolbox.
+    /// Name of the scheme in the paper's toolbox.
     pub scheme: &'static str,
     /// Time of the sample.
     pub time: Duration,
@@ -27,7 +27,7 @@ pub(crate) struct Spyke {
 /// A type of ROS message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Spikes of one neuron.
+    /// A spike of one neuron.
     Spyke,
     /// Spikes of several neurons, or of several sub-timesteps.
     SpykeArray,
@@ -73,7 +73,7 @@ impl Kind {
         }
     }
 
-    /// Returns the definition of the type for ROS 2, followed by the definitions of nested types.
+    /// Returns the definition of the message type in the format of ROS 2, followed by the definitions of nested types.
     pub(crate) fn definition_ros2(self) -> String {
         let time = "builtin_interfaces/Time timestamp";
         let line = "=".repeat(80);

@@ -1,5 +1,6 @@
-//! Tunes step codes. Lists the spikes and errors of all thresholds in exact arithmetic, and scores the best thresholds
-//! with the codec.
+//! Tunes step codes, whose spikes each move the decoded value up or down by a step. Computes the number of spikes and
+//! the error at each threshold, in exact arithmetic and without the codec. Then scores only the best thresholds with
+//! the codec.
 
 use super::Scored;
 use super::problem::{Goal, most_spikes};
@@ -23,8 +24,8 @@ const COMBINATIONS: usize = 8;
 /// Maximum number of outcomes (thresholds with their spikes and errors) that are scored with the codec.
 const MOST_SCORED: usize = 1000;
 
-/// The combinations of integer parameters, and the outcomes worth scoring. Each outcome has the index of its
-/// combination.
+/// The combinations of integer parameters, and a list of outcomes (thresholds with their spikes and errors) that are
+/// worth scoring with the codec. Each outcome has the index of its combination.
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {

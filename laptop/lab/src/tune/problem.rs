@@ -114,7 +114,7 @@ pub struct Scored {
     pub options: Asked,
     /// Counts of samples, spikes and errors.
     pub tally: Tally,
-    /// Costs on a flight controller.
+    /// Costs of the settings on a flight controller, such as memory and instructions.
     pub costs: Costs,
     /// The limits that the settings break, including the one in the goal.
     pub excess: Vec<Excess>,
@@ -141,7 +141,7 @@ pub struct Problem<'a> {
     pub goal: Goal,
     /// Upper limits on what settings may cost.
     pub limits: &'a Limits,
-    /// The core whose measured instruction counts apply.
+    /// Name of the processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: &'a str,
     /// Range and mean of the samples in `train`.
     pub extent: Extent,
@@ -230,7 +230,8 @@ impl<'a> Problem<'a> {
         Ok((tally, latency))
     }
 
-    /// Scores settings as [`tally`](Self::tally) does. Also returns the full settings for the last stretch.
+    /// Scores settings on stretches, like [`tally`](Self::tally). Returns the counts, the code's latency in samples,
+    /// and the complete settings for the last stretch.
     fn tallied(
         &self,
         options: &Asked,

@@ -61,7 +61,7 @@ const PARENTS: (usize, usize) = (10, 100);
 /// Efficiencies in percent: 100 less the number of spikes for every 100 samples. To find a Pareto front, the search
 /// seeks the settings with the least error for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
-/// Smallest value that [`Run::tighten`] gives to a parameter that is a maximum.
+/// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
 /// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
@@ -136,8 +136,8 @@ impl Run<'_> {
         self.found.is_cut_short
     }
 
-    /// Scores options until the budget is spent, and keeps the best and the Pareto front. Returns each score, or `None`
-    /// for invalid options.
+    /// Scores the first entries of `all`, as many as the budget allows. Records the best settings and those that may be
+    /// on the Pareto front. Returns the score of each entry that was tried, or `None` for an invalid entry.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;

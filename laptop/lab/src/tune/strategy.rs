@@ -16,7 +16,7 @@ pub(super) struct Strategy {
     step: f64,
     /// Variance of the points of a generation along each axis, before the factor `step` is applied.
     variances: Vec<f64>,
-    /// Evolution path of the mean, by which the step size is adapted.
+    /// Evolution path of the mean. The step size is adapted by the length of this path.
     path: Vec<f64>,
     /// Evolution path of the mean over more generations, by which the variances are adapted.
     long_path: Vec<f64>,

@@ -130,8 +130,8 @@ mod tests {
     use super::{HoldOut, Stretch, cut};
     use crate::trial::Recording;
 
-    /// If 40 % of 5 blocks are held out, these are the second and the fifth block. They are coded together with the
-    /// blocks before them.
+    /// Cuts a recording into 5 blocks, and holds out 40 % of them: the second and the fifth block. Each is coded
+    /// together with the blocks before it.
     #[test]
     fn what_is_held_out_is_coded_with_what_is_before_it() {
         let values: Vec<f64> = (0..200).map(f64::from).collect();

@@ -21,7 +21,7 @@ pub struct Overview {
     pub texts: Vec<String>,
     /// The reason that the fields cannot be read. `None` if they can be read.
     pub unread: Option<String>,
-    /// Number of messages.
+    /// Number of messages of the topic.
     pub count: u64,
     /// The times of the messages: length, rate and gaps.
     pub clock: Clock,

@@ -1,8 +1,7 @@
-//! Converts tables in other formats to the lines of a CSV table. The formats are JSON lines, `NumPy`'s arrays, and
-//! Parquet.
+//! Converts tables in other formats (JSON lines, `NumPy` arrays and Parquet) to the lines of a CSV table.
 //!
-//! The same rules for columns, times and missing values thus apply to all tables. A number keeps its digits if the file
-//! has it as text. Otherwise, it becomes the shortest text that reads back as the same number.
+//! The same rules for columns, times and missing values thus apply to all tables. A number that the file stores as text
+//! keeps its digits. A binary number becomes the shortest text that reads back as the same number.
 
 mod json;
 mod numpy;
@@ -15,9 +14,11 @@ use std::fs::File;
 use std::io::{self, Read, Seek};
 use std::path::Path;
 
-/// First bytes of three formats: `NPY` of `NumPy`'s arrays, `NPZ` of archives of such arrays, `PARQUET` of Parquet.
+/// First bytes of a file with one `NumPy` array.
 const NPY: &[u8] = b"\x93NUMPY";
+/// First bytes of an archive of `NumPy` arrays.
 const NPZ: &[u8] = b"PK\x03\x04";
+/// First bytes of a Parquet file.
 #[cfg(feature = "datasets")]
 const PARQUET: &[u8] = b"PAR1";
 

@@ -30,8 +30,8 @@ const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
 const SURVEYED: usize = 32;
 /// A value that stands for a leak where a function expects a weight. It is below all weights of the chip.
 const LEAK: i8 = i8::MIN;
-/// Maximum number of spikes of a layer in a step. The simulation of a step stops after more spikes, because the layer's
-/// recurrent spikes then drive the layer without end.
+/// Maximum number of spikes of a layer that are simulated in a step. The limit ends steps in which a layer's recurrent
+/// spikes make the layer fire without end.
 const MOST_SPIKES: usize = 10_000;
 /// Intervals to try between two leaks, in steps. A leak moves the potential of every neuron towards 0.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
@@ -178,8 +178,8 @@ struct Drive {
 }
 
 impl Drive {
-    /// Lists the spikes in the order in which the chip applies them. The layer's own spikes, `fired`, act in the step
-    /// in which they occur, after the inputs.
+    /// Lists the spikes that act on a layer, in the order in which the chip applies them. In each step, the inputs come
+    /// first. In a recurrent layer, its own spikes of the same step follow, as `fired` lists them.
     fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
         let (mut ends, mut spikes) = (Vec::new(), Vec::new());
         let first = layer.inputs() as u16;
@@ -346,8 +346,8 @@ impl ChipNeuron {
         }
     }
 
-    /// Runs the neuron on the spikes that act on it in `aim`, and returns the distance between the neuron's spikes and
-    /// the target of `aim`. Returns infinity as soon as the distance reaches `most`.
+    /// Runs the neuron on the spikes in `aim.drive`. Returns the distance between the neuron's spikes and the spikes in
+    /// `aim.target`. Returns infinity as soon as the distance reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let threshold = i32::from(self.threshold);

@@ -1,7 +1,7 @@
-//! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. While a step's
-//! inputs arrive, all potentials are offset downwards so far that no neuron fires. Then a series of events, each called
-//! a *rung*, raises the neurons until the offset is gone, so that they can reach their thresholds. Further events lower
-//! the neurons again. `spikewire_chips::Steps` documents the whole sequence.
+//! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. A step starts with
+//! all potentials below their true values by an offset, so that no neuron fires while the step's inputs arrive. Then a
+//! series of events, each called a *rung*, raises the neurons. Neurons whose potentials thereby reach their thresholds
+//! fire. Further events lower all neurons to the offset again. `spikewire_chips::Steps` documents the whole sequence.
 
 mod emit;
 mod neuron;
@@ -26,8 +26,8 @@ const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
 /// Maximum number of neurons that the search takes from each layer to compare [shapes](Shape).
 const SURVEYED: usize = 8;
-/// Number of [shapes](Shape) with which the whole network is quantised: those that are best for a sample of the
-/// neurons.
+/// Number of [shapes](Shape) with which the whole network is quantised. The best shapes are chosen on a sample of the
+/// network's neurons.
 const CHOSEN: usize = 2;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.

@@ -86,9 +86,9 @@ impl GatedNeuron {
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// Returns the initial potential and the threshold of the neuron on the chip. The initial potential is the offset
-    /// downwards, of [`below`](Shape::below) rungs. The threshold on the chip is higher than
-    /// [`threshold`](Self::threshold) by [`above`](Shape::above) rungs.
+    /// Returns the neuron's initial potential and threshold on the chip. A rung is an event that raises the potential
+    /// by [`rung`](Self::rung). The initial potential is [`below`](Shape::below) rungs below 0. The threshold on the
+    /// chip is [`above`](Shape::above) rungs higher than [`threshold`](Self::threshold).
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

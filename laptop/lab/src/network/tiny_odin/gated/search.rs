@@ -13,7 +13,7 @@ use crate::network::Reset;
 /// finely. The last value rounds all weights to 0 if a weight is split over at most 4 rows. The neuron then stays
 /// silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
-/// Amounts by which a rung (an event that raises the neurons) raises a potential, in the initial choices of the search.
+/// Amounts to try first for a rung, an event that raises the neurons' potentials.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;

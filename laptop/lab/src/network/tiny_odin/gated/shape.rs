@@ -19,7 +19,7 @@ const WIDEST: f64 = 12.0;
 /// from firing. Then events called *rungs* raise the neurons, each by a fixed amount, until they can fire.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Number of rows of synapses for each input or sending neuron. A weight is the sum over its rows.
+    /// Number of rows of synapses that each input or sending neuron has. Each of its weights is split over these rows.
     pub rows: u16,
     /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
     /// They follow the rungs that [`below`](Self::below) counts.
