@@ -20,8 +20,8 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory. The driver does not support the chip's
-/// Izhikevich neurons.
+/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory; the bits that the fields name are counted
+/// from 0 within these. The driver does not support the chip's Izhikevich neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -53,7 +53,7 @@ impl OdinNeuron {
 /// threshold and below the third. The spike weakens the synapse if the potential is low, and the calcium is at least
 /// the first threshold and below the second.
 ///
-/// The bits that the fields name are bits of the neuron's 128 bits of memory.
+/// The bits that the fields name are counted from 0 within the neuron's 128 bits of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -61,7 +61,8 @@ pub struct OdinLearning {
     /// Potential at or above which a presynaptic spike can strengthen a synapse; below this potential the spike can
     /// weaken the synapse. Bits 18 to 25.
     pub potential: u8,
-    /// The three thresholds of the calcium, 0 to 7 each. Bits 26 to 34, 3 bits each.
+    /// The first, second and third threshold with which the calcium is compared, 0 to 7 each. Bits 26 to 34, 3 bits for
+    /// each threshold.
     pub calcium: [u8; 3],
     /// Number of time steps after which the calcium falls by 1, 1 to 31; 0 if it never falls. Bits 35 to 39.
     pub calcium_leak: u8,
@@ -74,8 +75,9 @@ pub struct OdinLearning {
 pub struct OdinSynapse {
     /// Weight, 0 to 7.
     pub weight: u8,
-    /// Mapping bit. A synapse without this bit acts only if register [24](OdinRegisters::propagates_unmapped) is set,
-    /// and learns only if register [23](OdinRegisters::updates_unmapped) is set.
+    /// The mapping bit, which enables the synapse. If this bit is 0, the synapse acts only if
+    /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is set, and learns only if
+    /// [`updates_unmapped`](OdinRegisters::updates_unmapped) is set.
     pub is_mapped: bool,
 }
 
@@ -125,8 +127,9 @@ impl OdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OdinInput {
-    /// A spike of neuron `pre` that acts through one synapse only. The synapse acts if it has the mapping bit, or if
-    /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is set.
+    /// A spike of neuron `pre` that acts through one synapse only. The synapse acts if its
+    /// [mapping bit](OdinSynapse::is_mapped) is 1, or if [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is
+    /// set.
     Synapse {
         /// The presynaptic neuron.
         pre: u8,
@@ -147,7 +150,7 @@ pub enum OdinInput {
         /// Whether the weight lowers the potential.
         is_inhibitory: bool,
     },
-    /// A time step for one neuron. This event waits in the chip's queue with virtual events and spikes.
+    /// A time step for one neuron. This event waits in the chip's queue, as spikes and virtual events do.
     VirtualLeak {
         /// The neuron that takes the time step.
         neuron: u8,

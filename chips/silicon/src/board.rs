@@ -110,7 +110,7 @@ impl<C: Model> Board<C> {
         Spi(self.clone())
     }
 
-    /// Returns a port that drives the chip's other pins.
+    /// Returns a port that drives the chip's pins other than SPI.
     pub fn port(&self) -> Port<C> {
         Port(self.clone())
     }

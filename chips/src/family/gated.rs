@@ -72,10 +72,11 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         self.chip.store(bytes.map(|(byte, value)| (Address::neuron(neuron, byte), 0, value)))
     }
 
-    /// Reads the parameters and the state of a neuron, and checks that chip and bus are in sync.
+    /// Reads the parameters and the state of a neuron. Checks that chip and bus are in sync: that no clock pulse was
+    /// lost or doubled.
     ///
     /// # Errors
-    /// Returns an error if the bus failed or is out of sync: then reset the chip.
+    /// Returns an error if the bus failed, or if chip and bus are out of sync: then reset the chip.
     pub fn neuron(&mut self, neuron: u8) -> Outcome<I::Neuron, D, P> {
         Ok(I::neuron(self.chip.fetch(bytes_of::<I>(neuron))?))
     }
@@ -91,10 +92,11 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         self.chip.store([(Address::synapse(pre, post), keep, value)].into_iter())
     }
 
-    /// Reads the synapse from `pre` to `post`, and checks that chip and bus are in sync.
+    /// Reads the synapse from `pre` to `post`. Checks that chip and bus are in sync: that no clock pulse was lost or
+    /// doubled.
     ///
     /// # Errors
-    /// Returns an error if the bus failed or is out of sync: then reset the chip.
+    /// Returns an error if the bus failed, or if chip and bus are out of sync: then reset the chip.
     pub fn synapse(&mut self, pre: u8, post: u8) -> Outcome<I::Synapse, D, P> {
         let [byte, ..] = self.chip.fetch([Address::synapse(pre, post)].into_iter())?;
         Ok(I::synapse(if post & 1 == 0 { byte & 0xF } else { byte >> 4 }))
@@ -110,11 +112,11 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         self.chip.store([(Address::neuron(neuron, byte), 0, value)].into_iter())
     }
 
-    /// Reads a byte of a neuron, and checks that chip and bus are in sync.
+    /// Reads a byte of a neuron. Checks that chip and bus are in sync: that no clock pulse was lost or doubled.
     ///
     /// # Errors
-    /// Returns an error if `byte` is not below [`Input::NEURON_BYTES`]. Also returns an error if the bus failed or is
-    /// out of sync: then reset the chip.
+    /// Returns an error if `byte` is not below [`Input::NEURON_BYTES`]. Also returns an error if the bus failed, or if
+    /// chip and bus are out of sync: then reset the chip.
     pub fn neuron_byte(&mut self, neuron: u8, byte: u8) -> Outcome<u8, D, P> {
         at_most("byte", byte.into(), u32::from(I::NEURON_BYTES) - 1)?;
         let [value, ..] = self.chip.fetch([Address::neuron(neuron, byte)].into_iter())?;

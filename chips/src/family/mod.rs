@@ -141,8 +141,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
 
     /// Sets the number of pin reads that fit into one clock cycle of the chip. The default is 1; set more if the
     /// microcontroller is much faster than the chip. The driver multiplies the pin reads of every wait by this number.
-    /// If the number is too low, words time out, and [`Running::gate`] may gate a chip that is still working, whose
-    /// potentials are then wrong.
+    ///
+    /// If the number is too low, the driver stops waiting before the chip is done. Handshakes of words then time out,
+    /// and [`Running::gate`] may gate a chip that is still working. The neurons' potentials are then wrong.
     #[must_use]
     pub fn with_reads_per_clock(mut self, reads: NonZeroU32) -> Self {
         self.aer.set_reads_per_clock(reads);

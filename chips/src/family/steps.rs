@@ -25,8 +25,8 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 ///     TinyOdinNeuron, neurons_from,
 /// };
 ///
-/// // Two inputs (rises and falls of a rate) and three neurons, whose rungs are 7. `spikewire network` writes such
-/// // constants.
+/// // Two inputs (rises and falls of a rate) and three neurons. A rung raises each potential by 7.
+/// // `spikewire network` writes such constants.
 /// static STEPS: Steps = Steps {
 ///     inputs: 2,
 ///     has_bias: false,

@@ -49,8 +49,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.configure(GATE_ACTIVITY, 0)
     }
 
-    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. If all bytes are 0 the neuron was
-    /// never written; it is then disabled, which sets a bit.
+    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`], and stores it as the beacon. Then
+    /// checks that chip and bus are in sync. If all these bytes are 0, the neuron was never written. This call then
+    /// disables the neuron, which makes one byte differ from 0.
     pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
         let last = I::NEURON_BYTES.saturating_sub(1);
         for byte in (0..=last).rev() {
@@ -96,12 +97,13 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Writes bytes, each with a mask of the bits to keep, then checks that chip and bus are in sync, and reads the
-    /// bytes back.
+    /// Writes bytes, then checks that chip and bus are in sync, and reads the bytes back. Each item of `bytes` is an
+    /// address, a mask and a value; bits that are 1 in the mask keep their value in memory.
     ///
-    /// After a fault, a write may go to another address; the byte at the intended address then stays unchanged. To
-    /// notice this, the driver writes only bytes that differ from memory, and also checks the reads that find the
-    /// differences. The bits to keep are compared as well.
+    /// A fault can divert a write to another address; the byte at the intended address then stays unchanged. The driver
+    /// can notice this only if the new value differs from the old one. Therefore it first reads the old bytes, checks
+    /// that chip and bus are in sync, and writes only the bytes that change. At the end it compares whole bytes,
+    /// including the bits that keep their value.
     pub(super) fn store(
         &mut self,
         bytes: impl Iterator<Item = (Address, u8, u8)> + Clone,
@@ -189,8 +191,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores the byte `value` at `address` as the beacon, if `address` is in the memory of neurons, and if a bit of
-    /// the byte is 1, lies in `mask` and belongs to a parameter. (The chip does not change parameters.)
+    /// Stores the byte `value` at `address` as the beacon: a byte that is known not to be 0. Uses only bits of
+    /// parameters, which the chip does not change, and of these only the bits that are 1 in `mask`. Does nothing if all
+    /// these bits of `value` are 0, or if `address` is not in the memory of neurons.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

@@ -24,37 +24,37 @@ pub trait ReckOnPort {
     /// Returns an error if the port failed.
     fn set_input(&mut self, byte: u8, is_target: bool) -> Result<(), Self::Error>;
 
-    /// Drives `AERIN_REQ`.
+    /// Drives `AERIN_REQ`, which announces a byte on `AERIN_ADDR`.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn set_input_request(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `AERIN_ACK`.
+    /// Reads `AERIN_ACK`, with which the chip confirms a byte on `AERIN_ADDR`.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn input_acknowledge(&mut self) -> Result<bool, Self::Error>;
 
-    /// Reads `OUT_REQ`.
+    /// Reads `OUT_REQ`, with which the chip announces a byte of its answer.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn output_request(&mut self) -> Result<bool, Self::Error>;
 
-    /// Reads `OUT_DATA`.
+    /// Reads `OUT_DATA`, a byte of the chip's answer.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn output(&mut self) -> Result<u8, Self::Error>;
 
-    /// Drives `OUT_ACK`.
+    /// Drives `OUT_ACK`, which confirms a byte of the chip's answer.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn set_output_acknowledge(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Drives `SAMPLE`.
+    /// Drives `SAMPLE`, which is high during a sample.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -72,7 +72,7 @@ pub trait ReckOnPort {
     /// See [`set_input`](Self::set_input).
     fn set_target_valid(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Drives `INFER_ACC`.
+    /// Drives `INFER_ACC`, which is high in a time step that counts for the label.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -84,7 +84,7 @@ pub trait ReckOnPort {
     /// See [`set_input`](Self::set_input).
     fn ready(&mut self) -> Result<bool, Self::Error>;
 
-    /// Drives `RST`.
+    /// Drives `RST`, the chip's reset.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

@@ -72,7 +72,8 @@ fn a_network_is_described_neuron_by_neuron() {
     assert_eq!(Inputs::<3, 2>::one_to_one(5), tall, "the last drives none");
 }
 
-/// A code with one neuron and two polarities has one input for each polarity.
+/// A signed code such as [`StepForward`] takes two inputs for each address, one for each polarity. A code without signs
+/// takes one input for each address.
 #[test]
 fn events_find_their_inputs() {
     let step = StepForward::<f32>::new(1.0);

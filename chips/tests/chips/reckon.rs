@@ -448,8 +448,8 @@ impl ReckOnPort for FaultyPort<'_> {
     }
 }
 
-/// Begins a sample on a chip without a network, whose answers have 16 outputs. Then sets faults with `set`, and returns
-/// the result of `act`.
+/// Begins a sample on a chip without a network. (The potentials in an answer of such a chip are those of 16 outputs.)
+/// Then sets faults with `set`, and returns the result of `act`.
 fn with_faults<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),

@@ -903,7 +903,9 @@ impl ReckOn {
         self.now = new;
     }
 
-    /// Advances the random generators.
+    /// Advances the random generators that this clock cycle uses. A reset or a write of a seed instead sets the
+    /// generator's state; `prog` has the flags of the seeds that are written. `alpha` is the share of its potential
+    /// that a neuron keeps, in units of 1/32 768. `draws` selects the generators that learning uses.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;
         let is_reset = now.resets[1];
