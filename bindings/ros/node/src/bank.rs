@@ -109,3 +109,56 @@ impl Bank {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Bank;
+    use crate::counters::Counters;
+    use crate::wire::{FlightSpikes, FlightValues, Header};
+    use ros2_client::builtin_interfaces::Time;
+    use spikewire_flight::Flight;
+
+    fn flown(scheme: &str, samples: &[[f64; 2]]) -> (Vec<(FlightSpikes, FlightValues)>, Counters) {
+        let text = format!(
+            "version = 1\nperiod = 1000\n{scheme}\n[[channel]]\nname = \"a\"\n[[channel]]\nname = \"b\"\ncounts = 10\n"
+        );
+        let mut bank = Bank::new(Flight::parse(&text).unwrap(), 1.5).unwrap();
+        let (mut all, mut counters) = (Vec::new(), Counters::default());
+        for (stamp, sample) in (0..).step_by(1_000_000).zip(samples) {
+            let header = Header { stamp: Time::from_nanos(stamp), frame_id: "imu".to_owned() };
+            all.extend(bank.take(sample, header, &mut counters).unwrap());
+        }
+        all.extend(bank.end(&mut counters).unwrap());
+        (all, counters)
+    }
+
+    #[test]
+    fn a_sample_with_a_channel_that_is_not_finite_emits_nothing() {
+        let sf = "scheme = \"sf\"\nparameters = { threshold = 0.5 }";
+        let samples = [[0.0, 0.0], [1.0, f64::NAN], [1.0, -0.1], [f64::MAX, 0.0], [1.0, -0.1]];
+        let (all, counters) = flown(sf, &samples);
+        assert_eq!(counters.to_string(), "2 samples not finite");
+        let stamps: Vec<i64> = all.iter().map(|(one, _)| one.header.stamp.to_nanos()).collect();
+        assert_eq!(stamps, [0, 2_000_000, 4_000_000]);
+        let spikes = |at: usize| all[at].0.spikes.iter().map(|own| (own.address, own.polarity));
+        assert_eq!(spikes(1).collect::<Vec<_>>(), [(0, 1), (1, -1)]);
+        // Thresholds are in counts, values in the unit.
+        assert_eq!(all[1].1.values, [0.5, -0.05]);
+    }
+
+    #[test]
+    fn addresses_go_by_channel_and_spikes_that_come_late_have_the_header_of_their_sample() {
+        let grf = "scheme = \"grf\"\nparameters = { neurons = 5, min = -1, max = 1 }";
+        let samples = [[-1.0, 0.1], [1.0, -0.1], [0.0, 0.0]];
+        let (all, _) = flown(grf, &samples);
+        for (FlightSpikes { spikes, .. }, _) in &all {
+            let channels: Vec<u16> = spikes.iter().map(|spike| spike.address / 5).collect();
+            assert_eq!(channels, [0, 1]);
+        }
+        let hsa = "scheme = \"hsa\"\nparameters = { filter = \"triang:15\", shift = 0 }";
+        let samples: Vec<[f64; 2]> = (0..100).map(|at| [f64::from(at % 20), 1.0]).collect();
+        let (all, counters) = flown(hsa, &samples);
+        let stamps = all.iter().map(|(one, _)| one.header.stamp.to_nanos());
+        assert!(stamps.eq((0..100).map(|at| at * 1_000_000)), "{counters}");
+    }
+}
