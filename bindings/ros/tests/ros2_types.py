@@ -96,7 +96,9 @@ class Spike(IdlStruct, typename="spikewire_msgs::msg::dds_::Spike_"):
 @dataclass
 class Spikes(IdlStruct, typename="spikewire_msgs::msg::dds_::Spikes_"):
     header: Header
+    sample: types.uint64
     spikes: types.sequence[Spike]
+    start: types.sequence[types.float32]
 
 
 @dataclass

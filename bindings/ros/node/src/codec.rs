@@ -143,7 +143,8 @@ impl Codec {
         self.scheme.info().name
     }
 
-    fn width(&self) -> usize {
+    /// Number of cells of a sample.
+    pub(crate) fn width(&self) -> usize {
         let shape = self.running.shape();
         shape.neurons * shape.slots
     }

@@ -1,7 +1,7 @@
 //! The nodes on DDS.
 
 use crate::arguments::Arguments;
-use crate::bank::Bank;
+use crate::bank::{Bank, Unbank};
 use crate::clock::Clock;
 use crate::codec::Request;
 use crate::counters::Counters;
@@ -30,6 +30,7 @@ use spikewire_flight::Flight;
 use std::collections::{BTreeMap, BTreeSet};
 use std::env;
 use std::fs;
+use std::marker::PhantomData;
 use std::net::Ipv4Addr;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -183,7 +184,11 @@ fn fly(arguments: &Arguments) -> Result<()> {
 }
 
 fn decode(arguments: &Arguments) -> Result<()> {
-    let mut decoding = Decoding::new(Settings::read(&arguments.parameters)?)?;
+    let settings = Settings::read(&arguments.parameters)?;
+    if let Some(path) = settings.flight()? {
+        return decode_flight(arguments, Unbank::new(Flight::read(path)?, settings.gap));
+    }
+    let mut decoding = Decoding::new(settings)?;
     let mut ros = Ros::new(arguments)?;
     let decoded = ros.publisher("~/decoded", "spyke_msgs", "SpykeValue", ALL)?;
     let kind = |kind: &str| match kind {
@@ -195,6 +200,25 @@ fn decode(arguments: &Arguments) -> Result<()> {
         if let Some(value) = decoding.take(&spikes, &said, &mut ros.counters)? {
             let timestamp = said.timestamp;
             ros.sent(decoded.publish(SpykeValue { value, timestamp }).is_ok());
+            ros.given += 1;
+        }
+        Ok(())
+    })?;
+    ros.end();
+    Ok(())
+}
+
+fn decode_flight(arguments: &Arguments, mut decoding: Unbank) -> Result<()> {
+    let mut ros = Ros::new(arguments)?;
+    let decoded = ros.publisher("~/decoded", "spikewire_msgs", "Values", ALL)?;
+    let kind = |kind: &str| match kind {
+        "spikewire_msgs/Spikes" => Ok(PhantomData),
+        _ => bail!("the topic is of {kind}; spikes of a flight are spikewire_msgs/Spikes"),
+    };
+    ros.listen(&arguments.topic("spikes"), kind, |ros, message: FlightSpikes| {
+        if let Some(values) = decoding.take(&message, &mut ros.counters)? {
+            let header = message.header;
+            ros.sent(decoded.publish(FlightValues { header, values }).is_ok());
             ros.given += 1;
         }
         Ok(())

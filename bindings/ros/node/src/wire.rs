@@ -50,7 +50,9 @@ pub(crate) struct Spike {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct FlightSpikes {
     pub header: Header,
+    pub sample: u64,
     pub spikes: Vec<Spike>,
+    pub start: Vec<f32>,
 }
 
 /// `spikewire_msgs/Values`
