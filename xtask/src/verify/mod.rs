@@ -263,6 +263,11 @@ const LONG: &[Step] = &[
     step("chip-flies", "the same, on a network on tinyODIN's model", simulated_drone::chip),
     step("net-flies", "the same, on a network in place of the cascade", network_flies::verify),
     step("reckon", "the model of ReckOn against the chip's own code", reckon::reckon),
+    step(
+        "tinyodin",
+        "steps of networks on tinyODIN's own code, against its model",
+        reckon::tiny_odin,
+    ),
     step("cores", "instruction counts on all five cores, and the log of the smallest", long::cores),
     step(
         "tuner",
