@@ -183,7 +183,7 @@ fn main() -> Result<()> {
     let source = fs::read_to_string(source)?;
     let numbers = |name| Ok::<_, Box<dyn std::error::Error>>(lists(&source, name)?.concat());
     let number = |name| Ok::<_, Box<dyn std::error::Error>>(numbers(name)?[0]);
-    let of_layers = source.split("StepsLayer {").skip(2).map(|layer| StepsLayer {
+    let of_layers = source.split("StepsLayer {").skip(1).map(|layer| StepsLayer {
         neurons: layer
             .split(|c: char| !c.is_ascii_digit())
             .find_map(|n| n.parse().ok())

@@ -84,11 +84,11 @@ pub fn tiny_odin() -> Result<()> {
     fs::write(&inputs, &steps)?;
     for (network, options) in NETWORKS {
         let mut live =
-            cargo("run --release --package spikewire-cli -- network --compare step --live");
+            cargo("run --quiet --package spikewire-cli -- network --compare step --live");
         live.args(options.split(' ')).arg(peers.join(network)).arg(&inputs);
         live.arg("-o").arg(&source).arg("--bytes").arg(&bytes);
         let on_model = answers(&mut live, &inputs)?;
-        let mut program = cargo("run --release --package silicon --example tinyodin_rtl --");
+        let mut program = cargo("run --quiet --package silicon --example tinyodin_rtl --");
         let on_chip = answers(program.arg(&simulation).arg(&source).arg(&bytes), &inputs)?;
         let (count, all) = (on_chip.lines().count(), steps.lines().count());
         ensure!(count == all, "{network}: {count} answers to {all} steps");

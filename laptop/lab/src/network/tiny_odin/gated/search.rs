@@ -210,11 +210,8 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     }
     // After a spike, the whole rungs in the excess over the threshold remain. Leaks before that have acted on it as on
     // a potential far below 0.
-    let late = if layer.reset == Reset::SubtractLate {
-        f64::from(threshold) * (1.0 / keep.max(0.1) - 1.0)
-    } else {
-        0.0
-    };
+    let late =
+        if layer.reset == Reset::SubtractLate { f64::from(threshold) * (1.0 - keep) } else { 0.0 };
     let passed = if shape.share.is_some() { (1.0 - keep) * above } else { 0.0 };
     ((above - passed + rung / 2.0 - late) / leak).round().max(0.0) as i32
 }
