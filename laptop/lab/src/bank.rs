@@ -56,12 +56,14 @@ impl Bank {
         });
     }
 
-    /// Encodes the samples that still wait for their look-ahead, and appends their events.
+    /// Ends the recording: encodes the last samples, which the encoders held back to look ahead, and appends their
+    /// events.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         self.collect(events, Codec::finish);
     }
 
-    /// Runs `take` on each codec, and appends the codecs' events, sorted by sample, then by slot and channel.
+    /// Calls `take` on each channel's codec, and appends the events of all codecs. The events are sorted by sample,
+    /// then by slot (sub-timestep), then by channel.
     fn collect(
         &mut self,
         events: &mut Vec<Event>,

@@ -7,7 +7,7 @@ use super::net::{Layer, Neuron, Recurrent, Spike};
 use crate::network::fault::{Context, FitKind, Result, ensure};
 
 /// Maximum share of a synaptic current that may remain after one step. The chips' neurons have no synaptic current, so
-/// the current must end with its step.
+/// a spike must not act on later steps through its current.
 const CURRENT: f64 = 1e-3;
 
 impl Model {

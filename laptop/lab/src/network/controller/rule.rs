@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 /// The training framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// The framework snnTorch. It trains with several kinds of reset, and its files do not say with which one.
+    /// The framework snnTorch. It trains with several kinds of reset, and a file does not say which kind was used.
     SnnTorch,
     /// The framework Norse.
     Norse,
@@ -65,18 +65,19 @@ pub enum Current {
     New,
     /// The current of the step before.
     Old,
-    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`, and not its
-    /// weight times `dt / tau`.
+    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`. With `New`,
+    /// a spike adds its weight times `dt / tau`.
     Whole,
 }
 
-/// The parts of a rule that the user gave. The framework may imply further parts; the others are open.
+/// The parts of the rule for decay, firing and reset that the user gave. The framework may imply further parts; the
+/// others are open.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The training framework, which implies some of the other parts.
     pub framework: Option<Framework>,
-    /// How a spike resets its neuron: one entry for all layers, or one entry for each layer that fires; empty if not
-    /// given.
+    /// The ways in which a spike resets its neuron. A single entry applies to all layers. Otherwise, there is
+    /// one entry for each layer that fires. Empty if the user gave none.
     pub resets: Vec<Reset>,
     /// Whether a neuron fires at its threshold, or only above it.
     pub fires: Option<Fires>,
@@ -105,8 +106,9 @@ pub struct Rule {
     pub dt: f64,
 }
 
-/// The rule of networks in JSON. A neuron fires above its threshold, and a spike sets the potential to 0 in the same
-/// step. Decay and duration of a step play no role, because the parameters in JSON apply to one step.
+/// The rule that the neurons of a network in JSON follow. A neuron fires if its potential is above its threshold. The
+/// spike sets the potential to 0 in the same step. `decay` and `dt` play no role, because the parameters in JSON apply
+/// to one step.
 pub(super) const PLAIN: Rule = Rule {
     framework: None,
     reset: Reset::ToValue,
@@ -143,7 +145,7 @@ impl Framework {
         }
     }
 
-    /// Returns the parts of the rule that the framework implies.
+    /// Returns the parts of the rule for decay, firing and reset that this framework implies.
     fn says(self) -> Asked {
         use {Current as C, Decay as D, Fires as F, Framework as W, Reset as R};
         let (reset, fires, decay, current, dt) = match self {
@@ -224,8 +226,8 @@ impl Asked {
         }
     }
 
-    /// Returns the reset of the first layer that the user gave. If the user gave no reset, returns the reset in `says`,
-    /// which contains the parts of the rule that the framework implies.
+    /// Returns the first of the resets that the user gave. If the user gave none, returns the first reset in `says`,
+    /// the parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }

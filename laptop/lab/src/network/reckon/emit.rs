@@ -38,7 +38,7 @@ pub static RAISES: [&[u8]; TICKS] = [{}];
     let age = if ticks == 1 { "a step" } else { "a tick" };
     let answer = match network.unit {
         Some(unit) => format!(
-            "/// The value of 1 in an answer, in the units of the training.\npub const UNIT: f32 = {:?};",
+            "/// The value of 1 in an answer, in the units of the trained network.\npub const UNIT: f32 = {:?};",
             unit as f32
         ),
         None => format!(
@@ -48,8 +48,8 @@ pub const FIRED: u32 = {FIRED};"
     };
     let late = network.late();
     let (unit, step) = match ticks {
-        1 => ("steps", "a step is a tick"),
-        _ => ("ticks", "a step has `TICKS` ticks"),
+        1 => ("steps", "A step is a tick"),
+        _ => ("ticks", "A step has `TICKS` ticks"),
     };
     let pairs = lines(network.pairs.iter().map(|ReckOnPair { keep, threshold }| {
         format!("ReckOnPair {{ keep: {keep}, threshold: {threshold} }}")
@@ -64,7 +64,8 @@ pub const FIRED: u32 = {FIRED};"
 
 use spikewire_chips::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
 {bias}
-/// Number of {unit} from inputs to the answer that shows their effect; {step}{micros}.
+/// Delay of the chip's answers, in {unit}: an answer shows the effect of the inputs of `LATE` {unit} before.
+/// {step}{micros}.
 pub const LATE: usize = {late};
 
 {answer}

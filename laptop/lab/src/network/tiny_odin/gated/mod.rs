@@ -1,7 +1,7 @@
-//! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. While a step's
-//! inputs arrive, all potentials are offset downwards so far that no neuron fires. Then a series of events, each called
-//! a *rung*, raises the neurons until the offset is gone and they compare. Further events lower the neurons again.
-//! `spikewire_chips::Steps` documents the whole sequence.
+//! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. A step starts with
+//! all potentials below their true values by an offset, so that no neuron fires while the step's inputs arrive. Then a
+//! series of events, each called a *rung*, raises the neurons. Neurons whose potentials thereby reach their thresholds
+//! fire. Further events lower all neurons to the offset again. `spikewire_chips::Steps` documents the whole sequence.
 
 mod emit;
 mod neuron;
@@ -197,13 +197,13 @@ impl Gated {
         None
     }
 
-    /// Returns the number of rows of synapses for inputs, bias and neurons, and the number of all rows. All rows
-    /// include the rows that raise or lower neurons.
+    /// Returns two numbers of rows of synapses. The first number counts the rows for inputs, bias and neurons. The
+    /// second number also counts the rows that raise or lower the potentials of whole layers.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
 
-    /// Returns the weight that row `row` of the chip's synapses has for neuron `post`. `spikewire_chips::Steps`
+    /// Returns the weight of the synapse in row `row` that leads to the chip's neuron `post`. `spikewire_chips::Steps`
     /// documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };
