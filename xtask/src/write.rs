@@ -20,7 +20,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// The parts: those from the catalogue first, then those that are measured or drawn.
-const PARTS: [Part; 19] = [
+const PARTS: [Part; 20] = [
     part("interface", "interface.txt of each published crate", interface::write),
     part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),
     part("python", "bindings/python/spikewire/_schemes.pyi", python_package::write_stub),

@@ -610,12 +610,15 @@ impl Quantised {
     /// Returns an error if the outputs keep too little of their potential to be read.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
-        let mean = keep.iter().sum::<f64>() / keep.len() as f64;
+        let ticks = self.ticks.len();
+        let kept = keep.iter().map(|keep| keep.powf(1.0 / ticks as f64));
+        let mean = kept.sum::<f64>() / keep.len() as f64;
         let held = (mean * OUTPUT_KEEP).round();
         let kind = FitKind::OutputLeak { keep: mean };
         ensure!(held >= 1.0, kind.at(Spot::Part(name.clone())));
         for &keep in keep {
-            self.tell_keep(keep, held / OUTPUT_KEEP, 0.5 / OUTPUT_KEEP);
+            let held = (held / OUTPUT_KEEP).powi(ticks as i32);
+            self.tell_keep(keep, held, 0.5 * ticks as f64 / OUTPUT_KEEP);
         }
         let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
         let room = ROOM / largest(potentials.iter().flatten().copied()).max(most);
