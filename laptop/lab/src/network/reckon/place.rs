@@ -6,7 +6,7 @@ use crate::network::fault::{FitKind, Result, ensure};
 
 const NEURONS: usize = 256;
 const OUTPUTS: usize = 16;
-/// Largest difference between the shares of a potential that two neurons keep in a step if a common share stands for both.
+/// Largest difference between the shares of a potential that two neurons keep in a step, if one leak serves both.
 const SAME: f64 = 1e-4;
 
 /// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which

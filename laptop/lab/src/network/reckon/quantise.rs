@@ -281,8 +281,8 @@ pub(super) fn quantise(
     Ok(network)
 }
 
-/// Returns the number of ticks in a step: as few as leave the chip's neurons with at most the share of their potential that
-/// the network's neurons keep in a step.
+/// Returns the number of ticks in a step: the smallest in which the chip's neurons can lose what the network's neurons
+/// lose in a step.
 fn ticks(trained: &Trained) -> usize {
     let neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
     let least = neurons.map(|neuron| neuron.keep).fold(1.0, f64::min);
@@ -356,9 +356,9 @@ impl Recorded<'_> {
     }
 }
 
-/// Returns the amount by which gates lower a neuron, and the amount by which they raise it when that has leaked in all but
-/// one of `ticks` ticks. Both are multiples of `1 << shift`. The first is at least `gate`; of such amounts, it is one of
-/// which a multiple remains.
+/// Returns the amount by which gates lower a neuron, and the amount by which they raise it again. By then the first amount
+/// has leaked in all of `ticks` ticks but one. Both are multiples of `1 << shift`, the first at least `gate`. Of such
+/// amounts, chooses one of which almost a multiple remains.
 fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
     if gate == 0.0 {
         return (0, 0);

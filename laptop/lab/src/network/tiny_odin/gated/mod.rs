@@ -27,7 +27,7 @@ const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
 /// Number of [shapes](Shape) with which the network is quantised with care: the best of all in a rough search.
 const CHOSEN: usize = 2;
-/// Share of the active steps by which a network must agree better with the original for each event that it adds to a step.
+/// Share of the active steps that a network must agree better with the original, for each event that it adds to a step.
 const PRICE: f64 = 1e-4;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.

@@ -47,10 +47,10 @@ pub(super) struct Shape {
 
 /// Leaks at several heights of a step, which together reduce a potential by a share of its value.
 ///
-/// The leaks come from the lowest height to the highest. Those below a potential move it down before those above it
-/// move it up. With leaks of `a` that are `s` apart, a leak above thus meets the potential where `a` less is left of it
-/// for each leak below: there are `V / (s + a)` more leaks below than above a potential of `V`, and it loses `2 a / (s
-/// + a)` of its value. For the same reason the middle leak must lie below 0, by `a` for each leak below it.
+/// The leaks come from the lowest height to the highest. Leaks below a potential move it down, and only then do those
+/// above move it up. Thus a leak meets the potential lower, by one leak for each leak before. If leaks of `a` are `s`
+/// apart, a potential that is higher by `s + a` meets one more leak from above and one less from below. Therefore a step
+/// takes the share `2 a / (s + a)`. So that a potential of 0 stays, the middle leak is below 0, by `a` for each leak before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Share {
     /// Distance between two leaks, in rungs.
@@ -163,7 +163,7 @@ pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f
             let has_bias = has_bias || share.is_some();
             let below = highest.max(raised as i32 - lowest);
             let room = f64::from(MAX_POTENTIAL) / LARGEST_RUNG;
-            if f64::from(below) > room || f64::from(lowest) + threshold > room {
+            if f64::from(below) > room || f64::from(lowest) + threshold.max(1.0) > room {
                 return;
             }
             let fallen = |heights: Vec<i32>| {
