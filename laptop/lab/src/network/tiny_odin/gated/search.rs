@@ -58,8 +58,7 @@ struct Choice {
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Number of leaks that the neuron receives after a spike, in addition to those that its reset needs; negative for
-    /// fewer leaks.
+    /// Number of leaks after a spike, in addition to the number that [`own_leaks`] returns. Negative for fewer leaks.
     more: i16,
     /// Amount that every step adds to the potential, in addition to the trained bias and to what makes up for the
     /// drift of the leaks.
