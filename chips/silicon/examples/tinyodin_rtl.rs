@@ -1,5 +1,5 @@
-//! Answers the steps of a network as `spikewire network --live` does, but on tinyODIN's register-transfer code instead of
-//! the chip's model. Usage: `tinyodin_rtl SIMULATION NETWORK.rs NETWORK.bytes < STEPS`.
+//! Answers the steps of a network as `spikewire network --live` does, but on tinyODIN's register-transfer code instead
+//! of the chip's model. Usage: `tinyodin_rtl SIMULATION NETWORK.rs NETWORK.bytes < STEPS`.
 //!
 //! SIMULATION is the program that Verilator makes of the register-transfer code, driven by `rtl/tinyodin.cpp`. The
 //! network's two files are those that `spikewire network --compare step` writes. Pins and clocks follow the driver's

@@ -194,9 +194,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
     ///
     /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. Each input or spike
-    /// takes as many events as [`rows`](Steps::rows) has in sum. Raising each layer takes [`rungs`](Steps::rungs) events,
-    /// and lowering all neurons takes `rungs` events once. Each leak takes one event. The chip still works on the last event when the
-    /// call returns.
+    /// takes as many events as [`rows`](Steps::rows) has in sum. Raising each layer takes [`rungs`](Steps::rungs)
+    /// events, and lowering all neurons takes `rungs` events once. Each leak takes one event. The chip still works on
+    /// the last event when the call returns.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). The step is then incomplete and the chip's potentials are useless:
@@ -312,9 +312,9 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends a spike of an input or a neuron: on each of its rows of synapses, the number of events in `rows`. `first` is
-    /// the first row of all inputs, or of all neurons of the layer. `number` is the index of this input or neuron among
-    /// them.
+    /// Sends a spike of an input or a neuron: on each of its rows of synapses, the number of events in `rows`. `first`
+    /// is the first row of all inputs, or of all neurons of the layer. `number` is the index of this input or neuron
+    /// among them.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let rows = self.rows;
         let mut row = first.saturating_add(number.saturating_mul(rows.len() as u16));

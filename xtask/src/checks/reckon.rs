@@ -1,5 +1,5 @@
-//! Compares the chips' models with the chips' register-transfer code, which is not in this repository: it is cloned, or a
-//! checkout is given.
+//! Compares the chips' models with the chips' register-transfer code, which is not in this repository: it is cloned, or
+//! a checkout is given.
 
 use crate::common::{cargo, command, output, paths, run, shell::has};
 use crate::setup;
@@ -68,8 +68,8 @@ pub fn reckon() -> Result<()> {
     run(cargo(program).arg(simulation).arg("1000000"))
 }
 
-/// Builds tinyODIN's code with Verilator, and compares its answers with those of `spikewire network --live` byte by byte,
-/// for networks whose neurons compare once a step. The code is cloned unless `TINYODIN_RTL` gives a checkout.
+/// Builds tinyODIN's code with Verilator, and compares its answers with those of `spikewire network --live` byte by
+/// byte, for networks whose neurons compare once a step. The code is cloned unless `TINYODIN_RTL` gives a checkout.
 pub fn tiny_odin() -> Result<()> {
     let sources = TINY_ODIN.checkout("lif_neuron.v")?;
     let simulation = simulation("tinyODIN", TINY_ODIN_FILES.map(|file| sources.join(file)))?;

@@ -62,8 +62,8 @@ fn table() -> Result<String> {
     ))
 }
 
-/// Returns the share of the held-out active steps in which a chip agrees, and its mean clocks a step; a dash if the chip
-/// refuses the network.
+/// Returns the share of the held-out active steps in which a chip agrees, and its mean clocks a step; a dash if the
+/// chip refuses the network.
 fn agreement(file: &str, options: &str, reset: &str, chip: &str) -> Result<String> {
     let peers = paths::root().join("laptop/cli/tests/peers");
     let mut program = Command::new(paths::target().join("debug/spikewire"));

@@ -360,8 +360,9 @@ impl Figures {
     }
 }
 
-/// Returns how well the outputs' spikes on the chip, `fired`, agree with those of the original, from 0 to 1. This is the
-/// mean of two shares: of the active steps that agree, and of the windows in which the same outputs have the most spikes.
+/// Returns how well the outputs' spikes on the chip, `fired`, agree with those of the original, from 0 to 1. This is
+/// the mean of two shares: of the active steps that agree, and of the windows in which the same outputs have the most
+/// spikes.
 pub(super) fn holds(original: &[Vec<u16>], fired: &[Vec<u16>]) -> f64 {
     let all = original.chunks(WINDOW).zip(fired.chunks(WINDOW));
     let all = all.map(|(original, fired)| (most(original), most(fired)));

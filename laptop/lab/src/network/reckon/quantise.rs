@@ -334,7 +334,9 @@ impl Recorded<'_> {
         let mut own: Vec<f64> =
             layer.recurrent.get(neuron).into_iter().flatten().map(part).collect();
         own.resize(layer.neurons.len(), 0.0);
-        own.iter_mut().for_each(|weight| *weight *= grown);
+        for weight in &mut own {
+            *weight *= grown;
+        }
         if layer.reset.subtracts() {
             own[neuron] += 1.0 - grown;
         }
@@ -356,9 +358,9 @@ impl Recorded<'_> {
     }
 }
 
-/// Returns the amount by which gates lower a neuron, and the amount by which they raise it again. By then the first amount
-/// has leaked in all of `ticks` ticks but one. Both are multiples of `1 << shift`, the first at least `gate`. Of such
-/// amounts, chooses one of which almost a multiple remains.
+/// Returns the amount by which gates lower a neuron, and the amount by which they raise it again. By then the first
+/// amount has leaked in all of `ticks` ticks but one. Both are multiples of `1 << shift`, the first at least `gate`. Of
+/// such amounts, chooses one of which almost a multiple remains.
 fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
     if gate == 0.0 {
         return (0, 0);
@@ -484,7 +486,7 @@ impl<'a> Held<'a> {
             };
             let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
             let first = first.sum::<i32>() + sum(&drive.before) + self.bias + raised;
-            let mut fires = 0;
+            let mut count = 0;
             for tick in 0..self.rule.ticks {
                 let added = own
                     + match tick {
@@ -500,11 +502,11 @@ impl<'a> Held<'a> {
                 };
                 potential = (kept + added).clamp(i16::MIN.into(), i16::MAX.into());
                 is_over = potential >= self.threshold;
-                fires += usize::from(is_over);
+                count += usize::from(is_over);
             }
             raised = self.gates.1;
             let meant = meant.iter().filter(|fired| usize::from(**fired) == neuron).count();
-            distance.step(fires, meant);
+            distance.step(count, meant);
         }
         distance.value()
     }

@@ -49,9 +49,9 @@ struct GatedLayer {
 }
 
 /// Quantises the network roughly with each [shape](Shape), and with care with those of them that agree best with the
-/// original. Returns the best of the rough networks, whose parameters follow from the trained ones almost alone, and the
-/// careful ones, which are nearer to the original in this recording. Calls `progress` with the number of finished parts
-/// of this work and the total number of parts. Returns an empty list if the chip has no room for any shape.
+/// original. Returns the best of the rough networks, whose parameters follow from the trained ones almost alone, and
+/// the careful ones, which are nearer to the original in this recording. Calls `progress` with the number of finished
+/// parts of this work and the total number of parts. Returns an empty list if the chip has no room for any shape.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,

@@ -104,7 +104,7 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
             // The amount that a leak removes: the one at which the neuron loses its share of a potential or, with less
             // than two leaks a step, the amount that it loses at half its threshold.
             let of_share = match shape.share {
-                Some(share) => share.leak(keep, rung),
+                Some(leaks) => leaks.leak(keep, rung),
                 None => (1.0 - keep) / 2.0 * f64::from(threshold),
             };
             let lost = amount / unit + of_share;
@@ -183,7 +183,7 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     };
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).map(&mut quantised).collect();
-    let drift = shape.share.map_or(0.0, |share| share.drift(leak, rung));
+    let drift = shape.share.map_or(0.0, |leaks| leaks.drift(leak, rung));
     let bias = quantised(&(layer.bias[at] + (f64::from(choice.bias) - drift) * unit));
     let own_leaks = own_leaks(layer, at, shape, choice)
         .saturating_add(more.into())

@@ -49,8 +49,9 @@ pub(super) struct Shape {
 ///
 /// The leaks come from the lowest height to the highest. Leaks below a potential move it down, and only then do those
 /// above move it up. Thus a leak meets the potential lower, by one leak for each leak before. If leaks of `a` are `s`
-/// apart, a potential that is higher by `s + a` meets one more leak from above and one less from below. Therefore a step
-/// takes the share `2 a / (s + a)`. So that a potential of 0 stays, the middle leak is below 0, by `a` for each leak before.
+/// apart, a potential that is higher by `s + a` meets one more leak from above and one less from below. Therefore a
+/// step takes the share `2 a / (s + a)`. So that a potential of 0 stays, the middle leak is below 0, by `a` for each
+/// leak before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Share {
     /// Distance between two leaks, in rungs.
@@ -62,8 +63,8 @@ pub(super) struct Share {
 }
 
 impl Share {
-    /// Returns the leaks for neurons that keep `keep` of their potential in a step and reach potentials of up to `reach`
-    /// rungs, if two leaks are about `distance` rungs apart. `None` if that takes too many leaks.
+    /// Returns the leaks for neurons that keep `keep` of their potential in a step and reach potentials of up to
+    /// `reach` rungs, if two leaks are about `distance` rungs apart. `None` if that takes too many leaks.
     fn new(keep: f64, reach: f64, distance: f64) -> Option<Self> {
         let lost = (1.0 - keep).max(0.01);
         let leak = (lost * distance * LARGEST_RUNG / 2.0).round().max(1.0) / LARGEST_RUNG;
