@@ -28,8 +28,8 @@ const SHIFTS: u8 = 8;
 /// Weight, left shift and decay factor of an output that reports the spikes of one neuron. Each step halves the
 /// output's potential, so that the potential's bits say in which of the last steps the neuron fired.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// For an output that reports the spikes of one neuron: the bit of its potential that is 1 if the neuron fired in the
-/// latest step.
+/// Number of a bit in the potential of an output that reports the spikes of one neuron. The bit is 1 if the neuron
+/// fired in the latest step.
 pub(super) const FIRED: u32 = 12;
 
 /// A network in the integers of `ReckOn`.
@@ -49,8 +49,8 @@ pub(super) struct Quantised {
     pub(super) bias: Option<usize>,
     /// For each layer: its name and its number of neurons.
     pub(super) layers: Vec<(String, usize)>,
-    /// Value of an output's potential of 1 on the chip, in the units of the trained network; `None` if the outputs
-    /// report the spikes of neurons.
+    /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
+    /// outputs report the spikes of neurons.
     pub(super) unit: Option<f64>,
     /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
     /// these weights.
@@ -307,8 +307,8 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
 struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
-    /// Neurons that fire, each as layer and index. Neurons of the layer before fire in the same step, neurons of the
-    /// layer itself in the step before.
+    /// Neurons that fire, each as the index of its layer and its index in the layer. Neurons of the layer before fired
+    /// in this step. Neurons of the layer itself fired in the step before.
     neurons: Vec<(usize, usize)>,
 }
 

@@ -21,8 +21,8 @@ const WIDEST: f64 = 12.0;
 pub(super) struct Shape {
     /// Number of rows of synapses that each input or sending neuron has. Each of its weights is split over these rows.
     pub rows: u16,
-    /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
-    /// They follow the rungs that [`below`](Self::below) counts.
+    /// Number of rungs that raise a neuron at rest from a potential of 0 until it compares its potential with its
+    /// threshold. These rungs follow the rungs that [`below`](Self::below) counts.
     pub above: u16,
     /// Number of rungs that raise a neuron at rest from the offset to 0.
     pub below: u16,
