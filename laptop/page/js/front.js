@@ -1,6 +1,6 @@
 // Error against efficiency: every dot is a setting to click.
 
-const [WIDTH, HEIGHT, LEFT, BOTTOM] = [720, 340, 76, 46];
+const [WIDTH, HEIGHT, LEFT, BOTTOM] = [720, 340, 76, 52];
 const make = (name, attributes, parent) => {
   const own = document.createElementNS("http://www.w3.org/2000/svg", name);
   for (const [key, value] of Object.entries(attributes)) own.setAttribute(key, value);
@@ -26,7 +26,7 @@ export function draw(host, fronts, unit, onChoice) {
   const text = (words, at, more) => (make("text", { x: at[0], y: at[1], ...more }, svg).textContent = words);
   for (let percent = low; percent <= 100; percent += (100 - low) / 5) {
     line(x(percent), 10, x(percent), HEIGHT - BOTTOM);
-    text(short(percent), [x(percent), HEIGHT - BOTTOM + 16], { "text-anchor": "middle" });
+    text(short(percent), [x(percent), HEIGHT - BOTTOM + 22], { "text-anchor": "middle" });
   }
   for (let step = 0; step <= 4; step++) {
     const rmse = 10 ** (least + ((most - least) * step) / 4);
