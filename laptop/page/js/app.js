@@ -1,6 +1,7 @@
 // The page: what its user drops, chooses and drags, and what the library makes of it.
 
 import { at, fail } from "./dom.js";
+import { filesOf, offer } from "./dropped.js";
 import * as link from "./link.js";
 import { board, listenToLive, video, watch } from "./live.js";
 import { channel, load, open, showFields, showTopics, whenRead } from "./recording.js";
@@ -14,18 +15,33 @@ const SAMPLES = ["f32", "i16", "q1.15", "q8.8", "i32", "q16.16"];
 // For whoever looks in the console, and for checks.
 globalThis.spikewire = { plots, video, board };
 
-/** Takes files: a clip, a flight's file, or a recording. */
+let dropped = [];
+
+/** Takes files: a clip, a flight's file, or recordings. */
 function take(files) {
+  if (!files.length) return;
   if (files[0].type.startsWith("video/")) watch(files[0]);
   else if (files.length === 1 && files[0].name.endsWith(".toml")) takeFlight(files[0]);
-  else open({ files });
+  else open({ files: offer(dropped = files) });
+}
+
+/** Opens the channel whose name was found. */
+function find({ target }) {
+  const [topic, field] = JSON.parse([...at("channels").children].find(({ value }) => value === target.value)?.dataset.channel ?? "[]");
+  if (field === undefined) return;
+  target.value = "";
+  at("topic").value = topic;
+  showFields(field);
+  load();
 }
 
 function listenToFiles() {
   at("choose").addEventListener("change", ({ target }) => {
-    if (target.files.length) take([...target.files]);
+    take([...target.files]);
   });
-  for (const button of document.querySelectorAll("[data-example]")) button.addEventListener("click", () => open({ example: button.dataset.example }));
+  for (const button of document.querySelectorAll("[data-example]")) button.addEventListener("click", () => { offer([]); open({ example: button.dataset.example }); });
+  at("file-of").addEventListener("change", ({ target }) => open({ files: [dropped[target.value]] }));
+  at("find").addEventListener("input", find);
   at("accept-cut").addEventListener("change", () => state.opened && open(state.opened, channel()));
   at("topic").addEventListener("change", () => { showFields(); load(); });
   for (const id of ["field", "rate", "skip"]) at(id).addEventListener("change", load);
@@ -34,8 +50,7 @@ function listenToFiles() {
   addEventListener("drop", (event) => {
     event.preventDefault();
     document.body.classList.remove("over");
-    const files = [...event.dataTransfer.files];
-    if (files.length) take(files);
+    filesOf(event.dataTransfer).then(take);
   });
 }
 

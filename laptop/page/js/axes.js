@@ -5,7 +5,7 @@ import { siblings } from "./channels.js";
 import { Library } from "./library.js";
 import { Times } from "./plots.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
-import { loadRequest, openRequest, state } from "./state.js";
+import { choiceOf, loadRequest, openRequest, state } from "./state.js";
 
 /** Longer recordings show one channel alone: each axis takes 24 bytes a sample. */
 const MOST_SAMPLES = 3_000_000;
@@ -63,7 +63,7 @@ export class Axes {
         axis.times = new Times(axis.recording.samples, axis.recording.rate, axis.recording.arrays.times);
         axis.signal = new Pyramid(axis.recording.arrays.values);
       }
-      axis.answer = await axis.library.ask({ ask: "run", choice: setting });
+      axis.answer = await axis.library.ask({ ask: "run", choice: choiceOf(setting, axis.field) });
       axis.decoded = new Pyramid(axis.answer.arrays.decoded);
       const { spikes, spikes_per_second: rate, rmse } = axis.answer.figures;
       axis.words.textContent = `${axis.field}: ${rate === null ? `${fixed(spikes, 0)} spikes` : `${fixed(rate, 1)} spikes a second`}, RMSE ${fine(rmse)}`;

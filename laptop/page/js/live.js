@@ -2,7 +2,7 @@
 
 import { Board, whyNot } from "./board.js";
 import { at, fail } from "./dom.js";
-import { state } from "./state.js";
+import { choiceOf, state } from "./state.js";
 import { save } from "./takeaway.js";
 import { Video } from "./video.js";
 
@@ -34,7 +34,7 @@ async function connect() {
     if (at("meaning").value === "values") {
       const { answer, error } = state.runs[state.current] ?? {};
       if (!answer) throw error ?? new Error("there are no settings to decode by");
-      choice = { ...state.settings[state.current], parameters: answer.asked };
+      choice = { ...choiceOf(state.settings[state.current], state.recording.field), parameters: answer.asked };
     }
     const thresholds = at("thresholds").value.split(",").filter((text) => text.trim()).map(Number);
     if (thresholds.some(Number.isNaN)) throw new Error(`thresholds ${at("thresholds").value}: not numbers with commas between`);

@@ -6,6 +6,8 @@ import { lowerBound, Pyramid } from "./pyramid.js";
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const AXIS = 64;
+/** A series that is hidden. */
+const NOTHING = { at: () => null, range: () => [null, null] };
 const line = uPlot.paths.linear();
 
 /** When samples are: in seconds where that is known, else their numbers. */
@@ -31,6 +33,8 @@ export class Plots {
   constructor(host, { onRange, onCursor }) {
     Object.assign(this, { host, onRange, onCursor });
     this.runs = [];
+    /** The colours of the series that the user hides. */
+    this.hidden = new Set();
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
@@ -132,6 +136,11 @@ export class Plots {
     this.draw();
   }
 
+  /** Columns of pixels that the signal has. */
+  columns() {
+    return Math.max(100, this.width() - AXIS);
+  }
+
   /** The samples in view. */
   samples() {
     return [this.times.first(this.view[0]), this.times.first(this.view[1] + this.times.step / 2)];
@@ -139,16 +148,16 @@ export class Plots {
 
   /** Lowest and highest value of each column of pixels, or the samples where there are few. */
   data() {
-    const columns = Math.max(100, this.width() - AXIS);
+    const columns = this.columns();
     const start = Math.max(0, this.times.first(this.view[0]) - 1);
     const end = Math.min(this.times.count, this.times.first(this.view[1]) + 1);
-    const all = [this.signal, ...this.runs.map((own) => own.pyramid)];
+    const all = [this.hidden.has("--signal") ? NOTHING : this.signal, ...this.runs.map((own) => (this.hidden.has(own.variable) ? NOTHING : own.pyramid))];
     const xs = [], series = all.map(() => []);
     this.isThinned = end - start > 4 * columns;
     if (!this.isThinned) {
       for (let sample = start; sample < end; sample++) {
         xs.push(this.times.at(sample));
-        all.forEach((own, place) => series[place].push(own.values[sample]));
+        all.forEach((own, place) => series[place].push(own.at(sample)));
       }
       return [xs, ...series];
     }
@@ -180,6 +189,7 @@ export class Plots {
       for (let at = 0; at < xs.length; at += 2) {
         const x = Math.round(plot.valToPos(xs[at], "x", true));
         const end = at + 2 < xs.length ? Math.round(plot.valToPos(xs[at + 2], "x", true)) : x + 1;
+        if (own[at] === null) continue;
         // Up to the bar before it, so that a line stays one.
         const top = plot.valToPos(Math.max(own[at + 1], before), "y", true);
         const bottom = plot.valToPos(Math.min(own[at], after), "y", true);

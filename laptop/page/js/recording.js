@@ -71,8 +71,18 @@ async function openNow({ files: given = [], example }, wanted = {}) {
   }
 }
 
+/** As many channels as a list can offer. */
+const MOST_FOUND = 5000;
+
 export function showTopics({ topic, field, rate, skip }) {
   const { topics } = state.opened;
+  const all = topics.flatMap(({ name, fields }) => fields.map((own) => [name, own])).slice(0, MOST_FOUND);
+  at("find-field").hidden = all.length < 9;
+  at("channels").replaceChildren(...all.map((own) => {
+    const option = element("option", { value: own.filter(Boolean).join(" · ") });
+    option.dataset.channel = JSON.stringify(own);
+    return option;
+  }));
   at("damaged").hidden = !acceptCut();
   at("channel").hidden = false;
   at("topic").replaceChildren(...topics.map(({ name, about }) => new Option(about ? `${name} (${about})` : name, name)));
@@ -113,7 +123,7 @@ async function loadNow() {
   const { recording, opened } = state, { values, times } = recording.arrays;
   at("rate-field").hidden = Boolean(times);
   const [min, max] = new Pyramid(values).range(0, values.length);
-  Object.assign(recording, { min, max });
+  Object.assign(recording, { min, max, topic, field, opened });
   const unit = recording.unit ? ` ${recording.unit}` : "";
   const brief = (value) => Number(value.toPrecision(5));
   at("about").textContent = `${opened.file}: ${recording.name}, ${recording.samples.toLocaleString("en")} samples`

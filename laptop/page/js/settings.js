@@ -1,14 +1,18 @@
 // The settings that are compared: their tabs, boxes and figures, and the runs behind them.
 
 import { Axes } from "./axes.js";
-import { at, css, element, fail, fine, fixed, whileBusy } from "./dom.js";
+import { at, css, element, fail, fine, whileBusy } from "./dom.js";
+import { listenToBank, showBank } from "./bank.js";
+import { showFigures } from "./figures.js";
 import { History } from "./history.js";
 import * as link from "./link.js";
 import { parameters } from "./parameters.js";
 import { Plots } from "./plots.js";
+import { isPreviewed, preview } from "./preview.js";
 import { channel, reopened } from "./recording.js";
 import { Spectrum } from "./spectrum.js";
-import { schemeOf, state } from "./state.js";
+import { choiceOf, parametersOf, schemeOf, state } from "./state.js";
+import { asFlown, verdict } from "./verdict.js";
 
 const MOST = 4;
 const COLOURS = ["--decoded", "--b", "--c", "--ink"];
@@ -62,10 +66,13 @@ function showPanel() {
   at("sample").value = setting.sample;
   at("words").textContent = `${scheme.words}: ${scheme.goodFor}`.replaceAll("`", "");
   showParameters = parameters(at("parameters"), scheme, state.recording, (name, text) => {
-    if (text === undefined) delete setting.parameters[name];
-    else setting.parameters[name] = text;
+    const given = parametersOf(setting, state.recording.field);
+    if (text === undefined) delete given[name];
+    else given[name] = text;
     update(`${state.current} ${name}`);
   });
+  showBank(setting);
+  at("as-flown").hidden = !scheme.flown;
   showOutcome();
 }
 
@@ -74,18 +81,23 @@ function showOutcome() {
   const { answer, error } = state.runs[state.current] ?? {};
   fail("error", error);
   at("notes").replaceChildren(...(answer?.notes ?? []).map((text) => element("li", { textContent: text })));
-  if (answer) showParameters({ given: state.settings[state.current].parameters, settings: answer.settings });
+  const setting = state.settings[state.current];
+  if (answer) showParameters({ given: parametersOf(setting, state.recording.field), settings: answer.settings });
+  at("verdict").textContent = answer ? verdict(setting, answer)[1] : "";
 }
 
 let isRunning = false, isStale = false;
 
-/** Runs the settings that changed, of which `what` names the box; while it does, more changes wait for one more run. */
-export const update = (what) => whileBusy(() => updateNow(what));
-
-async function updateNow(what) {
+/** Takes a change, of which `what` names the box, and runs the settings that changed; while it does, more changes wait for one more run. */
+export function update(what) {
   history.note(what, { settings: state.settings, current: state.current });
   showSteps();
   globalThis.history.replaceState(null, "", `#${link.write({ example: state.opened?.example, channel: channel(), settings: state.settings })}`);
+  if (!isPreviewed(what)) return whileBusy(run);
+  return preview(plots, (place, made) => plots.setRuns(plots.runs.map((own) => (own === state.runs[place].answer || own.preview === place ? { ...made, preview: place } : own))), () => whileBusy(run));
+}
+
+async function run() {
   if (isRunning) {
     isStale = true;
     return;
@@ -96,12 +108,12 @@ async function updateNow(what) {
     const { recording } = state;
     if (!recording) break;
     for (const [place, setting] of [...state.settings].entries()) {
-      const key = JSON.stringify(setting);
+      const choice = choiceOf(setting, recording.field), key = JSON.stringify(choice);
       const last = state.runs[place];
       if (last?.key === key && last.recording === recording) continue;
       let outcome;
       try {
-        outcome = { answer: await state.library.ask({ ask: "run", choice: setting }) };
+        outcome = { answer: await state.library.ask({ ask: "run", choice }) };
       } catch (error) {
         outcome = { error };
         if (error.isFatal) await reopened();
@@ -124,12 +136,18 @@ export function show() {
     const { answer } = runs[place] ?? {};
     if (!answer) return;
     const name = settings.length > 1 ? `${letter(place)} ${schemeOf(setting).title}` : schemeOf(setting).title;
-    good.push(Object.assign(answer, { name, colour: css(COLOURS[place]), variable: COLOURS[place], isSigned: schemeOf(setting).isSigned }));
+    good.push(Object.assign(answer, { name, setting, colour: css(COLOURS[place]), variable: COLOURS[place], isSigned: schemeOf(setting).isSigned }));
   });
   plots.setRuns(good);
   const entry = (text, colour) => {
-    const shown = element("span", { textContent: text });
+    const shown = element("button", { type: "button", textContent: text });
     shown.style.setProperty("--own", `var(${colour})`);
+    shown.setAttribute("aria-pressed", !plots.hidden.has(colour));
+    shown.addEventListener("click", () => {
+      if (!plots.hidden.delete(colour)) plots.hidden.add(colour);
+      shown.setAttribute("aria-pressed", !plots.hidden.has(colour));
+      plots.draw();
+    });
     return shown;
   };
   at("legend").replaceChildren(entry("signal", "--signal"), ...good.map(({ name, variable }) => entry(`${name}, decoded`, variable)));
@@ -137,30 +155,6 @@ export function show() {
   showOutcome();
   spectrum.draw();
   axes.show(settings[state.current]);
-}
-
-function showFigures(good, { unit: given }) {
-  const unit = given ? `, ${given}` : "";
-  const rows = [
-    ["Samples without a spike, %", ({ figures }) => fixed(figures.efficiency, 2)],
-    [`RMSE${unit}`, ({ figures }) => fine(figures.rmse)],
-    ["Signal to noise, dB", ({ figures }) => fixed(figures.snr, 2)],
-    ["Spikes", ({ figures }) => fixed(figures.spikes, 0)],
-    ["Spikes a second", ({ figures }) => fixed(figures.spikes_per_second, 1)],
-    ["Bytes a second on the link", ({ linkBytesPerSecond }) => fixed(linkBytesPerSecond, 1)],
-    ["Bytes of RAM a channel", ({ costs }) => fixed(costs.ram, 0)],
-    ["Instructions a sample, Cortex-M4F", ({ costs }) => (costs.instructions === null ? "not measured" : `${costs.is_bound ? "at most " : ""}${fixed(costs.instructions, 1)}`)],
-    ["Latency, samples", ({ latency }) => fixed(latency, 0)],
-  ];
-  const table = at("figures"), { caption } = table;
-  const head = element("thead"), body = element("tbody");
-  head.insertRow().append(element("th", { textContent: "Figure", scope: "col" }), ...good.map(({ name }) => element("th", { textContent: name, scope: "col" })));
-  for (const [name, value] of rows) {
-    const row = body.insertRow();
-    row.append(element("th", { textContent: name, scope: "row" }));
-    for (const run of good) row.insertCell().textContent = value(run);
-  }
-  table.replaceChildren(caption, head, body);
 }
 
 function showRange([start, end]) {
@@ -176,7 +170,7 @@ function showCursor(sample, marker) {
   const unit = recording.unit ? ` ${recording.unit}` : "";
   const time = (value) => `${fine(value)} ${plots.times.unit}`;
   const valueAt = (place) => recording.arrays.values[place];
-  const of = (place) => [`${recording.name} ${fine(valueAt(place))}${unit}`, ...runs.map(({ name, arrays }) => `${name} ${fine(arrays.decoded[place])}${unit} (off by ${fine(arrays.decoded[place] - valueAt(place))})`)].join(" · ");
+  const of = (place) => [`${recording.name} ${fine(valueAt(place))}${unit}`, ...runs.map(({ name, pyramid, arrays }) => `${name} ${fine(pyramid.at(place) ?? NaN)}${unit} (off by ${fine((pyramid.at(place) ?? NaN) - (arrays.coded ?? recording.arrays.values)[place])})`)].join(" · ");
   const words = sample === undefined ? "" : `${time(plots.times.at(sample))}: ${of(sample)}`;
   const apart = sample === undefined || marker === undefined ? ""
     : ` · from the mark ${time(plots.times.at(sample) - plots.times.at(marker))}, ${fine(valueAt(sample) - valueAt(marker))}${unit}`;
@@ -186,23 +180,28 @@ function showCursor(sample, marker) {
 // --- What a user does to settings ---
 
 export function take(scheme, given) {
-  state.settings[state.current] = { scheme, sample: state.settings[state.current].sample, parameters: { ...given } };
+  const { sample, filter, keyframe_ms: keyframes } = state.settings[state.current];
+  change({ scheme, sample, parameters: { ...given }, filter, keyframe_ms: keyframes });
+}
+
+/** Takes a setting in the place of the current one. */
+function change(setting) {
+  state.settings[state.current] = setting;
   showPanel();
   update();
 }
 
-/** Takes the settings that a flight's file has for the channel that is looked at, or for its first. */
+/** Takes a flight's file: each channel has its parameters there, any other those of the first. */
 export const takeFlight = (file) => whileBusy(() => takeFlightNow(file));
 
 async function takeFlightNow(file) {
   fail("file-error");
   try {
-    const { scheme, sample, channels, filter } = await state.library.ask({ ask: "read-flight", text: await file.text() });
-    const { parameters } = channels.find(({ source }) => source === state.recording?.name) ?? channels[0];
-    state.settings[state.current] = { scheme, sample, parameters };
+    const { channels, scheme, sample, filter, keyframeMs } = await state.library.ask({ ask: "read-flight", text: await file.text() });
+    const own = Object.fromEntries(channels.map(({ source, parameters }) => [source, parameters]));
+    state.settings[state.current] = { scheme, sample, parameters: channels[0].parameters, own, filter, keyframe_ms: keyframeMs };
     showPanel();
     await update();
-    if (filter) at("notes").append(element("li", { textContent: `${file.name} filters the samples before they are coded; this page does not.` }));
   } catch (error) {
     fail("file-error", Object.assign(error, { message: `${file.name}: ${error.message}` }));
   }
@@ -235,6 +234,16 @@ export function listenToSettings() {
     state.runs.splice(state.current, 1);
     choose(Math.min(state.current, state.settings.length - 1));
     update();
+  });
+  at("as-flown").addEventListener("click", () => change(asFlown(state.settings[state.current])));
+  listenToBank((what, part) => {
+    Object.assign(state.settings[state.current], part);
+    showBank(state.settings[state.current]);
+    update(`${state.current} ${what}`);
+  });
+  at("bandwidth").addEventListener("input", ({ target }) => {
+    state.bandwidth = target.valueAsNumber || 4;
+    if (state.recording) show();
   });
   at("undo").addEventListener("click", () => step(-1));
   at("redo").addEventListener("click", () => step(1));

@@ -2,7 +2,7 @@
 
 import { at, css, element, fail } from "./dom.js";
 import { axes, plots } from "./settings.js";
-import { state } from "./state.js";
+import { choiceOf, state } from "./state.js";
 import { picture } from "./svg.js";
 
 export function save(name, content, type) {
@@ -12,7 +12,8 @@ export function save(name, content, type) {
 }
 
 const current = () => state.settings[state.current];
-const ask = (kind) => state.library.ask({ ask: "export", kind, choice: current() });
+const choice = () => choiceOf(current(), state.recording.field);
+const ask = (kind) => state.library.ask({ ask: "export", kind, choice: choice() });
 
 const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
 
@@ -26,10 +27,10 @@ const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
 
 /** The settings of all axes that are drawn, or of the one channel, in one file for both ends. */
 async function flight() {
-  const { scheme, sample } = current(), { recording, runs } = state;
-  const shown = { name: recording.name, parameters: runs[state.current]?.answer?.asked ?? current().parameters };
+  const { recording, runs } = state;
+  const shown = { name: recording.name, parameters: runs[state.current]?.answer?.asked ?? choice().parameters };
   const channels = axes.channels.length ? axes.channels : [shown];
-  return (await state.library.ask({ ask: "flight", scheme, sample, rate: recording.rate, channels })).text;
+  return (await state.library.ask({ ask: "flight", choice: choice(), rate: recording.rate, channels })).text;
 }
 
 const texts = {

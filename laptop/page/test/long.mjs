@@ -1,7 +1,7 @@
 // Ten million samples.
 
 import assert from "node:assert/strict";
-import { opened, settled } from "./harness.mjs";
+import { figure, opened, settled } from "./harness.mjs";
 
 export const steps = {
   async "pans through ten million samples"() {
@@ -22,6 +22,34 @@ export const steps = {
     const read = Date.now() - start;
     await settled(page);
     const coded = Date.now() - start - read;
+    // A knob shows what it does long before the whole is coded again, of the whole and of a part.
+    const dragged = () => page.evaluate(async () => {
+      const { plots } = globalThis.spikewire, slider = document.querySelector("#parameters input[type=range]"), previews = [];
+      const drawn = async (before) => {
+        while (plots.runs[0] === before) await new Promise(requestAnimationFrame);
+        return plots.runs[0];
+      };
+      let start, run = plots.runs[0];
+      for (let step = 0; step < 10; step++) {
+        start = performance.now();
+        slider.valueAsNumber -= 10;
+        slider.dispatchEvent(new Event("input", { bubbles: true }));
+        run = await drawn(run);
+        if (run.preview === undefined) throw new Error("not a preview");
+        previews.push(performance.now() - start);
+      }
+      run = await drawn(run);
+      return { preview: previews.sort((a, b) => a - b)[5], whole: performance.now() - start, spikes: run.figures.spikes };
+    });
+    for (const part of [1, 0.01]) {
+      await page.evaluate((own) => globalThis.spikewire.plots.zoom(own), part);
+      const { preview, whole, spikes } = await dragged();
+      await settled(page);
+      assert.equal(Number((await figure(page, "Spikes")).replaceAll(",", "")), spikes);
+      console.log(`  with ${100 * part} % in view a knob is drawn after ${preview.toFixed()} ms, the whole after ${whole.toFixed()} ms`);
+      assert(preview < whole / 4, `${preview} ms, ${whole} ms`);
+    }
+    await page.evaluate(() => globalThis.spikewire.plots.show(...globalThis.spikewire.plots.full));
     const frames = await page.evaluate(async () => {
       const { plots } = globalThis.spikewire;
       const all = [];

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { accessible, choose, compare, DATA, drop, exported, figure, opened, picture, PICTURES, settled, spikewire, text, work } from "./harness.mjs";
+import { accessible, choose, compare, DATA, drop, enter, exported, figure, opened, picture, PICTURES, settled, spikewire, text, work } from "./harness.mjs";
 
 export const steps = {
   async "takes steps back and forth, and a flight's file both ways"() {
@@ -45,6 +45,63 @@ export const steps = {
     assert.equal(await page.inputValue("#parameter-threshold"), "0.5");
     await drop(page, { name: "flight.toml", bytes: Buffer.from("version = 1\nscheme = 5\n") });
     assert.match(await page.textContent("#file-error"), /flight\.toml: /);
+    await page.context().close();
+  },
+
+  async "sets the bank that flew, says so, and filters as the program does"() {
+    const page = await opened();
+    const flies = async () => (await figure(page, "Does it fly?"));
+    await page.selectOption("#scheme", "bernoulli");
+    await settled(page);
+    assert.equal(await flies(), "not flown");
+    assert.equal(await page.isVisible("#as-flown"), false);
+    await page.selectOption("#scheme", "sf");
+    await settled(page);
+    assert.equal(await flies(), "no");
+    await page.selectOption("#scheme", "sod");
+    await settled(page);
+    assert.equal(await flies(), "not known");
+    assert.match(await page.textContent("#verdict"), /threshold 0\.09315, a low-pass of 80 Hz, keyframes every 200 ms/);
+    const bytes = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
+    await page.click("#as-flown");
+    await settled(page);
+    assert.equal(await flies(), "yes");
+    assert.deepEqual([await page.inputValue("#filter"), await page.inputValue("#corner"), await page.inputValue("#keyframes")], ["low-pass", "80", "200"]);
+    assert(Number(await figure(page, "Late by, ms")) > 2, "the filter is late");
+    await enter(page, "#keyframes", 20);
+    await settled(page);
+    const more = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
+    assert.equal(await flies(), "not known");
+    await enter(page, "#keyframes", 200);
+    await settled(page);
+    const own = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
+    assert(more > own + 400 && own > bytes, `${bytes}, ${own}, ${more} bytes`);
+    // The program behind the same filter: the spikes in the picture, in its table and in the page's.
+    const toml = await text(page, "flight"), file = join(work, "flown.toml"), flight = join(DATA, "hexarotor.csv");
+    assert.match(toml, /filter = \{ kind = "low-pass", corner = 80/);
+    assert.equal((toml.match(/threshold = 0\.0931/g) ?? []).length, 3, toml);
+    assert.equal((toml.match(/threshold = 2\.56/g) ?? []).length, 2, toml);
+    assert.match(toml, /threshold = 8\.45/);
+    writeFileSync(file, toml);
+    const rows = (bytes, address) => bytes.toString().split("\n").filter((line) => /^\d/.test(line) && (address === undefined || line.split(",")[1] === address));
+    const theirs = spikewire("encode", "--flight", file, flight);
+    assert.deepEqual(rows(await exported(page, "csv"), "0"), rows(theirs, "0"));
+    assert.equal(String(rows(theirs, "0").length), (await figure(page, "Spikes")).replaceAll(",", ""));
+    await page.locator(".axis").nth(5).click();
+    await settled(page);
+    assert.equal(Number(await page.inputValue("#parameter-threshold")).toPrecision(3), "8.46");
+    assert.equal(await flies(), "yes");
+    assert.equal(String(rows(theirs, "5").length), (await figure(page, "Spikes")).replaceAll(",", ""));
+    // All of it is in a link, and in the file.
+    const figures = await page.innerText("#figures"), link = await text(page, "link");
+    const other = await opened({}, new URL(link).hash);
+    assert.equal(await other.innerText("#figures"), figures);
+    await other.selectOption("#scheme", "hsa");
+    await other.selectOption("#filter", "none");
+    await settled(other);
+    await choose(other, file);
+    assert.equal(await other.innerText("#figures"), figures);
+    await other.context().close();
     await page.context().close();
   },
 

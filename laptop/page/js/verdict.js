@@ -1,0 +1,40 @@
+// Does it fly? What the simulated flights of docs/loop.md show of just these settings.
+
+import { siblings } from "./channels.js";
+import { fine } from "./dom.js";
+import { schemeOf, state } from "./state.js";
+
+/** Banks have parameters for turn rates, for sideways forces, and for the force along the thrust. */
+function groupOf(field) {
+  const { opened, topic } = state.recording, fields = siblings(opened.topics, topic), place = fields.indexOf(field);
+  if (fields.length === 6) return place < 3 ? 0 : place < 5 ? 1 : 2;
+  return /acc/i.test(`${topic}.${field}`) ? (place < 2 ? 1 : 2) : 0;
+}
+
+const isNear = (own, flown) => (typeof flown === "number" ? Math.abs(Number(own) - flown) <= 0.01 * Math.abs(flown) : own === String(flown));
+
+/** The words for the figures, and the reason. */
+export function verdict(setting, { settings }) {
+  const { flown, name, parameters } = schemeOf(setting);
+  if (!flown) return ["not flown", `${name} was not flown on a drone whose rotors shake it.`];
+  if (flown.objection) return ["no", `${name} ${flown.objection}.`];
+  const group = flown.groups[groupOf(state.recording.field)];
+  const { filter, keyframe_ms: keyframes } = setting, corner = filter?.kind === "low-pass" ? filter.corner : null;
+  const differ = Object.entries(group).filter(([own, value]) => !isNear(settings[parameters.find((each) => each.name === own)?.key ?? own], value))
+    .map(([own, value]) => `${own} ${typeof value === "number" ? fine(value) : value}`);
+  if (flown.low_pass === null ? filter : corner !== flown.low_pass) differ.push(flown.low_pass === null ? "no filter" : `a low-pass of ${flown.low_pass} Hz`);
+  if (keyframes !== flown.keyframe_ms) differ.push(`keyframes every ${flown.keyframe_ms} ms`);
+  const far = `${fine(flown.beside)} times the error without a code`;
+  return differ.length ? ["not known", `${name} flew, with ${far}, but with ${differ.join(", ")} in rad/s and m/s².`] : ["yes", `Flown just so: no flight was lost, with ${far}.`];
+}
+
+/** The setting with which its scheme flew, on all axes of the sensor. */
+export function asFlown(setting) {
+  const { flown } = schemeOf(setting), { opened, topic, field } = state.recording;
+  const texts = (place) => Object.fromEntries(Object.entries(flown.groups[place]).map(([name, value]) => [name, String(value)]));
+  const fields = [...new Set([field, ...siblings(opened.topics, topic)])];
+  return {
+    scheme: setting.scheme, sample: setting.sample, parameters: texts(0), own: Object.fromEntries(fields.map((own) => [own, texts(groupOf(own))])),
+    filter: flown.low_pass === null ? null : { kind: "low-pass", corner: flown.low_pass }, keyframe_ms: flown.keyframe_ms,
+  };
+}
