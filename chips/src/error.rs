@@ -6,7 +6,8 @@ use core::fmt;
 use super::Phase;
 use super::family::AerError;
 
-/// The reason that a call on a chip failed. `B` is the error type of the chip's bus, `P` that of its port.
+/// The reason that a call on a chip failed. `B` is the error type of the bus through which the driver accesses the
+/// chip. `P` is the error type of the port, which drives the chip's other pins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -29,9 +30,9 @@ pub enum ChipError<B, P = Infallible> {
     Gated,
     /// The chip did not answer after its gate was opened: reset the chip first.
     NotStarted,
-    /// The driver could not verify that the chip runs, because no neuron can take a time step without changing: each
-    /// neuron is at its threshold or at the end of its range, or learns. The chip is still gated, and nothing was
-    /// changed.
+    /// The driver could not verify that the chip runs. The check needs a neuron that can take a time step without harm,
+    /// but each neuron learns, or has a potential at its threshold or at the end of the range. The chip is still gated,
+    /// and nothing was changed.
     NoProbe,
     /// The chip keeps sending outputs, so that it cannot be gated; see [`open_loop`](super::Running::open_loop).
     Busy,
@@ -51,7 +52,7 @@ pub enum ChipError<B, P = Infallible> {
         /// Largest value allowed.
         max: i64,
     },
-    /// The weight of a virtual event is 0, which the chip would take for a full spike.
+    /// The weight of a virtual event is 0. The chip would take such an event for a spike on a whole row of synapses.
     ZeroWeight,
     /// Memory reads back a different value than was written. On a chip without a reset line, write the value again. On
     /// a chip with a reset line, all memory is in doubt: reset the chip, and write all of its memory again.

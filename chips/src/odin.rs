@@ -20,7 +20,7 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN, which takes 128 bits of memory. The driver does not support the chip's
+/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory. The driver does not support the chip's
 /// Izhikevich neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -47,14 +47,15 @@ impl OdinNeuron {
 }
 
 /// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A
-/// presynaptic spike strengthens a synapse if the neuron's potential is high and its calcium lies between the outer
-/// two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower two
-/// thresholds.
+/// presynaptic spike strengthens a synapse if the neuron's potential is high and the neuron's calcium lies between the
+/// outer two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower
+/// two thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinLearning {
-    /// Potential at or above which synapses grow; below it they shrink. Bits 18 to 25.
+    /// Potential at or above which a presynaptic spike can strengthen a synapse; below this potential the spike can
+    /// weaken the synapse. Bits 18 to 25.
     pub potential: u8,
     /// The three thresholds of the calcium, 0 to 7 each. Bits 26 to 34, 3 bits each.
     pub calcium: [u8; 3],
@@ -80,14 +81,14 @@ pub struct OdinSynapse {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(clippy::struct_excessive_bools, reason = "each is a register")]
 pub struct OdinRegisters {
-    /// Register 1: whether the loop is open, that is, whether the spikes of neurons go only to the output bus and not
-    /// to other neurons.
+    /// Register 1: whether the loop is open. In open loop the spikes of neurons go only to the output bus, and not to
+    /// other neurons.
     pub is_open_loop: bool,
     /// Registers 2 to 17: bit `n % 16` of word `n / 16` is 1 if neuron `n` inhibits.
     pub inhibitory: [u16; 16],
     /// Register 18: interval between the spikes of a burst, in clock cycles, 20 bits; 0 disables bursts.
     pub burst_clocks: u32,
-    /// Register 19: which spikes go to the output bus.
+    /// Register 19: the spikes that go to the output bus.
     pub output_source: OutputSource,
     /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. If set, the output bus shows
     /// the states of the neuron and the synapse instead of spikes.
@@ -101,8 +102,8 @@ pub struct OdinRegisters {
 }
 
 impl OdinRegisters {
-    /// Registers for an open loop with excitatory neurons only, without bursts and monitoring, in which synapses
-    /// without the mapping bit neither act nor learn.
+    /// Registers for a simple network: the loop is open, all neurons are excitatory, and bursts and monitoring are off.
+    /// Synapses without the mapping bit neither act nor learn.
     pub const PLAIN: Self = Self {
         is_open_loop: true,
         inhibitory: [0; 16],
@@ -120,7 +121,7 @@ impl OdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OdinInput {
-    /// A spike of neuron `pre` that acts on one synapse only. The synapse acts if it has the mapping bit, or if
+    /// A spike of neuron `pre` that acts through one synapse only. The synapse acts if it has the mapping bit, or if
     /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is set.
     Synapse {
         /// The presynaptic neuron.
@@ -128,7 +129,7 @@ pub enum OdinInput {
         /// The postsynaptic neuron.
         post: u8,
     },
-    /// A spike of neuron `pre` that acts on all of its synapses.
+    /// A spike of neuron `pre`, which acts through all synapses of that neuron.
     Spike {
         /// The neuron that fired.
         pre: u8,
@@ -142,12 +143,12 @@ pub enum OdinInput {
         /// Whether the weight lowers the potential.
         is_inhibitory: bool,
     },
-    /// A time step for one neuron, which waits in the chip's queue with virtual events and spikes.
+    /// A time step for one neuron. This event waits in the chip's queue with virtual events and spikes.
     VirtualLeak {
         /// The neuron that takes the time step.
         neuron: u8,
     },
-    /// A time step for one neuron, which does not wait in the chip's queue.
+    /// A time step for one neuron. This event does not wait in the chip's queue.
     Leak {
         /// The neuron that takes the time step.
         neuron: u8,

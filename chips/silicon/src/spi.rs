@@ -13,7 +13,7 @@ pub struct SpiSlave {
     pub is_writing: bool,
     /// Address of the last access to a memory.
     pub memory_address: u16,
-    /// Number of the memory: 1 neurons, 2 synapses.
+    /// Memory of the last access: 1 for neurons, 2 for synapses.
     pub memory: u8,
     /// For a write: the byte in bits 0 to 7, and in bits 8 to 15 the mask of the bits that keep their value.
     pub data: u16,

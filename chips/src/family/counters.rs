@@ -1,6 +1,6 @@
 //! The counters of a chip's driver.
 
-/// The driver's counters of resets, and of time steps, events, words and outputs that were skipped, lost, late or sent
+/// The driver's counters: of resets, of what was lost, dropped or skipped, of late events, and of events that were sent
 /// again. Each counter saturates at its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -24,6 +24,6 @@ pub struct Counters {
     /// Number of outputs lost at resets: the chip had raised REQ for the output, but the driver had not read it yet.
     pub lost_outputs: u32,
     /// Number of times that the chip's queue was seen to become full; each time, any number of spikes between neurons
-    /// may be lost. Always 0 without the [pin](super::AerPort::queue_full).
+    /// may be lost. Always 0 if the pin [`SCHED_FULL`](super::AerPort::queue_full) is not wired.
     pub overflows: u32,
 }

@@ -7,8 +7,8 @@ use super::wire::Address;
 use super::{AerPort, ChipError, Input, OdinChip, Outcome, Running, State};
 use crate::error::at_most;
 
-/// Time that the driver waits for the answer to a probe, in clock cycles of the chip; the time step of one neuron takes
-/// 10.
+/// Number of the chip's clock cycles for which the driver waits for the answer to a probe. A probe is a time step of
+/// one neuron, and takes 10 clock cycles.
 const PROBE_CLOCKS: u32 = 1_000;
 
 /// A gated chip: its memories can be accessed, and it takes no events. Its loop is open (spikes do not reach other
@@ -19,9 +19,9 @@ const PROBE_CLOCKS: u32 = 1_000;
 /// doubled, and also if a lost and a doubled pulse cancel out. After such an error all memory is in doubt: reset the
 /// chip, and write all of its memory again.
 ///
-/// **Time:** writing a neuron of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at 656 kHz; writing a neuron of ODIN takes
-/// 59 frames; writing a synapse takes 14 frames. For whole networks [`load`](Self::load) takes only 2 frames for each
-/// byte.
+/// **Time:** writing a neuron of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at an SCK of 656 kHz; writing a neuron of
+/// ODIN takes 59 frames; writing a synapse takes 14 frames. For whole networks [`load`](Self::load) takes only 2 frames
+/// for each byte.
 #[derive(Debug)]
 pub struct Gated<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -40,14 +40,14 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// only a chip whose gate is open answers. If that neuron leaks, the driver raises its potential by the leak
     /// beforehand, so that the network is unchanged afterwards.
     ///
-    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 206 frames for ODIN. A probed neuron that leaks
-    /// from a potential other than 0 takes 17 more frames. Each neuron that cannot be probed takes 4 (tinyODIN) or 16
-    /// (ODIN) more frames.
+    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at an SCK of 656 kHz; 206 frames for ODIN. A probed neuron
+    /// that leaks from a potential other than 0 takes 17 more frames. Each neuron that cannot be probed takes 4
+    /// (tinyODIN) or 16 (ODIN) more frames.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range, or [`NoProbe`](ChipError::NoProbe); the chip is then still
-    /// gated. Also returns an error if the bus or the port failed, if the chip reads back a wrong value, or if it does
-    /// not answer; then reset the chip.
+    /// gated. Also returns an error if the bus or the port failed, if memory reads back a wrong value, or if the chip
+    /// does not answer; then reset the chip.
     pub fn run(self, registers: &I::Registers) -> Outcome<Running<'a, I, D, P>, D, P> {
         I::check_registers(registers)?;
         let chip = self.chip;
@@ -124,7 +124,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Checks that the chip is gated and in sync with the bus. [`run`](Self::run) makes the same check.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, or if the chip reads back a wrong value: then reset the chip.
+    /// Returns an error if the bus failed, or if memory reads back a wrong value: then reset the chip.
     pub fn check_sync(&mut self) -> Outcome<(), D, P> {
         self.chip.check_sync()
     }

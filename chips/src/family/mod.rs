@@ -41,7 +41,7 @@ pub use port::AerPort;
 pub use running::Running;
 pub use steps::{Steps, StepsLayer, StepsState};
 
-/// A chip of the ODIN family, on an SPI device and a port.
+/// The driver of a chip of the ODIN family, on an SPI device and a port (the chip's pins other than SPI).
 ///
 /// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select. Therefore no other device
 ///   may share its SPI bus, and the chip-select pin of the SPI device stays unconnected.
@@ -55,11 +55,12 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   and its check, this goes unnoticed, because registers cannot be read back. After an error of the bus, or a byte
 ///   that reads back differently, the driver refuses all calls until the next reset. All memory is then in doubt: load
 ///   it again.
-/// - **Waits:** the driver reads the pins a given number of times, then returns an error.
+/// - **Waits:** the driver waits for the chip by reading pins. After as many reads as [`new`](Self::new) was told, it
+///   returns an error.
 /// - **Pending words:** a word that the chip has not acknowledged when a wait ends stays pending. Every call that sends
 ///   a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
-/// - **Unsent events:** an event that could not be sent is kept, and is sent first at the next call, even after a
-///   reset.
+/// - **Unsent events:** the driver keeps an event that [`Running::feed`] could not send. The next call of `feed` sends
+///   this event first, even after a reset.
 /// - **Losses** are counted; see [`counters`](Self::counters).
 ///
 /// # What to know about the chips
@@ -102,8 +103,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// times.
     ///
     /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If polls are
-    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies their number. With fewer polls, words that
-    /// take long time out, and a later call must finish them.
+    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies the number of polls. With fewer polls,
+    /// the wait for a slow word times out, and a later call must finish the word.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -127,11 +128,11 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Sets the length of a time step in µs: [`Running::feed`] and [`Running::advance`] then send a leak event for
-    /// every `step` µs that pass. By default they send none.
+    /// Sets the length of a time step to `step` µs. [`Running::feed`] and [`Running::advance`] then send a leak event
+    /// for every `step` µs that pass. Without this setting they send no leak events.
     ///
-    /// Call [`Running::advance`] at least every 70 minutes. If a tick comes more than 70 minutes after the previous
-    /// one, the driver takes it for a late tick and sends no leak.
+    /// Call [`Running::advance`] at least every 70 minutes. The driver takes a tick (a time stamp) more than 70 minutes
+    /// after the previous tick for a late one, and then sends no leak event.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
@@ -155,7 +156,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// [`Running::feed`] that the chip has not acknowledged, the driver keeps the event and sends it again.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.
+    /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Gated<'_, I, D, P>, D, P> {
         self.state = State::NotReset;
         let (under_way, is_output_lost) = self.aer.reset().map_err(ChipError::Port)?;
@@ -173,7 +174,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Returns a chip that an earlier call left gated.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), or [`NotGated`](ChipError::NotGated) if the chip runs.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, or [`NotGated`](ChipError::NotGated)
+    /// if the chip runs.
     pub fn gated(&mut self) -> Outcome<Gated<'_, I, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

@@ -29,8 +29,8 @@ fn anchor() -> Address {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
-    /// Shuts the gate of a chip at rest, opens its loop, and checks that the gate is shut and that chip and bus are in
-    /// sync.
+    /// Gates a chip at rest, and opens its loop, so that spikes no longer reach other neurons. Then checks that the
+    /// chip is gated and in sync with the bus.
     pub(super) fn shut(&mut self) -> Outcome<(), D, P> {
         self.state = State::NotReset;
         self.registers = None;
@@ -98,9 +98,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Writes bytes, each with a mask of the bits to keep, then checks that chip and bus are in sync, and reads the
     /// bytes back.
     ///
-    /// A faulty write that goes to another address leaves the byte at its own address unchanged. To notice this, only
-    /// bytes that differ from memory are written, and the reads that find the differences are checked, too. The bits to
-    /// keep are compared as well.
+    /// After a fault, a write may go to another address; the byte at the intended address then stays unchanged. To
+    /// notice this, the driver writes only bytes that differ from memory, and also checks the reads that find the
+    /// differences. The bits to keep are compared as well.
     pub(super) fn store(
         &mut self,
         bytes: impl Iterator<Item = (Address, u8, u8)> + Clone,
@@ -123,7 +123,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.expect_anchor()
     }
 
-    /// Reads up to 16 bytes, checks that chip and bus are in sync, and reads the bytes again.
+    /// Reads up to 16 bytes, checks that chip and bus are in sync, then reads the bytes again and compares them.
     pub(super) fn fetch(
         &mut self,
         addresses: impl Iterator<Item = Address> + Clone,
@@ -159,7 +159,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
+    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -171,7 +171,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Reads a byte, and returns an error unless it equals `value` outside the bits in `ignored`.
+    /// Reads a byte, and returns an error if it differs from `value`. Bits that are 1 in `ignored` are not compared.
     pub(super) fn expect_byte(
         &mut self,
         address: Address,
@@ -188,8 +188,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores the byte `value` at `address` as the beacon if it is a byte of a neuron, and if one of its bits in `mask`
-    /// is 1 and belongs to a parameter. (The chip does not change parameters.)
+    /// Stores the byte `value` at `address` as the beacon, if `address` is in the memory of neurons, and if a bit of
+    /// the byte is 1, lies in `mask` and belongs to a parameter. (The chip does not change parameters.)
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

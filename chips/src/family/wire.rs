@@ -18,7 +18,8 @@ impl Address {
         Self(NEURON | u32::from(byte) << 8 | u32::from(neuron))
     }
 
-    /// Returns the address of a byte that does not exist, beyond the bytes of a neuron. It reads as 0.
+    /// Returns the address of a byte that does not exist, beyond the bytes of a neuron. A read of this address returns
+    /// 0.
     pub(super) fn nowhere() -> Self {
         Self::neuron(255, 0x7F)
     }
@@ -52,7 +53,7 @@ impl<D: SpiDevice> Wire<D> {
         self.write(register.into(), value)
     }
 
-    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
+    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
     pub(super) fn write_byte(
         &mut self,
         address: Address,

@@ -6,7 +6,7 @@
 /// |---|---|---|
 /// | `AERIN_ADDR`, `AERIN_TAR_EN` | to the chip | an input's number, or a byte of a target: nine lines, written with one store |
 /// | `AERIN_REQ`, `AERIN_ACK` | to the chip, from it | the handshake of an input |
-/// | `OUT_DATA` | from the chip | a byte of its answer, eight lines |
+/// | `OUT_DATA` | from the chip | a byte of the chip's answer, eight lines |
 /// | `OUT_REQ`, `OUT_ACK` | from the chip, to it | the handshake of a byte of the answer |
 /// | `SAMPLE`, `TIME_TICK` | to the chip | high during a sample; rises for each time step |
 /// | `TARGET_VALID`, `INFER_ACC` | to the chip | whether a step learns, and whether it counts for the label |
@@ -59,13 +59,13 @@ pub trait ReckOnPort {
     /// See [`set_input`](Self::set_input).
     fn set_sample(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Drives `TIME_TICK`.
+    /// Drives `TIME_TICK`, whose rising edge begins a time step.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
     fn set_tick(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Drives `TARGET_VALID`.
+    /// Drives `TARGET_VALID`, which is high in a time step from which the chip learns.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -77,7 +77,7 @@ pub trait ReckOnPort {
     /// See [`set_input`](Self::set_input).
     fn set_infer(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `TIMING_ERROR_RDY`.
+    /// Reads `TIMING_ERROR_RDY`, which is high while a tick may come.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

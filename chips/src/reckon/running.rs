@@ -80,8 +80,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
-    /// Sends a spike of an input, which acts after the next tick. An input that is sent twice within a step acts only
-    /// once.
+    /// Sends a spike of an input. The spike acts after the next tick. An input that is sent twice within a step acts
+    /// only once.
     ///
     /// # Errors
     /// Returns an error if the network has no such input. Also returns an error if the chip does not answer, or if the
@@ -91,8 +91,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         self.chip.send(input, false)
     }
 
-    /// Ends a time step and begins the next one. Waits until the chip is ready, ticks, and takes the chip's answer,
-    /// which proves that the chip has done the step. Returns the answer if the setting is
+    /// Ends a time step and begins the next one. Waits until the chip is ready, sends a tick, and takes the chip's
+    /// answer, which proves that the chip has done the step. Returns the answer if the setting is
     /// [`PotentialsEachStep`](ReckOnAnswers::PotentialsEachStep), otherwise `None`.
     ///
     /// # Errors

@@ -1,5 +1,5 @@
-//! The frames on the SPI bus of tinyODIN and ODIN and their order, handshakes and time steps, tested on the chips'
-//! models.
+//! Tests of the frames on the SPI bus and their order, of handshakes, and of time steps, on the models of tinyODIN and
+//! ODIN.
 
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;
@@ -24,8 +24,8 @@ const OPEN: TinyOdinRegisters = TinyOdinRegisters {
     last_neuron: 255,
 };
 
-/// Makes a board with a running chip, whose first `firing` neurons fire at every event, and a driver for the chip.
-/// `clocks` is the time of a port call.
+/// Makes a board with a running chip, whose first `firing` neurons fire at every event, and a driver for the chip. A
+/// port call takes `clocks` clock cycles of the chip.
 fn running(clocks: u32, polls: u32, firing: usize) -> (TinyBoard, Tiny) {
     let board = TinyBoard::new(4, clocks);
     let mut chip = TinyOdin::new(board.spi(), board.port(), polls);
@@ -519,9 +519,9 @@ fn the_same_handshake_carries_odins_words() {
     assert_eq!(board.pins().chip.taken, [0x0_FFFF, 0x1_0705, 0x7F], "the probe comes first");
 }
 
-/// The upper bounds are what an earlier driver took, in clock cycles of the chip, if each pin read takes one clock
-/// cycle. A spike took 32.9, 136.4 and 518.5 with 12, 64 and 256 neurons in use; a virtual event took 15.5; an output
-/// took 11.6.
+/// The upper bounds are the times that an earlier version of the driver took, in clock cycles of the chip, if each pin
+/// read takes one clock cycle. A spike took 32.9, 136.4 and 518.5 with 12, 64 and 256 neurons in use; a virtual event
+/// took 15.5; an output took 11.6.
 #[test]
 fn throughput_is_that_of_the_chip() {
     for (neurons, most) in [(12, 32.9), (64, 136.4), (256, 518.5)] {

@@ -334,7 +334,7 @@ fn network(
     }
 }
 
-/// Writing a network as bytes fails if the network would not come back unchanged.
+/// Writing a network as bytes must fail if the bytes would not give the same network when read.
 #[test]
 fn a_network_that_bytes_cannot_hold_is_not_written() {
     let network = network(&[3], &[50], true, false);

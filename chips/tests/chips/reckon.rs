@@ -160,7 +160,7 @@ fn a_network_as_bytes_is_the_same_and_damaged_bytes_are_refused() {
     assert_eq!(buffer[5], 2, "it has no flag but that of neurons that return to 0");
 }
 
-/// A network of 65 540 neurons is refused: the number must not wrap to 4 in 16 bits.
+/// A network of 65 540 neurons must be refused. Cut to 16 bits, 65 540 would become 4, a valid number of neurons.
 #[test]
 fn a_network_of_far_too_many_neurons_is_refused() {
     static LARGE: ReckOnNetwork<1, 65_540, 1> = ReckOnNetwork {
@@ -391,7 +391,7 @@ struct Lines {
     bytes: Cell<Option<u32>>,
 }
 
-/// A port whose lines can show the faults in `lines`.
+/// A port that passes calls on to `port`, but shows the faults that `lines` selects.
 struct FaultyPort<'a> {
     port: Port,
     lines: &'a Lines,
@@ -447,8 +447,8 @@ impl ReckOnPort for FaultyPort<'_> {
     }
 }
 
-/// Begins a sample on a chip that was never loaded, which has 16 outputs; then sets faults with `set`, and returns the
-/// result of `act`.
+/// Begins a sample on a chip without a network, whose answers have 16 outputs. Then sets faults with `set`, and returns
+/// the result of `act`.
 fn with_faults<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),

@@ -9,7 +9,8 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// A way to compare two chips: the function that reads the content to compare, and the calls of the driver before it.
+/// A way to compare two chips: a function that returns the content to compare, and a function that first makes calls of
+/// the driver.
 type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
@@ -77,8 +78,8 @@ const NETWORK: ReckOnNetwork<1, 2, 1> = ReckOnNetwork {
     shared: ReckOnShared { shifts: [0; 3], keep: 110, resets_to_zero: true },
 };
 
-/// Number of 32-bit words that loading [`NETWORK`] writes: four for each of 128 pairs of neurons, one for the input,
-/// and two for each of 256 neurons.
+/// Number of 32-bit words that loading [`NETWORK`] writes: four for each of 128 pairs of neurons, one for the weights
+/// from the input, and two for each of 256 neurons (one for weights to neurons, one for weights to outputs).
 const LOADED: u64 = 512 + 1 + 256 + 256;
 
 /// Compares all registers and memories, immediately after the access.
@@ -97,10 +98,11 @@ fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usi
     both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
 }
 
-/// Tries pairs of faults in an access. Tries `some` random pairs whose faults are less than `reach` clock pulses apart.
-/// If `all_in_first`, also tries all pairs within the first frame. Leaves out a pair if one of its faults lies in the
-/// frame of a register, which `is_register` recognises, or in the frame before. Asserts that the access returns an
-/// error, or has the same effect as without faults. Returns the number of pairs tried.
+/// Makes an access many times, each time with a pair of faults: one lost and one doubled clock pulse. Tries `some`
+/// random pairs, whose faults are less than `reach` clock pulses apart. If `all_in_first` is set, also tries all pairs
+/// within the first frame. Leaves out pairs with a fault in a frame that writes a register, or in the frame before;
+/// `is_register` returns whether the frame with a given number writes a register. Asserts that each access returns an
+/// error or has the same effect as without faults. Returns the number of pairs tried.
 fn pairs<T: PartialEq + std::fmt::Debug>(
     (some, all_in_first): (usize, bool),
     reach: u64,

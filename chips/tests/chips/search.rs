@@ -74,19 +74,19 @@ impl Random {
     }
 }
 
-/// What the caller of the driver expects of the chip.
+/// The state of the chip that the caller of the driver expects.
 struct Known {
     neurons: Vec<u128>,
     synapses: Vec<u32>,
     registers: Option<TinyOdinRegisters>,
     fired: Vec<u8>,
     out: Vec<u8>,
-    /// Whether the chip ran in closed loop, so that the test cannot predict the potentials.
+    /// Whether the chip ran in closed loop. If true, the test cannot predict the potentials.
     is_stale: bool,
 }
 
 impl Known {
-    /// Takes the chip's present memories as expected, for a chip that was just reset.
+    /// Returns the chip's present memories as the expected state, for a chip that was just reset.
     fn of(board: &TinyBoard) -> Self {
         let pins = board.pins();
         let (neurons, synapses) = (pins.chip.neurons.clone(), pins.chip.synapses.clone());
@@ -107,7 +107,7 @@ impl Known {
         }
     }
 
-    /// Applies an input to the expected neurons.
+    /// Updates the expected neurons as the chip does for an input.
     fn take(&mut self, input: TinyOdinInput) {
         let Some(TinyOdinRegisters { last_neuron, .. }) = self.registers else { return };
         let none = Drive { is_event: true, is_leak: false, virtual_bits: 0, synapse: 0, pre: 0 };
@@ -373,8 +373,8 @@ fn running(
     }
 }
 
-/// Updates what the test expects of a chip that was just gated. If the loop was closed, the test stops comparing spikes
-/// and potentials.
+/// Updates the expected state of a chip that was just gated. If the chip ran in closed loop (spikes reach other
+/// neurons), the test cannot predict spikes and potentials, and the next comparison leaves them out.
 fn finish(known: &mut Known) {
     if !known.is_open_loop() {
         known.fired.clear();

@@ -56,7 +56,8 @@ impl Bank {
         });
     }
 
-    /// Encodes the samples that still wait for their look-ahead, and appends their events.
+    /// Ends the recording: encodes the last samples, which the encoders held back to look ahead, and appends their
+    /// events.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         self.collect(events, Codec::finish);
     }

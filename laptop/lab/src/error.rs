@@ -78,7 +78,7 @@ pub enum ErrorKind {
     /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
-    /// A trained network, or a request about it such as its inputs, is refused as a whole.
+    /// A trained network is refused, or a setting or spikes for the network are refused.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
     /// A NIR file cannot be read, or its graph is not supported.
@@ -90,7 +90,7 @@ pub enum ErrorKind {
     /// A trained network does not fit a chip or the controller.
     #[cfg(feature = "networks")]
     Fit(FitKind),
-    /// A chip's model fails under its driver.
+    /// A run on a chip's model fails.
     #[cfg(feature = "networks")]
     Model(ModelKind),
     /// A serial port cannot be read.

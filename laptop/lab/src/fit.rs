@@ -8,8 +8,8 @@ use crate::tune::RequestKind;
 use catalogue::run::{SampleType, Settings};
 use std::fmt::Write;
 
-/// Statistics of a channel: the range, the resolution, the number of samples that the sample type cannot hold, and the
-/// number of samples that the code cannot reach.
+/// Statistics of a channel: the range, the resolution, the number of samples that the sample type clamps, and the
+/// number of samples above the largest value that the code can represent.
 pub struct Fit {
     scheme: Scheme,
     sample: SampleType,
@@ -111,7 +111,7 @@ impl Fit {
     }
 }
 
-/// Returns the threshold if the code spikes on changes, otherwise `None`.
+/// Returns the threshold of a code that spikes when the signal changes; `None` for other codes.
 fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
     settings.number("threshold").ok().filter(|_| scheme.info().has_first_value())
 }
@@ -144,8 +144,8 @@ pub fn rounding(settings: &Settings) -> Option<String> {
     (!words.is_empty()).then(|| format!("in {}, {}", settings.sample, words.join(", ")))
 }
 
-/// Adds the reason to an error about settings if the sample type cannot hold the steps from sample to sample in
-/// `values`.
+/// Completes an error about settings. If `sample` cannot hold the steps from sample to sample in `values`, the error is
+/// extended by this reason; otherwise the error is returned unchanged.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

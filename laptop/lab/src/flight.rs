@@ -1,5 +1,5 @@
-//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the flight's link frames to
-//! values.
+//! The laptop's part in a flight. A `flight.toml` describes the scheme and the channels of the drone's sender. This
+//! module reads the channels from a recording, and decodes the sender's frames to values.
 
 use crate::Result;
 use crate::coding::Coding;
@@ -36,7 +36,7 @@ impl Coding {
 ///
 /// # Errors
 /// Returns an error if there are no channels, if they differ in scheme or in a parameter that is not a plain number,
-/// such as a count or a filter, or if the rate's period cannot be expressed in whole µs.
+/// such as a count or a filter, or if the sample period cannot be expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
@@ -53,7 +53,7 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
 ///
 /// # Errors
 /// Returns an error if there are no channels, if they differ in a parameter that is not a plain number, such as a count
-/// or a filter, or if the rate's period cannot be expressed in whole µs.
+/// or a filter, or if the sample period cannot be expressed in whole µs.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,
@@ -99,7 +99,7 @@ pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     own
 }
 
-/// A recording whose samples are converted to the sensor's counts and filtered, as in the flight's sender.
+/// A source of samples that are converted to the sensor's counts and then filtered, as in the flight's sender.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,

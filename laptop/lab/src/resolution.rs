@@ -25,7 +25,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Starts with a column that has no samples yet, for the sample type `sample`.
+    /// Makes the record of a column that has no samples yet. `sample` is the sample type to check.
     pub fn new(sample: SampleType) -> Self {
         let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
         Self {
@@ -41,7 +41,7 @@ impl Resolution {
         }
     }
 
-    /// Examines a whole column of samples in the sample type `sample`.
+    /// Examines the steps of a whole column, and the errors that rounding to the sample type `sample` causes in them.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
@@ -71,8 +71,8 @@ impl Resolution {
         self.off > 0.0
     }
 
-    /// Returns a sentence that describes the lost steps, and names the sample types that hold them. Returns `None` if
-    /// the sample type loses no steps.
+    /// Returns a sentence that describes the lost steps, and names the sample types that would hold these steps.
+    /// Returns `None` if the sample type loses no steps.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -86,8 +86,7 @@ impl Resolution {
         })
     }
 
-    /// Returns words that name the sample types which hold the steps, or words which say that no sample type holds
-    /// them.
+    /// Returns a text that names the sample types which hold the steps, or says that no sample type does.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()

@@ -1,5 +1,5 @@
-//! Checks whether a step code keeps up with a recording. The decoded value of a step code moves by at most one step for
-//! each sample.
+//! Checks whether a step code keeps up with a recording. The decoded value of a step code changes by at most one step
+//! from sample to sample.
 
 use crate::brief::short;
 use crate::scheme::Scheme;

@@ -15,8 +15,8 @@ use std::ops::Range;
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, the times after
-    /// the restart are shifted to follow the times before it after a usual step.
+    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, later times are
+    /// shifted such that they continue the earlier times with a step of the usual length.
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
@@ -166,7 +166,7 @@ fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
 
 /// A scheme's spikes and decoded values for a recording.
 pub struct Trial {
-    /// The scheme.
+    /// The scheme that encodes and decodes.
     pub scheme: Scheme,
     /// The parameters that were used.
     pub settings: Settings,
@@ -234,7 +234,8 @@ impl Trial {
     }
 }
 
-/// Returns a note if the mean error of the decoded values exceeds the signal's standard deviation.
+/// Returns a note if the decoded values are too low or too high, on average by more than the signal's standard
+/// deviation.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

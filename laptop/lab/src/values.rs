@@ -19,7 +19,7 @@ const FEWER: usize = 64;
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function that is called once, with the receiver as a decoder of frames to values.
+/// A function that takes the receiver, as a decoder of frames to values.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
 /// Properties of a link's sender besides its schemes.
@@ -28,8 +28,8 @@ pub struct Link {
     /// Length of the sub-timesteps in µs, if the code has any.
     pub slot_ticks: Option<u32>,
     /// Fingerprint that the sender's frames carry. If `None`, the fingerprint is computed from the channels' schemes.
-    /// If a single scheme stands for an unknown number of channels, the number of channels is found by trying: its
-    /// fingerprint must match the received fingerprint.
+    /// If a single scheme stands for an unknown number of channels, numbers of channels are tried until one gives the
+    /// received fingerprint.
     pub fingerprint: Option<Fingerprint>,
     /// Largest deviation of the sample period from its nominal length, in parts per million. `None` stands for the
     /// receiver's default.
@@ -42,7 +42,7 @@ impl From<Option<u32>> for Link {
     }
 }
 
-/// Makes a receiver and passes it to `then`. `settings` holds one set for each channel, or a single set for all
+/// Makes a receiver and passes it to `then`. `settings` holds the settings of each channel, or a single item for all
 /// channels.
 ///
 /// # Errors
@@ -156,7 +156,7 @@ impl<S: Sample> Visit<S> for Boxed {
 /// A scheme whose decoders start from the value `start`, if there is one. Serves only for decoding.
 struct Started<P: Scheme> {
     scheme: P,
-    /// Whether the channel exists. False for a placeholder that fills the array after the last channel.
+    /// Whether the channel exists. False for the placeholders that fill the array after the last channel.
     is_given: bool,
     start: Option<P::Sample>,
 }
@@ -232,12 +232,12 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     end: Option<Tick>,
     /// Number of keyframes received although the code uses none.
     unused_keyframes: u64,
-    /// The decoders' number for the value 1.0. Decoded numbers are divided by this number.
+    /// Number by which decoded values are divided: the decoders' representation of 1.0.
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of decoded values that were dropped because their channel does not exist. The receiver itself counts
-    /// further events of this kind.
+    /// Number of decoded values that were dropped because their channel does not exist. Events beyond the receiver's
+    /// `N` channels are not included; the receiver counts these itself.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
@@ -251,9 +251,9 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels the sender's keyframes with the decoders' sample type, which stands for all fixed-point types of one
-    /// width. If the sender's type differs from the decoders', keyframes labelled with the decoders' type are
-    /// relabelled too. The receiver then counts them as misfits.
+    /// Relabels the keyframes of the sender's sample type as keyframes of the decoders' type, because the decoders have
+    /// one type for all fixed-point types of a width. If the two types differ, keyframes that already have the
+    /// decoders' type are relabelled as the sender's, so that the receiver counts them as misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);

@@ -50,7 +50,7 @@ struct Bank {
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
-    /// Whether the scheme's simulated flights used a filter that is not possible at the recordings' sample rate.
+    /// Whether the scheme's simulated flights used a filter that the recordings' sample rate does not allow.
     lacks_filter: bool,
     /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code. `None` if no
     /// flights with the code were simulated.
@@ -68,11 +68,11 @@ struct BankChannel {
 }
 
 impl BankAdvice {
-    /// Finds the schemes that suit all channels, leaving out channels unfit for tuning, and ranks them by bytes on the
-    /// link.
+    /// Finds the schemes that suit every channel, apart from channels that are unfit for tuning. Ranks these schemes by
+    /// the number of bytes that they send on the link.
     ///
     /// # Errors
-    /// Returns an error if the rate is unknown, or if its period cannot be expressed in whole µs.
+    /// Returns an error if the sample rate is unknown, or if the sample period cannot be expressed in whole µs.
     pub fn new(request: &AdviseRequest, advice: &[Advice], watch: &Watch) -> Result<Self> {
         let pairs = || advice.iter().zip(&request.recordings);
         let heard: Vec<(&Advice, &Recording)> =
@@ -295,8 +295,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// Returns the values of the parameters that all channels of a bank must share. A count gets the largest of the
-/// channels' values, and any other parameter gets the first channel's value.
+/// Returns the values of the parameters that all channels of a bank must share. If the parameter is a count, its value
+/// is the largest of the channels' values. Otherwise, its value is that of the first channel.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;

@@ -13,7 +13,7 @@ const FIGURES: &str = include_str!("verdicts.json");
 /// The parameters with which the codes flew, as JSON; a symbolic link like `verdicts.json`.
 const FOUND: &str = include_str!("banks.json");
 
-/// A code counts as flying if its error is at most this many times the error without a code.
+/// Largest attitude error with which a code counts as fit to fly, as a multiple of the error without a code.
 const WITHIN: f64 = 1.2;
 
 /// Shares of lost frames in the simulated flights, in percent, lowest first.
@@ -104,7 +104,8 @@ pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
     BANKS.get(scheme)
 }
 
-/// Returns the reason not to fly the scheme named `scheme` with `loss` percent of its frames lost, if there is one.
+/// Returns the reason not to fly the scheme named `scheme` on a link that loses `loss` percent of the frames; `None` if
+/// the scheme is fit to fly.
 pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
     let Some(own) = flown(scheme) else {
         return Some("was not flown with rotors that shake the sensor".to_owned());
@@ -152,8 +153,9 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of this code's attitude errors to the errors of the code `other`. Only entries of
-    /// `everywhere` in which both codes have an error count.
+    /// Returns the mean ratio of this code's attitude error to the attitude error of the code `other`. The mean is over
+    /// those entries of `everywhere` in which both codes have an attitude error. Returns `None` if there is no such
+    /// entry.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

@@ -1,5 +1,5 @@
-//! The benchmark of the paper: measures the efficiency and error of each code, for the cases of the paper's Tables I
-//! and II.
+//! The benchmark of the paper: measures the efficiency and error of each code, for the signals of the paper's Tables I
+//! and II. All signals of one duration form a case.
 
 pub mod paper;
 mod recipe;
@@ -15,7 +15,7 @@ use recipe::{COLUMNS, Outcome};
 use signal::Waveform;
 use statistics::Statistics;
 
-/// Maximum number of signals in a case. Each signal has its own random generator.
+/// Maximum number of signals in a case.
 pub const MOST_TESTS: usize = 1_000_000;
 
 /// The results of all tests of one case, by scheme.

@@ -1,6 +1,6 @@
 //! The figures of Tables I and II, as the paper prints them.
 
-/// Durations of the signals of each case, in seconds.
+/// The benchmark's cases: durations of the signals, in seconds.
 pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];
 
 /// Number of signals in each case.
@@ -29,7 +29,7 @@ impl Table {
     }
 }
 
-/// Table I, spiking efficiency in percent.
+/// The paper's Table I: spiking efficiency in percent.
 pub const EFFICIENCY: Table = Table {
     title: "Table I, spiking efficiency in %",
     means: [
@@ -49,7 +49,7 @@ pub const EFFICIENCY: Table = Table {
     decimals: 1,
 };
 
-/// Table II, root mean square error.
+/// The paper's Table II: root mean square error.
 pub const RMSE: Table = Table {
     title: "Table II, root mean square error",
     means: [

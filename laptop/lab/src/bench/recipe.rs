@@ -1,5 +1,5 @@
-//! Runs each scheme over a signal as the paper's toolbox does: with the toolbox's parameters, the toolbox's start
-//! values, and the toolbox's treatment of the first spike and the last sample.
+//! Runs each scheme over a signal like the toolbox, the program that the paper's authors published. The parameters, the
+//! start values, and the treatment of the first spike and the last sample are the toolbox's.
 
 use spikewire::population::{Gaussian, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};

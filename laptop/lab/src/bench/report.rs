@@ -19,8 +19,8 @@ struct Cell {
     ours: Statistics,
     paper_mean: f64,
     paper_deviation: f64,
-    /// Difference between the measured mean and the paper's mean beyond the paper's rounding, in standard errors of
-    /// that difference.
+    /// Difference between the measured mean and the paper's mean, as a multiple of the standard error of the
+    /// difference. The paper's rounding error is subtracted from the difference beforehand.
     standard_errors: f64,
     mean_agrees: bool,
     deviation_agrees: bool,
@@ -97,8 +97,8 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// Returns the largest difference between two means that sampling error could hide, as a share of the paper's mean, and
-/// the name of the cell with this difference.
+/// Returns the largest difference from the paper's mean that still counts as agreement, as a share of the paper's mean.
+/// Also returns the name of the cell to which this difference belongs.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {

@@ -1,4 +1,4 @@
-//! The signals of the paper's benchmark.
+//! Test signals of the benchmark in the paper *A toolbox for neuromorphic perception in robotics*.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

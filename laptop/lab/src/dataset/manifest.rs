@@ -68,7 +68,7 @@ pub struct Row {
     pub seconds: f64,
     /// Number of samples of each channel.
     pub samples: u64,
-    /// Number of samples that are missing or not finite, and emitted nothing.
+    /// Number of samples that are missing or not finite, and therefore have no spikes.
     pub not_finite: u64,
     /// Number of spikes of each channel.
     pub spikes: Vec<u64>,
@@ -111,7 +111,7 @@ impl Row {
     }
 
     /// Copies the rate, the duration and the counts of `clock` to the row. Rate and duration are rounded to 6 decimals,
-    /// which survive writing and reading unchanged.
+    /// so that they do not change when the row is written and read.
     pub(super) fn take(&mut self, clock: &Clock) {
         let rounded = |number: f64| (number * 1e6).round() / 1e6;
         self.rate = clock.rate().map(rounded);
@@ -148,7 +148,7 @@ impl Row {
     }
 }
 
-/// The length and the modification time of a log, which show whether the log has changed.
+/// The length and the modification time of a log. If both are the same as before, the log is taken to be unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct File {
     bytes: u64,

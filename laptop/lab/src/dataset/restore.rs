@@ -15,8 +15,8 @@ use spikewire::Polarity;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// Writes a log's spikes byte for byte as `encode` does. `part` is the log's Parquet file of spikes in a data set,
-/// whose file of samples must exist too. Returns the output, which the caller must finish.
+/// Writes a log's spikes as text, byte for byte as the command `encode` does. `part` is the log's Parquet file of
+/// spikes in a data set, whose file of samples must exist too. Returns the output, which the caller must finish.
 ///
 /// # Errors
 /// Returns an error if the files are not those of a data set, or if the output cannot be written.
@@ -112,7 +112,8 @@ impl Part {
         columns.iter().position(|own| own.name() == name)
     }
 
-    /// Makes the clock with which the log was encoded, from the same number of first samples.
+    /// Makes the clock anew that was used when the log was encoded. The file's metadata hold the arguments of the
+    /// clock.
     fn clock(&self, is_timed: bool) -> Result<Clock> {
         let number = |key| self.about(key).and_then(|own| own.parse::<f64>().ok());
         let first = number(FIRST).ok_or_else(|| other("no number of first samples"))? as usize;

@@ -23,7 +23,7 @@ pub(super) struct Reader {
     /// Number of ticks that did not fit in 32 bits.
     long_ticks: u64,
     is_file_of_spikes: bool,
-    /// Number of events that the last line of a file of spikes declares.
+    /// Number of events that a file of spikes declares in its last line.
     declared_events: Option<u64>,
 }
 
@@ -49,7 +49,8 @@ impl Reader {
         }
     }
 
-    /// Reads a comment without its `#`. Returns the item in the comment, or `None` if the comment holds no item.
+    /// Reads a comment, given without its `#`. Remembers what the comment says about the file, and returns the item in
+    /// the comment, or `None` if the comment holds no item.
     fn note(&mut self, note: &str) -> Result<Option<Item>> {
         match note.split_once('=') {
             Some(("spikewire", _)) => self.is_file_of_spikes = true,
@@ -149,7 +150,7 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// Parses the text of a comment, without its `#`. Returns `None` if the comment holds no item.
+/// Parses a comment, given without its `#`, as an item. Returns `None` if the comment holds no item.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     let text = || value.to_owned();

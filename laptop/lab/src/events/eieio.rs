@@ -12,7 +12,7 @@ use std::num::NonZeroU32;
 /// The mapping of a board's keys and time stamps to addresses and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// The key of address 0.
+    /// The EIEIO key that stands for address 0.
     pub base: u32,
     /// Length of a time step, in µs.
     pub step: NonZeroU32,

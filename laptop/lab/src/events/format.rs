@@ -62,8 +62,8 @@ impl Format {
         }
     }
 
-    /// Makes a writer of the format. An event that the format cannot express is dropped and counted if `drops`;
-    /// otherwise it is an error.
+    /// Makes a writer of the format. If `drops` is true, the writer drops and counts events that the format cannot
+    /// express. If `drops` is false, such an event is an error.
     pub fn writer(self, drops: bool) -> Box<dyn EventWriter> {
         match self {
             Self::Link(coding) => Box::new(link::Writer::new(coding)),

@@ -8,8 +8,8 @@ use std::io::Write;
 
 /// A decoder of link frames to values.
 pub trait Values {
-    /// Decodes a frame, and appends the decoded values to `items`: a value for each keyframe and event, or a value for
-    /// each sample that has ended.
+    /// Decodes a frame, and appends the decoded values to `items`. A temporal code gives a value for each keyframe and
+    /// event, and any other code a value for each sample that has ended.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
     /// Appends the values of the last sample. Call it after the last frame.
@@ -25,7 +25,7 @@ pub trait Values {
 /// Reads link frames as events, or as decoded values.
 pub struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
-    /// Number of skipped zeros that `finish` had appended to the input.
+    /// Number of zeros that `finish` appended to the input. They do not count as skipped bytes.
     padding: u64,
     values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,

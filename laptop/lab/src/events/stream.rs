@@ -168,7 +168,7 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Returns a sentence with the number of bytes written, in total and for each item.
+    /// Returns a sentence that states the number of bytes written, `bytes`, and their mean for each event or value.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),

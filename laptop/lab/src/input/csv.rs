@@ -29,9 +29,9 @@ const AHEAD: usize = 64;
 /// A CSV table that is being read: the chosen columns, and the columns with the times, if the table has times.
 pub(super) struct Table {
     rows: Rows,
-    /// Number of comments below the header.
+    /// Number of comment lines below the header.
     comments: Rc<Cell<u64>>,
-    /// A note on where the table is cut.
+    /// A note for the user on what was left out at the end of a truncated table.
     cut: Rc<Cell<Option<String>>>,
     ahead: VecDeque<ByteRecord>,
     /// The current row.
@@ -89,8 +89,8 @@ impl Table {
         Self::of_text(text, 0, cut, file, options)
     }
 
-    /// Opens a table whose file has another format than CSV. `rows` is the table as CSV; its header is not counted as a
-    /// line of the file.
+    /// Opens a table whose file has a format other than CSV. `rows` is the table converted to CSV. Its header line is
+    /// not counted as a line of the file.
     ///
     /// # Errors
     /// See [`open`](Self::open).
@@ -399,8 +399,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the line at which `record`, the row read last, begins. The line is counted back from the reader's
-    /// position, because the record's own position is the position of the comments before the record.
+    /// Returns the line at which `record`, the row read last, begins. Does not use the position that `record` stores:
+    /// it is the position of any comments before the row.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
@@ -429,7 +429,8 @@ impl<R: Read> Read for Comments<R> {
     }
 }
 
-/// Reads the rows that are examined first. The position of each record is set to the line at which its row begins.
+/// Reads the first rows, from which the header and the format of the times are found. Sets the position of each record
+/// to the line at which its row begins.
 fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     let mut records = VecDeque::new();
     let mut record = ByteRecord::new();
@@ -508,7 +509,8 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// Returns the only column that holds neither times nor counts. Returns an error if no column does, or if several do.
+/// Returns the only column that holds neither times nor counts. Returns an error if there is no such column, or if
+/// there are several.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {

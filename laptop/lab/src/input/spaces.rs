@@ -6,7 +6,7 @@ use std::io::{self, Read};
 /// each line.
 pub(super) struct OneBlank<R> {
     input: R,
-    /// Whether a blank was read that is written only if the line continues.
+    /// Whether blanks were read that become one blank if the line continues, and nothing if the line ends.
     is_waiting: bool,
     is_begun: bool,
     held: Vec<u8>,

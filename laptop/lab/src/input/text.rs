@@ -15,8 +15,8 @@ const PARQUET: &str = if cfg!(feature = "datasets") {
     "a Parquet file; export it as CSV"
 };
 
-/// Kinds of files that are not tables. Each entry has the first bytes of such a file, and words for the user, which
-/// name the kind of file and suggest what to do.
+/// Kinds of files that are not tables. Each entry has the first bytes of such a file, and a text for the user. The text
+/// names the kind of file and suggests what to do.
 const OTHERS: [(&[u8], &str); 12] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),

@@ -79,7 +79,7 @@ pub(super) enum Named {
     In(TimeUnit),
     /// The values decide the unit. Whole numbers that are too small for a time since 1970 are in the given unit.
     Whole(TimeUnit),
-    /// The column has times only if its values are dates.
+    /// The values are times if they are dates; otherwise the column has no times.
     Dates,
 }
 
@@ -206,7 +206,8 @@ impl Reading {
     }
 }
 
-/// Converts a time from ps to whole µs, the resolution of all recordings, rounding halves up.
+/// Converts a time from ps to µs, because recordings have times in whole µs. Rounds to the nearest µs, and rounds
+/// halves up.
 pub(super) fn microseconds(picoseconds: i128) -> i64 {
     let rounded = picoseconds.saturating_add(MICROSECOND / 2).div_euclid(MICROSECOND);
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64

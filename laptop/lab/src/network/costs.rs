@@ -9,11 +9,11 @@ use std::fmt::{self, Display};
 /// A part of a chip's arithmetic that differs from double precision and changes a network's spikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
-    /// Neurons compare their potentials with their thresholds after each spike, instead of once in each step.
+    /// Comparing potentials with thresholds after each spike, instead of once in each step.
     Order,
-    /// A leak subtracts a fixed amount, instead of a share of the potential.
+    /// Leaks that subtract a fixed amount, instead of a share of the potential.
     Leak,
-    /// A neuron's weights are rounded to whole numbers.
+    /// Weights of a neuron that are rounded to whole numbers.
     Weights {
         /// Largest absolute value of a weight after rounding.
         largest: f64,
@@ -116,7 +116,7 @@ fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) ->
 }
 
 /// Runs one step of neuron `at`; returns whether it fires. A spike resets the neuron in the same step. If `leak` is
-/// given, it is the amount that replaces the neuron's trained leak. If `by_spike` is true, the neuron compares its
+/// given, a fixed leak of this amount replaces the trained leak. If `by_spike` is true, the neuron compares its
 /// potential with its threshold after each spike that arrives, instead of once.
 fn step(
     layer: &Layer,

@@ -73,8 +73,8 @@ impl File {
     }
 
     /// Converts the network to the form that can be brought onto chips. `asked` completes what the file leaves open
-    /// about how neurons decay, fire and reset. If it does not settle the duration of a step, a step lasts `seconds`,
-    /// as in the recording.
+    /// about how neurons decay, fire and reset. If `asked` leaves the duration of a step open too, a step lasts
+    /// `seconds`, as in the recording.
     ///
     /// # Errors
     /// Returns an error if the file and `asked` together leave part of the rule open, or if no chip supports the

@@ -15,8 +15,8 @@ pub type Trains = Vec<Vec<u16>>;
 pub struct Trained {
     /// The layers whose neurons fire, from input to output.
     pub layers: Vec<Layer>,
-    /// Output neurons that never fire and that follow the last of `layers`; `None` if the outputs are the spikes of
-    /// that layer.
+    /// Output neurons that never fire and that follow the last of `layers`. `None` if the outputs are the spikes of the
+    /// last layer.
     pub readout: Option<Readout>,
 }
 
@@ -259,11 +259,11 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
-    /// Sets how the neurons of each layer reset, and whether they fire at the threshold or only above it. Both follow
-    /// `asked`, which contains at most one reset for all layers, or one reset for each layer.
+    /// Sets how the neurons of each layer reset, and whether they fire at the threshold or only above it. Takes both
+    /// from `asked`, which contains at most one reset for all layers, or one reset for each layer.
     ///
     /// # Errors
-    /// Returns an error if `asked` contains several resets, and their number is not that of the layers.
+    /// Returns an error if `asked` contains more than one reset, but not one for each layer.
     pub(super) fn reset_by(mut self, asked: &Asked) -> Result<Self> {
         let (rule, resets, layers) = (asked.or_plain(), &asked.resets, self.layers.len());
         ensure!(
@@ -277,9 +277,9 @@ impl Trained {
         Ok(self)
     }
 
-    /// Converts layers in which a spike subtracts the threshold in the same step, for chips that subtract it one step
-    /// later. The leak of a step no longer reduces the amount that a late subtraction removes. A positive weight from
-    /// each neuron to itself makes up for the difference.
+    /// Converts layers in which a spike subtracts the threshold in the same step, for chips that subtract the threshold
+    /// one step later. The leak of the step in between does not reduce an amount that is subtracted later. A positive
+    /// weight from each neuron to itself makes up for the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {

@@ -17,8 +17,8 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Deletes all unfinished files, for a program that is being ended. The program must end at once: from now on, starting
-/// or finishing a file blocks forever, which keeps files from appearing after the deletion.
+/// Deletes all unfinished files when the program is interrupted. The program must exit after this call: starting or
+/// finishing a file blocks from now on, so that no file appears after the deletion.
 pub fn abandon() {
     let files = unfinished();
     for file in files.iter() {

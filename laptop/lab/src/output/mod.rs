@@ -35,8 +35,8 @@ enum Place {
     Memory(Vec<u8>),
 }
 
-/// Checks that a path ends as a table does: in `.csv`, in `.txt`, or without an ending. Other programs recognise a
-/// table by its ending. A device may have any name. The error lists the endings of tables, followed by `others`.
+/// Checks that a table's name has an ending by which other programs recognise tables: `.csv`, `.txt` or none. A device
+/// may have any name. The error lists these endings, followed by the text `others`.
 ///
 /// # Errors
 /// Returns an error if the path has a different ending.

@@ -1,6 +1,7 @@
 //! Draws Pareto fronts of spikes against error. The front of a scheme consists of the settings that no other settings
-//! beat in both spikes and error. A scheme that forms part of the common front of all schemes has a colour, and a name
-//! beside its line. All other schemes are grey.
+//! of the scheme beat in both spikes and error. The common front consists of the settings that no settings of any
+//! scheme beat. A scheme that forms part of the common front has a colour, and a name beside its line. All other
+//! schemes are grey.
 
 use super::FONT;
 use super::palette::{DISTINCT, GRID, INK, OTHERS};
@@ -43,8 +44,9 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front. For each step along the efficiency axis, it has the scheme with the least error at
-    /// that efficiency or above, and the efficiency and error of the scheme's setting.
+    /// Returns the common front. Its item for a step along the efficiency axis is the scheme with the least error at
+    /// that efficiency or above, with the efficiency and the error that it reaches; `None` if no scheme reaches that
+    /// efficiency.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);

@@ -1,4 +1,4 @@
-//! Reads a board's channel through probe-rs.
+//! Reads an RTT channel of a board through a debug probe, with the library probe-rs.
 
 use super::{CaptureKind, Channel};
 use crate::{Error, Result};

@@ -19,7 +19,7 @@ pub struct Messages {
     channels: Vec<(String, u64)>,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Number of sub-timesteps of each sample.
+    /// Number of sub-timesteps (slots) of each sample.
     slots: usize,
     is_signed: bool,
     /// Whether the log has a header, as this library writes it. In such a log, a message whose input is missing or NaN
@@ -29,7 +29,7 @@ pub struct Messages {
 }
 
 impl Messages {
-    /// Opens a log, and returns the header of its spikes. If the log has no header, one is made from all messages.
+    /// Opens a log, and returns the header of its spikes. If the log has no header, makes a header from all messages.
     ///
     /// # Errors
     /// Returns an error if the log has no spikes, or if its messages lack a parameter that decoding needs.
@@ -255,7 +255,7 @@ fn lacks(log: &Reading, name: &'static str) -> Error {
     SpikesKind::NoField { name }.at(log.place())
 }
 
-/// Maximum number of neurons, which is the number of addresses.
+/// Maximum number of neurons: the number of possible addresses.
 const MOST: usize = 1 << 16;
 
 #[cfg(test)]

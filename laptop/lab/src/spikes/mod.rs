@@ -39,7 +39,8 @@ pub trait Record {
     /// Returns an error if the file cannot hold the samples.
     fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
 
-    /// Writes events. All events passed later must belong to the finite sample number `decided` or to later samples.
+    /// Writes events. `decided` counts the finite samples, from the first one, whose events are complete after this
+    /// call. Later calls must only pass events of later samples.
     ///
     /// # Errors
     /// Returns an error if the spikes cannot be written.

@@ -3,7 +3,7 @@
 use super::recorder::Format;
 use std::time::Duration;
 
-/// The toolbox's message of one sample.
+/// A message of the toolbox: the spikes of one sample, and parameters for decoding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
     /// Number of spikes of each neuron, negative for spikes down. The numbers of all neurons in one sub-timestep

@@ -23,7 +23,8 @@ pub struct Writer {
     pending: VecDeque<(u64, i64)>,
     /// Number of finite samples before the first one in `pending`.
     first_pending: u64,
-    /// Notes that wait, each with the index of its sample. A note must come before the events of later samples.
+    /// Notes that are not written yet, each with the index of its sample. A note must be written before the events of
+    /// later samples.
     notes: VecDeque<(u64, String)>,
     /// First index and length of the current run of samples that were not finite.
     rejected_run: Option<(u64, u64)>,

@@ -32,12 +32,12 @@ pub struct Costs {
     pub ram: Option<usize>,
     /// Mean number of instructions to encode a sample, if measured.
     pub instructions: Option<f64>,
-    /// Whether `instructions` is an upper bound, scaled from a shorter filter that was measured.
+    /// Whether `instructions` is an upper bound. The bound is scaled up from a measured filter that is shorter.
     pub is_bound: bool,
 }
 
 impl Costs {
-    /// Looks up the costs of settings on `core`, a core with measured counts.
+    /// Looks up what settings cost on `core`, one of the processor cores whose instructions were counted.
     pub fn new(scheme: Scheme, settings: &Settings, latency: usize, core: &str) -> Self {
         let counted = scheme.counted(settings).ok();
         let measured = counted.and_then(|counted| {

@@ -7,14 +7,16 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Figures over the scored parts of stretches of a recording. Each stretch is coded in one piece.
+/// Figures of settings, such as the RMSE, over the scored samples of one or more stretches. Each stretch is coded in
+/// one piece.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Figures {
     /// Number of samples.
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percentage of samples without a spike, for a code that has at most one spike a sample.
+    /// Efficiency in percent: 100 less the number of spikes for every 100 samples. For a code with at most one spike a
+    /// sample, this is the percentage of samples without a spike.
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
@@ -102,7 +104,8 @@ impl Figures {
     }
 }
 
-/// Longest lag that is tried in either direction, in samples.
+/// Largest lag between the signal and the decoded values for which the correlation is computed, in samples. Lags in
+/// both directions are tried.
 const FARTHEST: usize = 100;
 
 #[derive(Default)]
@@ -153,8 +156,8 @@ fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>,
     *codes.entry(Vec::new()).or_default() += silent;
 }
 
-/// Adds a stretch's correlation with its decoded values to `correlations`, for each lag from `-FARTHEST` to `FARTHEST`
-/// samples.
+/// Computes the correlation of a signal with its decoded values for each lag from `-FARTHEST` to `FARTHEST` samples.
+/// Adds the results to `correlations`, which has an entry for each lag.
 fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let (center, middle) = (mean(values), mean(decoded));

@@ -8,19 +8,19 @@ use super::space::Space;
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
-/// Smallest threshold whose outcome is listed, as a share of the signal's range.
+/// Smallest threshold whose number of spikes and error are listed, as a share of the signal's range.
 const SMALLEST: f64 = 1e-3;
-/// Maximum number of samples that are processed to list outcomes, which bounds the time to seconds.
+/// Maximum number of samples that are processed to list the outcomes of thresholds. The limit bounds the time to
+/// seconds.
 const PASSES: usize = 4_000_000_000;
-/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
-/// maximum keeps a search with a small budget short.
+/// Maximum number of samples that are processed to list the outcomes of thresholds, for each setting that the search
+/// may score. The limit keeps a search with a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
-/// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
+/// Maximum number of ranges around good thresholds in which the outcomes of further thresholds are listed.
 const NEIGHBOURHOODS: usize = 24;
-/// Number of combinations of integer parameters whose outcomes are listed before the search checks again whether to
-/// stop.
+/// Number of combinations of integer parameters that are listed before the search checks again whether to stop.
 const COMBINATIONS: usize = 8;
-/// Maximum number of listed outcomes that are scored with the codec.
+/// Maximum number of outcomes that are scored with the codec.
 const MOST_SCORED: usize = 1000;
 
 /// The combinations of integer parameters, and the outcomes worth scoring. Each outcome has the index of its
@@ -28,9 +28,9 @@ const MOST_SCORED: usize = 1000;
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
-    /// Lists the outcomes of the threshold for every combination of integer parameters, and scores the best of them.
-    /// Returns false if the scheme cannot list its outcomes, or if the user fixed a parameter that the list would
-    /// choose.
+    /// Lists the number of spikes and the error at all thresholds, for every combination of integer parameters. Scores
+    /// the best of these outcomes with the codec. Returns false if the scheme cannot list outcomes, or if the user
+    /// fixed a parameter that the list would choose.
     pub(super) fn exactly(&mut self, space: &Space) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];

@@ -10,7 +10,7 @@ use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
 /// The goal of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The least RMSE, with at least this percentage of samples without a spike.
+    /// The least RMSE with at least this efficiency, in percent.
     LeastError(f64),
     /// The greatest spiking efficiency, with at most this RMSE.
     MostEfficient(f64),
@@ -45,7 +45,8 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Returns the percentage of samples without a spike.
+    /// Returns the efficiency in percent: 100 less the number of spikes for every 100 samples. For a code with at most
+    /// one spike a sample, this is the percentage of samples without a spike.
     pub fn efficiency(&self) -> f64 {
         (1.0 - self.spikes as f64 / self.samples as f64) * 100.0
     }
@@ -61,20 +62,21 @@ impl Tally {
     }
 }
 
-/// A quantity that a request may limit.
+/// A quantity that a request may limit. The limit is a maximum, except for [`Efficiency`](Self::Efficiency), whose
+/// limit is a minimum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// Size of a channel's encoder in bytes, limited from above.
+    /// Size of a channel's encoder in bytes.
     Ram,
-    /// Instructions to encode a sample, limited from above.
+    /// Number of instructions to encode a sample.
     Instructions,
-    /// Delay of the code in samples, limited from above.
+    /// Delay of the code in samples.
     Latency,
-    /// Events a second, limited from above.
+    /// Number of events a second.
     Rate,
-    /// Percentage of samples without a spike, limited from below.
+    /// Efficiency in percent.
     Efficiency,
-    /// Root mean square error, limited from above.
+    /// Root mean square error, in the signal's unit.
     Rmse,
 }
 
@@ -92,7 +94,7 @@ impl Limit {
     }
 }
 
-/// A limit that settings break.
+/// A limit that settings break, and by how much they break it.
 #[derive(Clone, Debug)]
 pub struct Excess {
     /// The limited quantity.
@@ -108,7 +110,7 @@ pub struct Excess {
 /// Settings, and their score on the stretches to tune on.
 #[derive(Clone, Debug)]
 pub struct Scored {
-    /// The settings.
+    /// The options that give the settings.
     pub options: Asked,
     /// Counts of samples, spikes and errors.
     pub tally: Tally,
@@ -166,8 +168,8 @@ impl<'a> Problem<'a> {
         Self { scheme, sample, fixed: fixed.clone(), train, goal, limits, core, extent, calibrated }
     }
 
-    /// Completes options to full settings for a stretch. A missing parameter gets its default, or is taken from the
-    /// calibration or the stretch's samples.
+    /// Completes `options` to the settings for a stretch. A missing parameter gets its default, or a value that is
+    /// derived from the samples used for tuning or from the stretch's samples.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.
@@ -302,8 +304,8 @@ impl<'a> Problem<'a> {
         excess
     }
 
-    /// Returns the value of scored settings for a goal. A smaller value is better. Settings that break a limit are
-    /// worse than all settings that break none.
+    /// Returns the value of scored settings for a goal; a smaller value is better. Settings that break a limit have
+    /// larger values than all settings that break none.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, squares, .. } = scored.tally;
         let limits = scored
@@ -315,8 +317,8 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// Returns the value, for a goal, of a number of spikes and a sum of squared errors. Limits are not regarded. A
-    /// smaller value is better.
+    /// Returns the value of a number of spikes and a sum of squared errors for a goal; a smaller value is better.
+    /// Ignores all limits that are not part of the goal.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();

@@ -37,7 +37,7 @@ pub struct Row {
     pub sample: String,
     /// The parameters, by the names that files and other commands use.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
     /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,
@@ -51,9 +51,9 @@ pub struct Row {
     pub quantisation: Option<f64>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were listed and compared in exact arithmetic.
+    /// Number of outcomes of thresholds that were listed and compared in exact arithmetic, without the codec.
     pub listed: usize,
-    /// Whether every possible outcome was listed.
+    /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent.
     pub is_cut_short: bool,
@@ -69,7 +69,7 @@ pub struct Row {
 /// Figures of the paper's settings on the stretches of a channel.
 #[derive(Debug, Serialize)]
 pub struct Paper {
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
     /// Figures on the stretches that were held out, if there are any.
     pub held_out: Option<Figures>,

@@ -22,7 +22,7 @@ impl Extent {
     }
 }
 
-/// An axis of the search: one number from which a parameter is computed, with its bounds.
+/// An axis of the search: a number from which a parameter is computed, and the bounds of this number.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub name: &'static str,
@@ -31,14 +31,14 @@ pub(super) struct Axis {
     pub high: f64,
 }
 
-/// The conversion of a number on an axis to a parameter.
+/// The meaning of the numbers on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     /// The natural logarithm of a quotient: the parameter divided by the given unit.
     Log(f64),
-    /// Offset of the parameter from the first given value, divided by the second given value.
+    /// The difference between the parameter and the first given value, divided by the second given value.
     Around(f64, f64),
-    /// The parameter divided by the sum of the taps of the scheme's filter.
+    /// The parameter divided by the sum of the absolute values of the filter's taps.
     OfFilter,
     /// The natural logarithm of a quotient: the parameter divided by the threshold.
     Thresholds,
@@ -51,10 +51,10 @@ pub(super) enum Role {
     Shape,
     Alpha,
     /// The natural logarithm of a quotient: the sum of the filter's taps divided by the height of the signal's mean
-    /// above the shift. The quotient is the number of samples for each spike while the signal is at its mean. The two
-    /// values are the bounds of the sum of the taps.
+    /// above the parameter `shift`. The quotient is the number of samples for each spike while the signal is at its
+    /// mean. The two values are the bounds of the sum of the taps.
     Sum(f64, f64),
-    /// A tap of the filter divided by the given unit.
+    /// A tap of the filter, as a multiple of the given unit.
     Tap(f64),
 }
 
@@ -72,9 +72,9 @@ pub(crate) struct Space {
 /// The axis along which a scheme compares many values in one pass over the signal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inner {
-    /// Index of the axis.
+    /// Index of the axis in the space.
     pub axis: usize,
-    /// If true, the axis is the sum of the filter's taps, and the compared values are factors of this sum. If false,
+    /// Whether the axis is the sum of the filter's taps. The compared values are then factors of this sum. Otherwise,
     /// the axis is the threshold, and the compared values are thresholds.
     pub is_factor: bool,
 }
@@ -93,8 +93,8 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// Returns the space in which the filter's single taps replace its shape, length and sum, and integer parameters
-    /// keep their values in `found`.
+    /// Returns a space with an axis for each tap of the filter, instead of axes for the filter's shape, length and sum.
+    /// Integer parameters have no axis, and keep their values in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -131,8 +131,9 @@ impl Space {
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns the axis along which a scheme can compare many values in one pass: the threshold as a share of the
-    /// filter's sum, or the sum itself if the scheme has no threshold.
+    /// Returns the axis along which a scheme can compare many values in one pass. This is the axis of the threshold, as
+    /// a share of the sum of the taps' absolute values. If the scheme has no threshold, it is the axis of the sum of
+    /// the taps.
     pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
         let has_threshold =
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
@@ -145,9 +146,8 @@ impl Space {
         Some(Inner { axis, is_factor: !has_threshold })
     }
 
-    /// Returns `count` points to start from, spread over each axis, for a code that may spike at the share `share` of
-    /// the samples. The sums of filters are such that the code reaches the largest sample if it spikes at every sample,
-    /// and reaches the mean with as many spikes as allowed.
+    /// Returns `count` points to start from, spread over each axis. `share` is the share of samples at which the code
+    /// may spike. The sums of filters are such that about this share of spikes decodes to the signal's mean.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);
@@ -256,8 +256,8 @@ impl Space {
         options
     }
 
-    /// Returns the height of the signal's mean above `shift`, or above the signal's minimum if `None`. The height is at
-    /// least 1 % of the signal's range.
+    /// Returns the height of the signal's mean above `shift` or, if `shift` is `None`, above the signal's minimum. The
+    /// height is at least 1 % of the signal's range.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())

@@ -45,7 +45,7 @@ impl Strategy {
         }
     }
 
-    /// Returns the next points, whose values the caller is to compute.
+    /// Returns the next points at which the caller is to compute the function.
     pub(super) fn ask(&mut self) -> Vec<Vec<f64>> {
         let Self { chance, mean, variances, step, .. } = self;
         let mut point = || {

@@ -21,7 +21,7 @@ const NPZ: &[u8] = b"PK\x03\x04";
 #[cfg(feature = "datasets")]
 const PARQUET: &[u8] = b"PAR1";
 
-/// A source of rows, which are read as lines of CSV.
+/// A table in a format other than CSV. Its rows are converted to lines of CSV.
 trait Rows {
     /// Appends the next row to `text` as a line of CSV, with its line end. Returns false at the end of the table.
     fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool>;
@@ -106,8 +106,8 @@ pub(super) fn of_file(path: &Path, name: &str) -> Result<Option<Box<dyn Read>>> 
     Ok(None)
 }
 
-/// Converts an input of JSON lines or of a `NumPy` array to CSV. Returns the input unchanged, as the inner error, if
-/// its first bytes `head` belong to neither format.
+/// Converts an input of JSON lines or of a `NumPy` array to CSV. `head` holds the first bytes of the input. If they
+/// belong to neither format, returns the input unchanged, as the inner error.
 ///
 /// # Errors
 /// Returns an error if the first line or the header cannot be read, or holds no table.

@@ -39,7 +39,7 @@ pub enum Numbers {
     Integer,
 }
 
-/// A network to bring onto the controller, and the recordings on which it is tuned and tested.
+/// A network to bring onto the flight controller, and the recordings on which the network is tuned and tested.
 pub struct ControllerRequest<'a> {
     /// The network in double precision.
     pub model: &'a Model,
@@ -62,7 +62,7 @@ enum Held {
     Integer(Integers),
 }
 
-/// A network as the controller stores it.
+/// A network in the number type of the controller, with notes for the user and the inputs of the self-test.
 struct OnController {
     held: Held,
     notes: Vec<String>,

@@ -44,7 +44,7 @@ pub(in super::super) fn words(
 }
 
 impl Choice {
-    /// Returns the name of the setting that makes the choice, and a text that lists its values.
+    /// Returns the name of the setting that makes the choice, and a text that lists the possible values.
     const fn values(self, framework: Option<Framework>) -> (&'static str, &'static str) {
         match (self, framework) {
             (Self::Reset, Some(Framework::SnnTorch)) => (

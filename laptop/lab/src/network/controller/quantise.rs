@@ -13,8 +13,8 @@ const SCALES: [f64; 14] =
     [1.0, 0.97, 0.94, 0.91, 0.88, 0.85, 0.8, 0.75, 0.7, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Largest absolute value of a weight in integers.
 const LARGEST: f64 = 127.0;
-/// Maximum left shift of a layer's weights, which gives potentials more binary digits than weights. The shift is
-/// smaller if thresholds would leave their range.
+/// Maximum left shift of a layer's weights. The shift gives potentials more binary digits than weights. It is smaller
+/// if thresholds would leave their range.
 const SHIFT: u32 = 8;
 /// Largest absolute value of a bias, threshold or reset value in integers.
 const MOST: f64 = (1 << 27) as f64;
@@ -58,7 +58,8 @@ pub(super) struct Integers {
     pub shifts: Vec<u32>,
     /// Number of weights that exceeded 8 bits and were clipped, for each layer.
     pub clipped: Vec<usize>,
-    /// For each neuron of the last layer, the value of an integer potential of 1, in the units of the trained network.
+    /// For each neuron of the last layer, the factor that converts its integer potential to the units of the trained
+    /// network.
     pub units: Vec<f64>,
 }
 
@@ -119,7 +120,7 @@ struct Column {
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
-    /// Value of an integer potential of 1, in the units of the trained network.
+    /// Factor that converts an integer potential to the units of the trained network.
     unit: f64,
 }
 
@@ -217,8 +218,8 @@ impl Column {
         Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
     }
 
-    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. The other
-    /// neurons of its layer fire as in `own`, their spikes in double precision.
+    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. `own` contains
+    /// the spikes of the neuron's layer in double precision, which act on the neuron through recurrent weights.
     fn distance(
         &self,
         rule: Rule,

@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 /// The training framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// The framework snnTorch. It trains with several kinds of reset, and its files do not say with which one.
+    /// The framework snnTorch. It trains with several kinds of reset, and a file does not say which kind was used.
     SnnTorch,
     /// The framework Norse.
     Norse,
@@ -65,12 +65,13 @@ pub enum Current {
     New,
     /// The current of the step before.
     Old,
-    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`, and not its
-    /// weight times `dt / tau`.
+    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`. With `New`,
+    /// a spike adds its weight times `dt / tau`.
     Whole,
 }
 
-/// The parts of a rule that the user gave. The framework may imply further parts; the others are open.
+/// The parts of the rule for decay, firing and reset that the user gave. The framework may imply further parts; the
+/// others are open.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The training framework, which implies some of the other parts.
@@ -224,8 +225,8 @@ impl Asked {
         }
     }
 
-    /// Returns the reset of the first layer that the user gave. If the user gave no reset, returns the reset in `says`,
-    /// which contains the parts of the rule that the framework implies.
+    /// Returns the first of the resets that the user gave. If the user gave none, returns the reset in `says`, which
+    /// contains the parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }

@@ -8,9 +8,9 @@ const NEURONS: usize = 256;
 const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
 
-/// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair with a
-/// common leak and threshold. Therefore both hold neurons of the same layer whose trained leaks are as similar as
-/// possible.
+/// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which
+/// shares a leak and a threshold. The network's neurons in a pair therefore belong to the same layer, and their trained
+/// leaks are as similar as possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron

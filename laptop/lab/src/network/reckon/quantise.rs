@@ -20,8 +20,8 @@ const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Scales to try for a pair of neurons, as multiples of the largest scale at which its weights and potentials fit the
-/// chip.
+/// Scales to try for a pair of neurons, as multiples of the largest scale at which the pair's weights and potentials
+/// fit the chip.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
 /// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
@@ -55,8 +55,9 @@ pub(super) struct Quantised {
     /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
     /// these weights.
     pub(super) changes: Vec<Change>,
-    /// Number of neurons and outputs whose leak on the chip differs from the trained one, because several share a leak.
-    /// The second number is the largest difference between a decay factor on the chip and the trained one.
+    /// Differences between the leaks on the chip and the trained leaks. The leaks differ because two neurons of a pair
+    /// share one, and all outputs share one. The first figure is the number of neurons and outputs whose leak differs.
+    /// The second figure is the largest difference between a decay factor on the chip and the trained factor.
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -407,7 +408,8 @@ impl<'a> Held<'a> {
 }
 
 impl Quantised {
-    /// Returns the number of ticks from a step's inputs to the answer that shows their effect.
+    /// Returns the delay of the chip's outputs: the number of ticks from the inputs of a step to the answer that shows
+    /// their effect.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
     }

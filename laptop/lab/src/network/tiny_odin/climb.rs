@@ -2,8 +2,8 @@
 
 /// Searches for a choice of parameters with a small `distance`; returns the distance and the choice. Starts from the
 /// `climbs` best of the choices in `first`, and moves each to its best neighbour until no neighbour is nearer. The
-/// second argument of `distance` is the smallest distance that is no longer useful: `distance` may stop computing when
-/// it reaches this limit, which saves time because most choices do.
+/// second argument of `distance` is a limit: choices at this distance or farther are of no use. `distance` may stop
+/// there and return any number that is not below the limit, which saves time for most choices.
 pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
     first: impl IntoIterator<Item = C>,
     neighbours: impl Fn(C) -> N,

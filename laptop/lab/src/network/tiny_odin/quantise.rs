@@ -28,7 +28,7 @@ const CLIMBS: usize = 2;
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
 /// Maximum number of neurons of each layer on which the search compares intervals between leaks.
 const SURVEYED: usize = 32;
-/// The value that stands for a leak where a function takes a weight.
+/// The weight that stands for a leak, for functions that take a weight.
 const LEAK: i8 = i8::MIN;
 /// Maximum number of spikes of a layer in a step. The simulation of a step stops after more spikes, because the layer's
 /// recurrent spikes then drive the layer without end.
@@ -53,22 +53,21 @@ pub(super) struct Quantised {
     pub steps_a_leak: usize,
 }
 
-/// The neurons of a layer.
 #[derive(Clone, Debug)]
 pub(super) struct ChipLayer {
     /// Name of the layer in the network's file.
     pub name: String,
-    /// Number of inputs, which for later layers are the neurons of the layer before.
+    /// Number of inputs of the layer: the network's inputs for the first layer, and the neurons of the layer before for
+    /// others.
     inputs: usize,
-    /// The neurons, in order.
     pub neurons: Vec<ChipNeuron>,
 }
 
 /// A neuron, and the weights that lead to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ChipNeuron {
-    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
-    /// inputs.
+    /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
+    /// neuron of the layer follows.
     pub weights: Vec<i8>,
     /// Weight that acts in every step.
     pub bias: i8,
@@ -209,8 +208,9 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
 
 impl ChipLayer {
     /// Runs the layer as the chip does: all neurons compare their potentials with their thresholds after each spike,
-    /// and the layer's own spikes wait behind earlier spikes. Returns the neurons that fire in each step. In a
-    /// recurrent layer, `own` is the number of its first neuron among the inputs.
+    /// and the layer's own spikes wait behind earlier spikes. Returns the neurons that fire in each step. `own` is the
+    /// index of the weight from the layer's first neuron in each neuron's weights. `None` if the layer is not
+    /// recurrent.
     fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
         let mut potentials = vec![0_i32; self.neurons.len()];
         let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {

@@ -1,7 +1,7 @@
 //! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. While a step's
 //! inputs arrive, all potentials are offset downwards so far that no neuron fires. Then a series of events, each called
-//! a *rung*, raises the neurons until the offset is gone and they compare. Further events lower the neurons again.
-//! `spikewire_chips::Steps` documents the whole sequence.
+//! a *rung*, raises the neurons until the offset is gone, so that they can reach their thresholds. Further events lower
+//! the neurons again. `spikewire_chips::Steps` documents the whole sequence.
 
 mod emit;
 mod neuron;
@@ -26,7 +26,8 @@ const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
 /// Maximum number of neurons of each layer on which the search compares [shapes](Shape).
 const SURVEYED: usize = 8;
-/// Number of [shapes](Shape) with which the whole network is quantised: the best for a sample of its neurons.
+/// Number of [shapes](Shape) with which the whole network is quantised: those that are best for a sample of the
+/// neurons.
 const CHOSEN: usize = 2;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
@@ -205,8 +206,8 @@ impl Gated {
         None
     }
 
-    /// Returns the number of rows of synapses for inputs, bias and neurons, and the number of all rows. All rows
-    /// include the rows that raise or lower neurons.
+    /// Returns two numbers of rows of synapses. The first number counts the rows for inputs, bias and neurons. The
+    /// second number also counts the rows that raise or lower the potentials of whole layers.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }

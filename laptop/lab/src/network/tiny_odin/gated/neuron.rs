@@ -15,9 +15,9 @@ pub(super) struct GatedNeuron {
     pub threshold: u16,
     /// Amount by which a leak moves the chip's potential towards 0.
     pub leak: u8,
-    /// Amount by which a rung (one event of the series that raises neurons) raises the potential.
-    pub rung: u8,
     /// Amount by which a rung raises the potential. A rung is one of the events that raise the neurons in a step.
+    pub rung: u8,
+    /// Number of leaks that only this neuron receives, in each step in which it fires.
     pub own_leaks: u16,
     /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
@@ -47,7 +47,7 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 
 impl GatedNeuron {
     /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that all
-    /// neurons receive in the step. Each leak is given as the number of events that have lowered the neurons before it.
+    /// neurons receive in the step. Each entry is the number of events that have lowered the neurons before the leak.
     #[inline]
     pub(super) fn step(
         &self,
@@ -86,9 +86,9 @@ impl GatedNeuron {
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// Returns the initial potential and the threshold of the chip's neuron. The initial potential is the offset
-    /// downwards, of [`below`](Shape::below) rungs. The threshold is higher than the neuron's by
-    /// [`above`](Shape::above) rungs.
+    /// Returns the initial potential and the threshold of the neuron on the chip. The initial potential is the offset
+    /// downwards, of [`below`](Shape::below) rungs. The threshold on the chip is higher than
+    /// [`threshold`](Self::threshold) by [`above`](Shape::above) rungs.
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

@@ -4,8 +4,8 @@
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, NEURONS, ROWS};
 
-/// A step sends leaks to all neurons when neurons at rest stand at several heights. This is the maximum number of
-/// heights above the middle one, which is at or near 0. As many heights are below the middle one.
+/// Maximum number of leaks that a step sends while the potential of a neuron at rest is above 0. A step sends as many
+/// leaks below 0, and one at or near 0.
 const LEVELS: u16 = 6;
 /// Numbers of rows of synapses to try for each weight.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
@@ -15,8 +15,8 @@ const SPARE: f64 = 1.5;
 /// Maximum number of rungs (events that raise the neurons) between two leaks.
 const WIDEST: f64 = 12.0;
 
-/// The sequence of events in each step, which is the same for all neurons. A *rung* is an event that raises the neurons
-/// by a fixed amount. An offset downwards keeps the neurons from firing until enough rungs have raised them.
+/// The sequence of events in each step, which is the same for all neurons. An offset downwards first keeps the neurons
+/// from firing. Then events called *rungs* raise the neurons, each by a fixed amount, until they can fire.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
     /// Number of rows of synapses for each input or sending neuron. A weight is the sum over its rows.
@@ -33,7 +33,7 @@ pub(super) struct Shape {
     /// that no other neurons receive. 0 if spikes subtract the threshold.
     pub lift: u16,
     /// Number of rungs between two leaks of a step. Several leaks in a step together reduce a potential by a share of
-    /// its value. 0 if all neurons receive fewer than two leaks in a step.
+    /// its value. 0 if a step sends fewer than two leaks to all neurons.
     pub spacing: u16,
 }
 
@@ -46,8 +46,8 @@ impl Shape {
         if self.leaks.is_empty() { &[] } else { &self.leaks[step % self.leaks.len()] }
     }
 
-    /// Returns the number of events in a step of a network with `layers` layers. The number includes neither spikes nor
-    /// the leaks that only the neurons that fired receive.
+    /// Returns the number of events in a step of a network with `layers` layers. Does not count spikes, or leaks that
+    /// are sent only to neurons that fired.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         usize::from(self.rungs()) * (layers + 1) + leaks / self.leaks.len().max(1)
