@@ -1,7 +1,5 @@
 // Files that are chosen or dropped, also as a folder: which one is looked at.
 
-import { at } from "./dom.js";
-
 /** The files of a drop; of a folder all that lie in it. */
 export async function filesOf({ items, files }) {
   const entries = [...items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
@@ -16,10 +14,5 @@ export async function filesOf({ items, files }) {
   return (await Promise.all(entries.map(within))).flat().sort((a, b) => a.name.localeCompare(b.name));
 }
 
-/** Shows files to choose from, and gives those to open: the parts of a ROS bag together, of others the first. */
-export function offer(files) {
-  const isBag = files.some(({ name }) => name === "metadata.yaml");
-  at("of-files").hidden = isBag || files.length < 2;
-  at("file-of").replaceChildren(...files.map(({ name }, place) => new Option(name, place)));
-  return isBag ? files : files.slice(0, 1);
-}
+/** Those of the files to open: the parts of a ROS bag together, of others the first. */
+export const together = (files) => (files.some(({ name }) => name === "metadata.yaml") ? files : files.slice(0, 1));

@@ -2,7 +2,7 @@
 
 import { Board, whyNot } from "./board.js";
 import { at, fail } from "./dom.js";
-import { choiceOf, state } from "./state.js";
+import { choiceOf, current, outcome, state } from "./state.js";
 import { save } from "./takeaway.js";
 import { Video } from "./video.js";
 
@@ -32,9 +32,9 @@ async function connect() {
   try {
     let choice = null;
     if (at("meaning").value === "values") {
-      const { answer, error } = state.runs[state.current] ?? {};
+      const { answer, error } = outcome();
       if (!answer) throw error ?? new Error("there are no settings to decode by");
-      choice = { ...choiceOf(state.settings[state.current], state.recording.field), parameters: answer.asked };
+      choice = { ...choiceOf(current(), state.recording.field), parameters: answer.asked };
     }
     const thresholds = at("thresholds").value.split(",").filter((text) => text.trim()).map(Number);
     if (thresholds.some(Number.isNaN)) throw new Error(`thresholds ${at("thresholds").value}: not numbers with commas between`);

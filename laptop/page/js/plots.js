@@ -38,7 +38,9 @@ export class Plots {
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
-  setRecording(recording) {
+  /** Shows a recording, unless it is shown already. */
+  look(recording) {
+    if (recording === this.recording || !recording) return;
     this.recording = recording;
     this.times = new Times(recording.samples, recording.rate, recording.arrays.times);
     this.signal = new Pyramid(recording.arrays.values);
@@ -51,7 +53,11 @@ export class Plots {
   }
 
   /** Shows these runs, each with `decoded`, spikes, colour and name. */
-  setRuns(runs) {
+  setRuns(runs, hidden) {
+    this.hidden = hidden;
+    const isShown = hidden.size === this.shownHidden && runs.length === this.runs.length && runs.every((own, place) => own === this.runs[place]);
+    if (isShown && this.upper) return;
+    this.shownHidden = hidden.size;
     const shape = (all) => all.map((own) => `${own.name}${own.colour}${own.neurons}`).join();
     const isSame = shape(runs) === shape(this.runs);
     for (const own of runs) own.pyramid ??= new Pyramid(own.arrays.decoded);

@@ -1,7 +1,7 @@
 // What a knob does while it is dragged: only what is in view is coded, the whole when it rests.
 
 import { Pieces } from "./pyramid.js";
-import { choiceOf, state } from "./state.js";
+import { changed, choiceOf, current, outcome, state } from "./state.js";
 
 /** Recordings with fewer samples are coded as a whole within a moment. */
 const LONG = 200_000;
@@ -13,10 +13,10 @@ const REST = 400;
 let timer, isRunning = false, isStale = false;
 
 /** Whether a change is to be previewed: of a long recording, by a knob. */
-export const isPreviewed = (what) => what !== undefined && state.recording?.samples > LONG && Boolean(state.runs[state.current]?.answer);
+export const isPreviewed = (what) => what !== undefined && state.recording?.samples > LONG && Boolean(outcome().answer);
 
-/** Codes what is in view for `show(run)`, and calls `then` when no more changes come. */
-export async function preview(plots, show, then) {
+/** Codes what is in view, hangs it on the recording in the place of the last run, and calls `then` when no more changes come. */
+export async function preview(plots, then) {
   clearTimeout(timer);
   timer = setTimeout(then, REST);
   if (isRunning) {
@@ -27,14 +27,14 @@ export async function preview(plots, show, then) {
   try {
     do {
       isStale = false;
-      const { recording, current, runs, settings } = state, { answer } = runs[current];
-      const own = choiceOf(settings[current], recording.field);
+      const { recording } = state, { answer } = outcome(), own = choiceOf(current(), recording.field);
       // What was found in the whole signal holds for its parts.
       const choice = { ...own, parameters: { ...answer.asked, ...own.parameters } };
       const [start, end] = plots.samples(), from = Math.max(0, start - LEAD);
       const made = await state.library.ask({ ask: "preview", choice, from, to: end, pieces: plots.columns(), most: MOST });
-      if (recording !== state.recording || answer !== state.runs[current]?.answer) break;
-      show(current, { ...answer, neurons: made.neurons, slots: made.slots, arrays: made.arrays, pyramid: new Pieces(made.arrays.decoded, made) });
+      if (answer !== outcome().answer) break;
+      recording.preview = { of: answer, run: { ...answer, isPreview: true, neurons: made.neurons, slots: made.slots, arrays: made.arrays, pyramid: new Pieces(made.arrays.decoded, made) } };
+      changed();
     } while (isStale);
   } catch {
     // The run of the whole says what is wrong.

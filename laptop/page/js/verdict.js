@@ -11,7 +11,9 @@ function groupOf(field) {
   return /acc/i.test(`${topic}.${field}`) ? (place < 2 ? 1 : 2) : 0;
 }
 
-const isNear = (own, flown) => (typeof flown === "number" ? Math.abs(Number(own) - flown) <= 0.01 * Math.abs(flown) : own === String(flown));
+/** Samples a second of the slowest loop that flew. */
+const SLOWEST = 250;
+const isNear = (own, flown) => (typeof flown === "number" ? Math.abs(Number(own) - flown) <= 0.02 * Math.abs(flown) : own === String(flown));
 
 /** The words for the figures, and the reason. */
 export function verdict(setting, { settings }) {
@@ -23,7 +25,8 @@ export function verdict(setting, { settings }) {
   const differ = Object.entries(group).filter(([own, value]) => !isNear(settings[parameters.find((each) => each.name === own)?.key ?? own], value))
     .map(([own, value]) => `${own} ${typeof value === "number" ? fine(value) : value}`);
   if (flown.low_pass === null ? filter : corner !== flown.low_pass) differ.push(flown.low_pass === null ? "no filter" : `a low-pass of ${flown.low_pass} Hz`);
-  if (keyframes !== flown.keyframe_ms) differ.push(`keyframes every ${flown.keyframe_ms} ms`);
+  if (!isNear(keyframes, flown.keyframe_ms)) differ.push(`keyframes every ${flown.keyframe_ms} ms`);
+  if (state.recording.rate < 0.99 * SLOWEST) differ.push(`${SLOWEST} samples a second or more`);
   const far = `${fine(flown.beside)} times the error without a code`;
   return differ.length ? ["not known", `${name} flew, with ${far}, but with ${differ.join(", ")} in rad/s and m/s².`] : ["yes", `Flown just so: no flight was lost, with ${far}.`];
 }

@@ -116,7 +116,9 @@ export const exported = (page, kind) => saved(page, `[data-save=${kind}]`);
 export async function text(page, kind) {
   await page.evaluate(() => (document.getElementById("out").value = ""));
   await page.click(`[data-text=${kind}]`);
-  await page.waitForFunction(() => document.getElementById("out").value !== "");
+  await page.waitForSelector("#take-error:visible, #text:visible");
+  await page.waitForFunction(() => document.getElementById("out").value !== "" || document.getElementById("take-error").textContent);
+  assert.equal(await page.textContent("#take-error"), "");
   return page.inputValue("#out");
 }
 

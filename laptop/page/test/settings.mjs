@@ -1,7 +1,7 @@
 // Settings: their figures against the program, steps back and forth, links and files.
 
 import assert from "node:assert/strict";
-import { writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { accessible, choose, compare, DATA, drop, enter, exported, figure, opened, picture, PICTURES, settled, spikewire, text, work } from "./harness.mjs";
 
@@ -50,6 +50,10 @@ export const steps = {
 
   async "sets the bank that flew, says so, and filters as the program does"() {
     const page = await opened();
+    // The loops that flew have 250 samples a second at least.
+    const [head, ...lines] = readFileSync(join(DATA, "hexarotor.csv"), "utf8").trim().split("\n"), flight = join(work, "fast.csv");
+    writeFileSync(flight, [head, ...lines.map((line, sample) => line.replace(/^\d+/, 2000 * sample)), ""].join("\n"));
+    await choose(page, flight);
     const flies = async () => (await figure(page, "Does it fly?"));
     await page.selectOption("#scheme", "bernoulli");
     await settled(page);
@@ -67,7 +71,8 @@ export const steps = {
     await settled(page);
     assert.equal(await flies(), "yes");
     assert.deepEqual([await page.inputValue("#filter"), await page.inputValue("#corner"), await page.inputValue("#keyframes")], ["low-pass", "80", "200"]);
-    assert(Number(await figure(page, "Late by, ms")) > 2, "the filter is late");
+    const late = Number(await figure(page, "Late by, ms"));
+    assert(late > 0, `${late} ms`);
     await enter(page, "#keyframes", 20);
     await settled(page);
     const more = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
@@ -77,8 +82,8 @@ export const steps = {
     const own = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
     assert(more > own + 400 && own > bytes, `${bytes}, ${own}, ${more} bytes`);
     // The program behind the same filter: the spikes in the picture, in its table and in the page's.
-    const toml = await text(page, "flight"), file = join(work, "flown.toml"), flight = join(DATA, "hexarotor.csv");
-    assert.match(toml, /filter = \{ kind = "low-pass", corner = 80/);
+    const toml = await text(page, "flight"), file = join(work, "flown.toml");
+    assert.match(toml, /filter = \{ corner = 80\.0, kind = "low-pass" \}/);
     assert.equal((toml.match(/threshold = 0\.0931/g) ?? []).length, 3, toml);
     assert.equal((toml.match(/threshold = 2\.56/g) ?? []).length, 2, toml);
     assert.match(toml, /threshold = 8\.45/);
@@ -94,7 +99,10 @@ export const steps = {
     assert.equal(String(rows(theirs, "5").length), (await figure(page, "Spikes")).replaceAll(",", ""));
     // All of it is in a link, and in the file.
     const figures = await page.innerText("#figures"), link = await text(page, "link");
-    const other = await opened({}, new URL(link).hash);
+    const other = await opened();
+    await choose(other, flight);
+    await other.evaluate((hash) => (location.hash = hash), new URL(link).hash);
+    await settled(other);
     assert.equal(await other.innerText("#figures"), figures);
     await other.selectOption("#scheme", "hsa");
     await other.selectOption("#filter", "none");
