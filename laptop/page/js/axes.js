@@ -3,9 +3,9 @@
 import { css, element, fine, fixed } from "./dom.js";
 import { siblings } from "./channels.js";
 import { Library } from "./library.js";
-import { Times } from "./plots.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
 import { choiceOf, loadRequest, openRequest, state } from "./state.js";
+import { Times } from "./times.js";
 
 /** Longer recordings show one channel alone: each axis takes 24 bytes a sample. */
 const MOST_SAMPLES = 3_000_000;

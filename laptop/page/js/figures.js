@@ -7,6 +7,8 @@ import { verdict } from "./verdict.js";
 /** How late a value is behind its sample, by filter and code: in ms where the rate is known, else in samples. */
 const late = ({ latency, filterDelay }, rate) => (latency + (filterDelay ?? 0)) * (rate ? 1000 / rate : 1);
 
+const instructions = ({ instructions: count, is_bound: isBound }) => (count === null ? "not measured" : `${isBound ? "at most " : ""}${fixed(count, 1)}`);
+
 /** Fills the table: a column a setting, each with what came of it. */
 export function showFigures(good, { unit: given, rate }) {
   const unit = given ? `, ${given}` : "";
@@ -18,7 +20,8 @@ export function showFigures(good, { unit: given, rate }) {
     ["Spikes a second", ({ figures }) => fixed(figures.spikes_per_second, 1)],
     ["Bytes a second, with keyframes", ({ linkBytesPerSecond }) => fixed(linkBytesPerSecond, 1)],
     ["Bytes of RAM a channel", ({ costs }) => fixed(costs.ram, 0)],
-    ["Instructions a sample, Cortex-M4F", ({ costs }) => (costs.instructions === null ? "not measured" : `${costs.is_bound ? "at most " : ""}${fixed(costs.instructions, 1)}`)],
+    ["Instructions a sample, Cortex-M4F", ({ costs }) => instructions(costs)],
+    ["Instructions a sample, Cortex-M0", ({ costsWithoutFpu }) => instructions(costsWithoutFpu)],
     [rate ? "Late by, ms" : "Late by, samples", (run) => fixed(late(run, rate), 1)],
     [`Phase at ${state.bandwidth} Hz, °`, (run) => (rate ? fixed(0.36 * state.bandwidth * late(run, rate), 1) : "–")],
     ["Does it fly?", (run) => verdict(run.setting, run)[0]],

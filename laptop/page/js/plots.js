@@ -3,30 +3,13 @@
 import uPlot from "uplot";
 import { listen } from "./gestures.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
+import { Times } from "./times.js";
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const AXIS = 64;
 /** A series that is hidden. */
 const NOTHING = { at: () => null, range: () => [null, null] };
 const line = uPlot.paths.linear();
-
-/** When samples are: in seconds where that is known, else their numbers. */
-export class Times {
-  constructor(count, rate, times) {
-    [this.count, this.rate, this.times] = [count, rate, times];
-    this.unit = times || rate ? "s" : "sample";
-    this.step = 1 / (rate ?? 1);
-  }
-  at(sample) {
-    if (sample >= this.count) return this.at(this.count - 1) + (sample - this.count + 1) * this.step;
-    return this.times ? this.times[sample] : sample * this.step;
-  }
-  /** The first sample at a time or later. */
-  first(time) {
-    const sample = this.times ? lowerBound(this.times, time) : Math.ceil(time / this.step - 1e-9);
-    return Math.max(0, Math.min(this.count, sample));
-  }
-}
 
 export class Plots {
   /** `onRange` is told the samples in view, `onCursor` the one under the pointer, and the one with the mark. */

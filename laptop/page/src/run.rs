@@ -96,7 +96,7 @@ pub(crate) fn run(choice: &Choice) -> Result<Value> {
         let link = recording
             .rate
             .and_then(|rate| Some(bytes(rate)? * rate / recording.values.len() as f64));
-        let costs = Costs::new(trial.scheme, &trial.settings, trial.latency, CORE);
+        let costs = |core| Costs::new(trial.scheme, &trial.settings, trial.latency, core);
         let delay = |filter: Filter| filter.delay(recording.rate? as f32).ok();
         let asked = texts(&trial.settings.to_asked(trial.scheme.info()));
         let texts = trial.settings.entries().iter().map(|(name, value)| (*name, value.to_string()));
@@ -109,7 +109,8 @@ pub(crate) fn run(choice: &Choice) -> Result<Value> {
             "filterDelay": choice.filter.and_then(delay),
             "notes": trial.notes,
             "figures": Figures::of(&recording, &trial),
-            "costs": costs,
+            "costs": costs(CORE),
+            "costsWithoutFpu": costs("M0"),
             "linkBytesPerSecond": link,
         }))
     })

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { choose, compare, DATA, drop, exported, LOGS, opened, settled, spikewire, text, work } from "./harness.mjs";
+import { choose, compare, DATA, drop, enter, exported, LOGS, opened, settled, spikewire, text, work } from "./harness.mjs";
 import { bag, decoded, euroc, mcap, px4, px4Raw, ulog } from "./made.mjs";
 import { wanted } from "../js/channels.js";
 
@@ -47,6 +47,36 @@ export const steps = {
       right++;
     }
     console.log(`  ${right} of ${right} on a turn rate`);
+    await page.context().close();
+  },
+
+  async "takes a folder and several files, of which one is looked at, and finds channels by their names"() {
+    const page = await opened();
+    await drop(page, { name: "a.csv", bytes: "one,two\n1,2\n2,3\n" }, { name: "b.csv", bytes: euroc() });
+    assert.match(await page.textContent("#about"), /^a\.csv: one/);
+    await page.selectOption("#file-of", { label: "b.csv" });
+    await settled(page);
+    assert.match(await page.textContent("#about"), /^b\.csv: w_RS_S_x/);
+    await drop(page, { name: "px4.ulg", bytes: px4() });
+    assert.equal(await page.isVisible("#of-files"), false);
+    const found = await page.locator("#channels option").evaluateAll((all) => all.map(({ value }) => value));
+    assert(found.includes("actuator_outputs · output[2]"), found.join());
+    await page.fill("#find", "actuator_outputs · output[2]");
+    await settled(page);
+    assert.deepEqual([await page.inputValue("#topic"), await page.inputValue("#field")], ["actuator_outputs", "output[2]"]);
+    assert.match(await page.textContent("#about"), /output\[2\], 200 samples/);
+    // What a folder's entry gives, as browsers hand it over at a drop.
+    await page.evaluate(() => {
+      const entry = (name) => ({ isFile: true, name, file: (done) => done(new File(["x\n1\n2\n"], name)) });
+      let rest = [[entry("d.csv"), entry("c.csv")], []];
+      const folder = { isDirectory: true, createReader: () => ({ readEntries: (done) => done(rest.shift()) }) };
+      const event = new Event("drop", { bubbles: true, cancelable: true });
+      event.dataTransfer = { items: [{ webkitGetAsEntry: () => folder }], files: [] };
+      document.body.dispatchEvent(event);
+    });
+    await settled(page);
+    assert.match(await page.textContent("#about"), /^c\.csv: x, 2 samples/);
+    assert.deepEqual(await page.locator("#file-of option").allTextContents(), ["c.csv", "d.csv"]);
     await page.context().close();
   },
 
@@ -100,6 +130,12 @@ export const steps = {
   async "says what is wrong with a file, and goes on"() {
     const page = await opened();
     const whole = readFileSync(join(LOGS, "log.mcap"));
+    // Everything that can be made of a recording is there before the first refusal.
+    await text(page, "flight");
+    await enter(page, "#evaluations", 32);
+    await page.click("#tune");
+    await page.waitForSelector("#front circle");
+    await page.waitForSelector("#tune:enabled");
     for (const [name, buffer, words] of [
       ["empty.csv", Buffer.from(""), /empty/],
       ["ragged.csv", Buffer.from("a,b\n1,2\n3,4,5\n"), /ragged\.csv/],
@@ -115,6 +151,9 @@ export const steps = {
       assert(await page.isVisible("#file-error"));
       // Nothing of the recording before stands under the name of this one; a table of words shows its own channels, to choose another.
       const isTable = name === "words.csv";
+      assert.doesNotMatch(await page.evaluate(() => document.body.innerText), /hexarotor|gyro_x|accel/, name);
+      assert.equal(await page.locator("#front circle").count(), 0, name);
+      assert.equal(await page.inputValue("#out"), "", name);
       if (isTable) assert.deepEqual(await page.locator("#field option").allTextContents(), ["a", "b"]);
       for (const id of ["about", ...(isTable ? [] : ["channel"]), "file-notes", "settings", "picture", "take", "search"]) assert.equal(await page.isVisible(`#${id}`) && await page.innerText(`#${id}`) !== "", false, `${name}: ${id}`);
     }

@@ -181,6 +181,12 @@ export const steps = {
     await page.selectOption("#sample", "q8.8");
     await settled(page);
     assert.equal(await page.isVisible("#add"), false);
+    // A series is hidden and shown again by its name.
+    const shown = () => page.evaluate(() => globalThis.spikewire.plots.data().slice(1).map((own) => own.some((value) => value !== null)));
+    await page.locator("#legend button").nth(1).click();
+    assert.deepEqual(await shown(), [true, false, true, true, true]);
+    await page.locator("#legend button").nth(1).click();
+    assert.deepEqual(await shown(), [true, true, true, true, true]);
     const figures = await page.innerText("#figures");
     const link = await text(page, "link");
     await accessible(page, "four settings");
