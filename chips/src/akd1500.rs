@@ -43,7 +43,7 @@ pub struct Akd1500<D> {
 
 const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
-/// Block sizes in 32-bit words, longest first, each with its code in the header.
+/// Block sizes in 32-bit words, longest first. The second value is the code of the size in the header of a block.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
 /// First address of the chip's memory. The bus carries only the low 26 bits of an address; the high 6 bits are the
 /// same for all addresses.

@@ -28,22 +28,28 @@ pub enum ChipError<B, P = Infallible> {
     NotGated,
     /// The chip's activity is gated, so the chip takes no events.
     Gated,
-    /// The chip did not answer after its gate was opened: reset the chip first.
+    /// The chip did not answer after the driver had let it run: reset the chip first.
+    /// [`ReckOn::sample`](super::ReckOn::sample) returns this error if the chip is between samples; then no reset is
+    /// needed.
     NotStarted,
-    /// The driver could not verify that the chip runs. The check needs a neuron that can take a time step without harm,
-    /// but each neuron learns, or has a potential at its threshold or at the end of the range. The chip is still gated,
-    /// and nothing was changed.
+    /// The driver has no neuron with which to check that the chip runs. The check is a time step of one neuron. Before
+    /// it, the driver moves the neuron's potential by the leak, so that the time step moves the potential back. But
+    /// every neuron learns, has reached its threshold, or would leave the range of potentials at this move. The chip is
+    /// still gated, and nothing was changed.
     NoProbe,
-    /// The chip keeps sending outputs, so that it cannot be gated; see [`open_loop`](super::Running::open_loop).
+    /// The chip keeps sending outputs and does not come to rest. It must be at rest before it is gated; see
+    /// [`open_loop`](super::Running::open_loop). [`ReckOn::started`](super::ReckOn::started) returns this error if the
+    /// chip is within a sample.
     Busy,
     /// The weights from one input or neuron have both signs, which this chip cannot store.
     MixedSigns {
-        /// Row of synapses with these weights: the number of the presynaptic neuron, or the row of the input.
+        /// Number of the row of synapses that would store the weights. A row belongs to a presynaptic neuron or to an
+        /// input.
         pre: u8,
     },
     /// A value is out of its range.
     OutOfRange {
-        /// The name of the value.
+        /// The name of the value that is out of its range.
         what: &'static str,
         /// The value that the caller gave.
         value: i64,

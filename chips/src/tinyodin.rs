@@ -92,8 +92,9 @@ impl Input for TinyOdinInput {
     const PROBED: u8 = 254;
     const NEURON_BYTES: u8 = 4;
     const PARAMETERS: [u8; 16] = [0, 0xF0, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-    /// The slowest word is `LeakAll`: it waits for at most two spikes, and then processes all neurons in use. Each of
-    /// the two spikes, and `LeakAll` itself, takes 2 clock cycles for each neuron in use.
+    /// The maximum for the slowest word, `LeakAll`, rounded up. This word waits for at most two spikes, and then
+    /// processes all neurons in use. Each of the two spikes, and `LeakAll` itself, takes 2 clock cycles for each neuron
+    /// in use.
     const MAX_CLOCKS: u32 = 1_600;
     const QUEUE: u32 = 128;
     const OPEN_LOOP: u16 = 1;

@@ -59,7 +59,8 @@ pub struct XyloMap {
     pub input: u16,
     /// Register that triggers a time step; write-only.
     pub control: u16,
-    /// The only value that may be written to [`control`](Self::control). (Bit 0 of the register resets the chip.)
+    /// Value that triggers a time step when it is written to [`control`](Self::control). No other value may be written
+    /// there. (Bit 0 of the register resets the chip.)
     pub trigger: u32,
     /// Register that shows whether the time step is done.
     pub status: u16,
@@ -87,8 +88,8 @@ impl XyloMap {
         next_bank: Some((0x171, 1 << 16)),
     };
 
-    /// Xylo Audio A2: 8 outputs. The vendor must supply `trigger`, the word that triggers a time step: the open
-    /// `rockpool` leaves it to `samna`, whose source is not public.
+    /// Xylo Audio A2: 8 outputs. Ask the vendor for `trigger`, the value that triggers a time step. The vendor's open
+    /// library `rockpool` does not contain this value: there `samna`, whose source is not public, triggers the step.
     pub const fn a2(trigger: u32) -> Self {
         Self {
             input: 0x11,
@@ -136,7 +137,7 @@ impl<R: Registers> Xylo<R> {
         Self { registers, map, polls, is_under_way: false }
     }
 
-    /// Sets the counts of a time step in one bank.
+    /// Writes the spike counts of the 16 channels in a time step to one of the two banks of input registers.
     ///
     /// # Errors
     /// Returns an error if the bus failed; then set the counts again. Returns [`Unfinished`](ChipError::Unfinished) if
@@ -171,8 +172,8 @@ impl<R: Registers> Xylo<R> {
         Ok(Some(if is_second { InputBank::Second } else { InputBank::First }))
     }
 
-    /// Sets the counts that the next time step reads: in the bank that the step will read, or in both banks if
-    /// [`XyloMap::next_bank`] is `None`.
+    /// Writes the spike counts that the next time step reads. Writes them to the bank that this step will read, or to
+    /// both banks if [`XyloMap::next_bank`] is `None`.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -184,7 +185,7 @@ impl<R: Registers> Xylo<R> {
         self.set_input(InputBank::Second, counts)
     }
 
-    /// Sets the counts of both banks to 0.
+    /// Sets the spike counts of all channels to 0, in both banks of input registers.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

@@ -167,6 +167,33 @@ class Tests(Installed):
             print(f"counted: {counts()}")
             print(f"told at the end: {told}")
 
+    def quality(self) -> None:
+        """Whoever asks for another quality of service hears nothing, and the node says of each what does not match."""
+        peer, others = Peer(), Peer()
+        writer, diagnostics = peer.writer("/imu", Imu), peer.reader("/diagnostics", DiagnosticArray)
+        # RustDDS 0.15 does not see the ownership of one who names no strength, as subscribers and a publisher of strength 0.
+        exclusive = Qos(ROS, Policy.Ownership.Exclusive, Policy.OwnershipStrength(1))
+        with self.node("encode", SF) as node:
+            until(lambda: has_readers(writer) and diagnostics.is_matched(), "discovery")
+            asking = {
+                "durability": LATCHED,
+                "deadline": Qos(ROS, Policy.Deadline(duration(milliseconds=10))),
+            }
+            readers = [others.reader("/event", Spyke, qos) for qos in asking.values()]
+            other = others.writer("/imu", Imu, exclusive)
+
+            def counts() -> dict[str, str]:
+                return {pair.key: pair.value for one in diagnostics.messages for pair in one.status[0].values}
+
+            refused = {"subscribers refused": "2", "publishers refused": "1"}
+            until(lambda: refused.items() <= counts().items(), "the counts")
+            assert not has_readers(other) and not any(reader.is_matched() for reader in readers)
+            node.stop()
+            for policy in asking:
+                assert f"(/event: the {policy} that is wanted is not offered)" in node.said(), node.said()
+            assert "publishers refused: 1 (the ownership that is wanted is not offered)" in node.said(), node.said()
+        print(f"told of {', '.join(asking)} and exclusive ownership")
+
     def comers(self) -> None:
         """A subscriber and a decoder that come late, and an encoder that starts again."""
         peer = Peer()
@@ -242,4 +269,4 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["--publish"]:
         publish()
     else:
-        main(Tests, "ros2_run", "refused", "faults", "comers", "latency", "flight")
+        main(Tests, "ros2_run", "refused", "faults", "quality", "comers", "latency", "flight")

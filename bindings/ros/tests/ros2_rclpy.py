@@ -18,7 +18,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
-from rclpy.qos import HistoryPolicy, QoSProfile, qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, qos_profile_sensor_data
 from ros2_nodes import EPOCH, SF, Installed, main, play, until
 from sensor_msgs.msg import Imu
 from spyke_msgs.msg import Spyke, SpykeArray, SpykeValue
@@ -112,6 +112,21 @@ class Tests(Installed):
             node.stop()
         print(f"rclpy sees the node, its topics {sorted(topics)}, its parameters and its warnings")
 
+    def quality(self) -> None:
+        """A subscriber that asks for more hears nothing: ROS 2 tells it so, and the node tells its warnings."""
+        peer, told = self.peer(), []
+        log = peer.reader("/rosout", Log)
+        with self.node("encode", SF) as node:
+            until(log.is_matched, "discovery")
+            callbacks = SubscriptionEventCallbacks(incompatible_qos=told.append)
+            latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+            peer.node.create_subscription(Spyke, "/event", print, latched, event_callbacks=callbacks)
+            until(lambda: told, "ROS 2's event")
+            why = "subscribers refused: 1 (/event: the durability that is wanted is not offered)"
+            until(lambda: any(one.msg == why for one in log.messages), "the node's warning")
+            node.stop()
+        print(f"both say why a subscriber hears nothing: {told[0].last_policy_kind!r}, {why}")
+
     @staticmethod
     def answer(future: Any) -> Any:
         until(future.done, "the answer")
@@ -120,4 +135,4 @@ class Tests(Installed):
 
 if __name__ == "__main__":
     rclpy.init()
-    main(Tests, "ros2_run", "graph", "flight")
+    main(Tests, "ros2_run", "graph", "quality", "flight")

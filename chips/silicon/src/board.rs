@@ -65,7 +65,7 @@ pub struct Pins<C> {
     pub clock_faults: VecDeque<(u64, ClockFault)>,
     /// Number of calls of the port so far.
     pub calls: u64,
-    /// Planned faults of calls of the port, each with the number of the call, in ascending order.
+    /// Planned faults of port calls, each with the number of its call, in ascending order.
     pub call_faults: VecDeque<(u64, CallFault)>,
     /// Whether the chip's pin `SCHED_FULL` is wired to the microcontroller.
     pub has_full_pin: bool,
@@ -110,7 +110,7 @@ impl<C: Model> Board<C> {
         Spi(self.clone())
     }
 
-    /// Returns a port that drives the chip's other pins.
+    /// Returns a port that drives the chip's pins other than SPI.
     pub fn port(&self) -> Port<C> {
         Port(self.clone())
     }

@@ -32,10 +32,11 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     fn update(neuron: u128, drive: Drive, registers: &Registers) -> (u128, bool);
     /// Returns whether the neuron's disabling bit is set, so that the neuron never fires.
     fn is_disabled(neuron: u128) -> bool;
-    /// Returns whether a bistability event may change this synapse.
+    /// Returns whether a bistability event, which moves a weight by 1 towards 0 or 7, may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Returns whether a spike from the queue goes to the output bus while the chip applies the spike to `neuron`.
-    /// Asked only if [`outputs_are_popped`](Self::outputs_are_popped) is true.
+    /// Returns whether the chip puts a spike from the queue on the output bus while it applies the spike to `neuron`.
+    /// Called only if the output bus carries the spikes from the queue, and
+    /// [`POPS_AFTER_OUTPUT`](Self::POPS_AFTER_OUTPUT) is false.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 
@@ -48,15 +49,15 @@ pub enum Input {
     Bistability(Option<u8>),
     /// A spike on one synapse: the presynaptic and the postsynaptic neuron.
     Synapse(u8, u8),
-    /// An event that goes to the queue. The first value has the bits of a virtual event, and is 0 for a spike; the
-    /// second is the neuron.
+    /// An event that goes to the queue. For a virtual event the first value is its
+    /// [`virtual_bits`](Drive::virtual_bits); for a spike it is 0. The second value is the neuron.
     Queued(u8, u8),
 }
 
 /// The event that acts on a neuron, as the signals that the controller gives to the neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Drive {
-    /// Whether an event acts on the neuron. False if the neuron is accessed over SPI.
+    /// Whether an event acts on the neuron. False if the neuron is only read or written over SPI.
     pub is_event: bool,
     /// Whether the event is a time step from the input word [`Leak`](Input::Leak). False for a virtual leak of ODIN,
     /// which is a virtual event.

@@ -7,7 +7,7 @@
 //! In the models of tinyODIN and ODIN, these parts are exact to the clock cycle: the synchronisers, the controller, the
 //! scheduler's queue, the order in which a spike visits the neurons, the neurons, the gate, and writes over SPI. ODIN's
 //! learning, Izhikevich neurons, bursts and monitoring on the output bus are not modelled. (The model assumes that
-//! `ca_en` is 0.)
+//! `ca_en`, the bit of a neuron that turns learning on, is 0.)
 
 #![no_std]
 #![allow(

@@ -22,7 +22,7 @@ pub struct SpiSlave {
 /// A complete write to a configuration register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Number of the register.
+    /// Number of the register to write.
     pub register: u16,
     /// Value to write: the last 20 bits of the frame.
     pub value: u32,

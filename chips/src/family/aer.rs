@@ -63,13 +63,13 @@ enum Answer {
 
 /// The microcontroller's side of the input bus and the output bus.
 ///
-/// The chip reads the word on its input bus for as long as it works on that word. Then the chip answers any REQ that is
-/// high, even if a different word is on the bus by then. Therefore the driver leaves a word on the bus until the chip
-/// acknowledges it, even if that takes several calls.
+/// The chip reads the word on its input bus for as long as it works on that word. When it is done and REQ is high, it
+/// raises ACK, even if the word on the bus was replaced meanwhile. Therefore the driver leaves a word on the bus until
+/// the chip acknowledges it, even if that takes several calls.
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// Number of pin reads before a wait times out, if each read takes at least one clock cycle of the chip.
+    /// Number of pin reads before a wait times out, not yet multiplied by `reads_per_clock`.
     polls: u32,
     /// Number of pin reads that fit into one clock cycle of the chip.
     reads_per_clock: NonZeroU32,
@@ -114,8 +114,8 @@ impl<P: AerPort> Aer<P> {
     /// the chip takes the pending word at this moment: the chip then waits for REQ to fall, and the reset drops the
     /// word before the word has an effect.
     ///
-    /// Returns the origin of the pending word if there is one and the driver saw no ACK for it. Also returns whether an
-    /// output was lost.
+    /// Returns the origin of the word that the reset drops; `None` if no word was pending, or if the driver has seen an
+    /// ACK for the word. Also returns whether an output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
         if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
             self.phase = Phase::Release;

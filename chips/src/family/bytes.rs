@@ -19,8 +19,8 @@ pub enum FormatError {
     Magic,
     /// The bytes contain a network for a different chip, or a flag that this version does not know.
     Chip,
-    /// The network has no neurons, or more than 256 neurons, inputs or rows of synapses. A network for `ReckOn` may
-    /// also have no inputs, no outputs, or more than 16 outputs.
+    /// The network has no neurons, or more than 256 neurons, inputs or rows of synapses. For a network for `ReckOn`,
+    /// this error can also mean that it has no inputs, no outputs, or more than 16 outputs.
     Size,
     /// The bytes or the buffer have the wrong length.
     Length {

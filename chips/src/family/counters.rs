@@ -8,8 +8,9 @@
 pub struct Counters {
     /// Number of resets, including the first one.
     pub resets: u32,
-    /// Number of time steps that were never sent to the chip. If more than 255 time steps are due, a call skips the
-    /// oldest ones. A reset drops a time step that the chip has not acknowledged.
+    /// Number of time steps that the driver skipped or dropped. If more than 255 time steps are due at a call of
+    /// [`advance`](super::Running::advance) or [`feed`](super::Running::feed), the call skips the oldest ones. A reset
+    /// drops a time step that the chip has not acknowledged.
     pub skipped_steps: u32,
     /// Number of events that were fed after their time step was over.
     pub late_events: u32,

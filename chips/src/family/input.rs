@@ -9,8 +9,8 @@ pub trait Input: Copy {
     /// The input that lets all neurons take a time step. The chip has no timer of its own, so the driver sends this
     /// input.
     const LEAK_ALL: Self;
-    /// The highest neuron that can be [probed](Self::probe). [`reset`](super::OdinChip::reset) disables this neuron if
-    /// it was never written.
+    /// The highest neuron that [`probe`](Self::probe) accepts. [`reset`](super::OdinChip::reset) disables this neuron
+    /// if it was never written.
     const PROBED: u8;
     /// Number of bytes in a neuron, 16 at most.
     const NEURON_BYTES: u8;
@@ -85,8 +85,9 @@ pub trait Input: Copy {
     /// register and not in each synapse.
     const SIGNS_BY_ROW: bool;
 
-    /// Returns the registers for a network that uses the neurons from 0 to `last_neuron`. Bit `n % 16` of
-    /// `inhibitory[n / 16]` is 1 if neuron `n` is inhibitory.
+    /// Returns the registers for a network that uses the neurons from 0 to `last_neuron`. If `is_open_loop` is true,
+    /// the spikes of neurons do not reach other neurons. Bit `n % 16` of `inhibitory[n / 16]` is 1 if neuron `n` is
+    /// inhibitory.
     fn registers(last_neuron: u8, is_open_loop: bool, inhibitory: [u16; 16]) -> Self::Registers;
 
     /// Calls `write` with the number and the value of each register, except for the one that gates the chip.

@@ -86,8 +86,9 @@ fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
-/// Calls `visit` for every byte of the chip's memories that the network uses. `visit` gets the byte's address, a mask
-/// of the bits that the network does not use, and the value of the other bits.
+/// Calls `visit` for every byte of the chip's memories that the network uses, and for the byte that disables each
+/// unused neuron. `visit` gets the byte's address, a mask of the bits that do not matter, and the value of the other
+/// bits.
 fn each_byte<I: Input, B, P>(
     network: &impl Describe<I>,
     mut visit: impl FnMut(Address, u8, u8) -> Result<(), ChipError<B, P>>,

@@ -45,18 +45,18 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///
 /// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select. Therefore no other device
 ///   may share its SPI bus, and the chip-select pin of the SPI device stays unconnected.
-/// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed; [`Gated::run`] gives a
-///   [`Running`] chip, which takes events; [`Running::gate`] gives a [`Gated`] chip again. Each type has only the calls
-///   that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give access to a chip that was
-///   left in that state.
+/// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip: its activity is stopped, and its memories can be
+///   accessed. [`Gated::run`] gives a [`Running`] chip, which takes events; [`Running::gate`] gives a [`Gated`] chip
+///   again. Each type has only the calls that are safe in its state. [`gated`](Self::gated) and
+///   [`running`](Self::running) give access to a chip that was left in that state.
 /// - **Synchronisation:** a lost or doubled clock pulse puts chip and bus out of sync. Calls on a gated chip detect
 ///   such a fault; if the fault is in the last frame of a call, the next call detects it. If a lost and a doubled pulse
 ///   cancel out within one access to memory, calls detect this, too. If they cancel out within the frame of a register
 ///   and its check, this goes unnoticed, because registers cannot be read back. After an error of the bus, or a byte
 ///   that reads back differently, the driver refuses all calls until the next reset. All memory is then in doubt: load
 ///   it again.
-/// - **Waits:** the driver waits for the chip by reading pins. After as many reads as [`new`](Self::new) was told, it
-///   returns an error.
+/// - **Waits:** the driver waits for the chip by reading pins. The argument `polls` of [`new`](Self::new) limits the
+///   number of reads; after the last read, the driver returns an error.
 /// - **Pending words:** a word that the chip has not acknowledged when a wait ends stays pending. Every call that sends
 ///   a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
 /// - **Unsent events:** the driver keeps an event that [`Running::feed`] could not send. The next call of `feed` sends
@@ -64,9 +64,10 @@ pub use steps::{Steps, StepsLayer, StepsState};
 /// - **Losses** are counted; see [`counters`](Self::counters).
 ///
 /// # What to know about the chips
-/// - In closed loop a leak overtakes the spikes that wait in the chip's queue; in open loop it does not.
-/// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the outputs are the inputs, not the neurons
-///   that fire.
+/// - In closed loop (the spikes of neurons reach other neurons) a leak overtakes the spikes that wait in the chip's
+///   queue. In open loop (the spikes go only to the output bus) a leak overtakes no spike.
+/// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the output bus carries the inputs, not the
+///   neurons that fire.
 /// - A neuron in use with threshold 0, as in memory that was never written, fires at every event and every leak.
 /// - An overflow of the queue is invisible unless [`AerPort::queue_full`] is wired.
 #[derive(Debug)]
@@ -140,8 +141,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
 
     /// Sets the number of pin reads that fit into one clock cycle of the chip. The default is 1; set more if the
     /// microcontroller is much faster than the chip. The driver multiplies the pin reads of every wait by this number.
-    /// If the number is too low, words time out, and [`Running::gate`] may gate a chip that is still working, whose
-    /// potentials are then wrong.
+    ///
+    /// If the number is too low, the driver stops waiting before the chip is done. Handshakes of words then time out,
+    /// and [`Running::gate`] may gate a chip that is still working. The neurons' potentials are then wrong.
     #[must_use]
     pub fn with_reads_per_clock(mut self, reads: NonZeroU32) -> Self {
         self.aer.set_reads_per_clock(reads);

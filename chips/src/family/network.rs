@@ -8,8 +8,8 @@ use spikewire::{Code, Event, Polarity, Scheme, Tick};
 /// [`Gated::load`](super::Gated::load) writes the network to the chip.
 ///
 /// The network's neurons are the chip's neurons from 0 on. An input is either a row of synapses onto all neurons, or a
-/// virtual event for one neuron. In open loop the chip's rows of synapses from row 0 on belong to the inputs. In closed
-/// loop the first rows belong to the neurons, and the rows of the inputs follow.
+/// virtual event for one neuron. If the network is not recurrent, the inputs have the chip's rows of synapses from row
+/// 0 on. If it is recurrent, the neurons have the first rows, and the rows of the inputs follow.
 pub trait Describe<I: Input> {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
@@ -84,9 +84,9 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// Returns a callback that takes the neurons that fire, for [`Running::poll`](super::Running::poll) and the other
-    /// calls. It passes the neurons that are outputs to `sink`, as events at `tick` whose address is the number of the
-    /// output, and ignores all other neurons.
+    /// Returns a callback for [`Running::poll`](super::Running::poll) and the other calls that report neurons that
+    /// fire. If the neuron is an output of the network, the callback passes an event to `sink`. The event has the time
+    /// `tick`, and its address is the number of the output. The callback ignores all other neurons.
     fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
         move |neuron| {
             if let Some(address) = self.output(neuron) {
@@ -197,9 +197,10 @@ pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> 
     /// The inputs, and their weights.
     pub inputs: Inputs<IN, N>,
     /// The weights between neurons: row `n` has the weights from neuron `n` to all neurons. Neurons without a row have
-    /// no effect on other neurons. If there are no rows, the loop is open.
+    /// no effect on other neurons. If there are no rows, the chip runs in open loop: spikes of neurons go only to the
+    /// output bus.
     pub recurrent: &'static [[i8; N]],
-    /// The neuron of each output, in the order of the outputs.
+    /// For each output, the number of the neuron whose spikes are this output.
     pub outputs: [u8; OUT],
 }
 

@@ -12,7 +12,8 @@ const HANDSHAKE_CLOCKS: u32 = 32;
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
 /// A running chip: it takes events, and its memories cannot be accessed. After an error the chip still runs, unless the
-/// failed call consumed this value.
+/// `# Errors` section of the call says to reset the chip. If [`gate`](Self::gate) fails and the chip still runs,
+/// [`OdinChip::running`] returns a new value of this type.
 #[derive(Debug)]
 pub struct Running<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,

@@ -25,8 +25,8 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 ///     TinyOdinNeuron, neurons_from,
 /// };
 ///
-/// // Two inputs (rises and falls of a rate) and three neurons, whose rungs are 7. `spikewire network` writes such
-/// // constants.
+/// // Two inputs (rises and falls of a rate) and three neurons. A rung raises each potential by 7.
+/// // `spikewire network` writes such constants.
 /// static STEPS: Steps = Steps {
 ///     inputs: 2,
 ///     has_bias: false,
@@ -90,13 +90,14 @@ pub struct Steps<'a> {
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// Number of rows of synapses for each input. Each neuron whose spikes act on neurons takes as many rows. The
-    /// weight of an input or neuron is the sum of the weights in its rows.
+    /// Number of rows of synapses for each input, and also for each neuron whose spikes act on neurons. The weight of
+    /// an input or neuron is the sum of the weights in its rows.
     pub rows: u16,
     /// The layers, from the input to the output. The first layer has the chip's neurons from 0 on. Each other layer has
     /// the neurons that follow those of the layer before.
     pub layers: &'a [StepsLayer],
-    /// Number of events (rungs) that raise each layer in a step. The same number of events later lowers all neurons.
+    /// Number of events that raise the potentials of each layer in a step. Each event raises them by one rung. At the
+    /// end of the step, the same number of events lowers the potentials of all neurons.
     pub rungs: u16,
     /// The leaks of all neurons: one list for each step. After the last list, the next step takes the first list again.
     /// A list has one entry for each leak: the number of lowering events that the driver sends before this leak. The
@@ -159,7 +160,8 @@ impl Fired {
 }
 
 impl Steps<'_> {
-    /// Returns the number of the row that raises the first layer; the rows that raise the other layers follow.
+    /// Returns the number of the row of synapses that raises the potentials of the first layer. The rows that raise the
+    /// other layers follow.
     #[must_use]
     pub fn first_rise(&self) -> u16 {
         let sources = self.inputs.saturating_add(self.has_bias.into());
@@ -172,7 +174,8 @@ impl Steps<'_> {
         sources.saturating_mul(self.rows)
     }
 
-    /// Returns the number of rows of synapses that the steps need, including those that raise and lower neurons.
+    /// Returns the number of rows of synapses that the network needs in the chip, including the rows that raise and
+    /// lower potentials.
     #[must_use]
     pub fn all_rows(&self) -> u16 {
         let gates = match (self.rungs, self.lift) {

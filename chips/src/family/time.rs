@@ -15,13 +15,13 @@ const MAX_LEAKS: u32 = 255;
 /// Therefore the driver takes a tick that seems to be earlier by more than this time for a future tick.
 const LATEST: u32 = 1 << 26;
 
-/// Returns the time from `last` to `now` in µs; `None` if `now` is at most 67 s earlier than `last`.
+/// Returns the time from `last` to `now` in µs. Returns `None` if `now` is earlier than `last` by up to [`LATEST`].
 fn passed(last: Tick, now: Tick) -> Option<u32> {
     let passed = now.micros().wrapping_sub(last.micros());
     (passed < LATEST.wrapping_neg()).then_some(passed)
 }
 
-/// The length of a time step, and the time at which the last leak event was due.
+/// The length of a time step, and the time at which the last leak event (the end of a time step) was due.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time {
     step: NonZeroU32,
@@ -34,7 +34,7 @@ impl Time {
         Self { step, last: None }
     }
 
-    /// Returns whether the time step of `tick` is over, that is, whether `tick` is earlier than the last leak event.
+    /// Returns whether `tick` lies before the last leak event, which ended the time step of `tick`.
     pub(super) fn is_over(&self, tick: Tick) -> bool {
         self.last.is_some_and(|last| passed(last, tick).is_none())
     }

@@ -63,9 +63,9 @@ impl<D: SpiDevice> Wire<D> {
         self.write(WRITE | address.0, u32::from(keep) << 8 | u32::from(value))
     }
 
-    /// Reads a byte, which comes back as the last byte of the frame. The driver sends data that is all ones, which the
-    /// chip ignores. If a lost or doubled clock pulse turns the read into a write, these ones mask all bits, so that
-    /// memory does not change.
+    /// Reads a byte, which comes back as the last byte of the frame. The driver sends data in which every bit is 1; in
+    /// a read the chip ignores this data. If a lost or doubled clock pulse turns the read into a write, the data masks
+    /// all bits, so that memory does not change.
     pub(super) fn read_byte(&mut self, address: Address) -> Result<u8, D::Error> {
         let mut frame = frame(READ | address.0, 0xF_FFFF);
         self.device.transfer_in_place(&mut frame)?;

@@ -44,8 +44,8 @@ use wire::{Address, Wire};
 ///      register instead. The driver does not notice this if the memory already held the same weights.
 ///   3. The pair turns a read into a write while [`Programmed::load`] compares memory. [`Programmed::verify`] after the
 ///      load detects this in weights and parameters, but not in the potential of a neuron or an output.
-/// - **Waits:** the driver waits for the chip by reading pins. After as many reads as [`new`](Self::new) was told, it
-///   returns an error.
+/// - **Waits:** the driver waits for the chip by reading pins. The argument `polls` of [`new`](Self::new) limits the
+///   number of reads; after the last read, the driver returns an error.
 ///
 /// # A time step
 /// Inputs that are sent before a tick act after that tick. At the next tick, neurons leak and fire, and then their

@@ -33,7 +33,7 @@ impl Address {
         Self(5 << 28 | (neuron as u32) << 2)
     }
 
-    /// Returns the address of a word that no network uses, for checks.
+    /// Returns the address that the sync check writes to: the address of a word that no network uses.
     pub(super) const fn anchor() -> Self {
         Self::output(0x1AA)
     }

@@ -108,8 +108,8 @@ proptest! {
     }
 }
 
-/// Shuts the gate while the chip still works. This happens if the driver's number of pin reads in a clock cycle of the
-/// chip is set too low.
+/// Shuts the gate, which stops the chip's activity, while the chip still works on a spike. The driver does this if
+/// `with_reads_per_clock` was given a number that is too low.
 #[test]
 fn parameters_stay_whole_even_where_the_gate_shuts_on_a_chip_that_works() {
     for clocks in 0..200 {

@@ -11,7 +11,7 @@ use spikewire_chips::{
     ReckOnSettings, ReckOnShared, ReckOnStep, Started,
 };
 
-/// A network with random weights, the given number of neurons, as many inputs but at most eight, and three outputs.
+/// A network with random weights and three outputs. It has as many inputs as neurons, but never more than eight inputs.
 struct RandomNetwork {
     neurons: u16,
 }

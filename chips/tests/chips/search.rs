@@ -1,9 +1,9 @@
-//! A random search for faults: makes calls of tinyODIN's driver in any order, with late acknowledgements of outputs,
-//! and with up to three SPI clock pulses lost or doubled. Whenever a call returns `Ok`, the chip's memories and
-//! registers must be what the caller expects.
+//! A random search for errors of tinyODIN's driver. A *schedule* is a sequence of random calls and faults: the calls
+//! come in any order, outputs are acknowledged late, and up to three SPI clock pulses are lost or doubled. Whenever a
+//! call returns `Ok`, the chip's memories and registers must be what the caller expects.
 //!
-//! `cargo test` tries a few schedules; `cargo test --release -p spikewire-chips --test chips -- --ignored schedules` tries
-//! 100 000.
+//! `cargo test` tries a few hundred schedules. This command tries 100 000:
+//! `cargo test --release -p spikewire-chips --test chips -- --ignored schedules`.
 
 use std::num::NonZeroU32;
 
@@ -172,7 +172,7 @@ impl Known {
     }
 }
 
-/// Numbers of calls, of errors and of gatings so far.
+/// Numbers of calls, of errors, and of successful calls of `gate` so far.
 #[derive(Debug, Default)]
 struct Tally {
     calls: u32,
@@ -180,7 +180,8 @@ struct Tally {
     gates: u32,
 }
 
-/// Makes the random calls of one schedule. Panics if a call returns `Ok` and the chip is not as expected.
+/// Makes the random calls of the schedule that `seed` determines, with at most `most_faults` lost or doubled clock
+/// pulses. Panics if a call returns `Ok` and the chip is not as expected.
 fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
     let mut random = Random(Pcg32::seed_from_u64(seed));
     let board = TinyBoard::new(2 + random.below(63), 1 + random.below(3));

@@ -17,8 +17,8 @@ struct Neuron {
     rung: i32,
     /// Number of leaks that act only on this neuron, at the end of each step in which it fires.
     own: u16,
-    /// Weights from the previous layer (without the bias and the neuron's own layer). Each neuron of that layer has one
-    /// weight for each of its rows of synapses. The weights of the layer's first neuron come first.
+    /// Weights from the previous layer: [`Net::rows`] weights from its first neuron, then as many from its second
+    /// neuron, and so on. Contains no weights from the bias or from the neuron's own layer.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -31,9 +31,9 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Between steps, each potential on the chip is `below` rungs lower than in the reference. Each threshold on the
-    /// chip is `above` rungs higher than in the reference.
+    /// Number of rungs by which each potential on the chip is lower than in the reference, between steps.
     below: u16,
+    /// Number of rungs by which each threshold on the chip is higher than in the reference.
     above: u16,
     leaks: Vec<Vec<u16>>,
     lift: u16,
@@ -155,8 +155,8 @@ impl Net {
     }
 }
 
-/// The network in the form that the driver loads. All rows of synapses are inputs, in open loop. The second field is
-/// the number of rows.
+/// The network in the form that the driver loads: without recurrent weights, and with every row of synapses as the row
+/// of an input. The second field is the number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

@@ -28,8 +28,9 @@ fn the_last_line_says_how_many_means_agree() {
 }
 
 /// Mean efficiencies and RMSEs that an earlier version of `bench` printed. Each item has the name of the table, the
-/// length of the signals in seconds, and one mean for each of [`SCHEMES`]. If a scheme puts a single spike elsewhere, a
-/// mean changes. The comparison with the paper, within the error of sampling, would not reveal such a small change.
+/// length of the signals in seconds, and one mean for each of [`SCHEMES`]. A single
+/// spike that moves changes a mean. `bench` compares its means with the paper's only within the error of sampling, which
+/// hides such a change.
 #[rustfmt::skip]
 const BEFORE: [(&str, u64, [f64; 8]); 6] = [
     ("efficiency", 1, [37.900000, 29.975000, 75.100000, 45.800000, 73.675000, 62.275000, 0.000000, -223.700000]),

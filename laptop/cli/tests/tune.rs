@@ -164,8 +164,7 @@ fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
 }
 
 /// If no settings satisfy the goal, the message names each setting whose best value was at an end of its search range.
-/// A setting that the user fixed is not named. A setting is not named either if the scheme itself allows no value
-/// beyond this end.
+/// It does not name settings that the user fixed, nor settings whose search range ends where the scheme's own limit is.
 #[test]
 fn a_setting_at_the_bound_of_its_search_is_reported() {
     let flight = flight("hexarotor.csv");

@@ -62,7 +62,8 @@ pub struct AdviseRequest {
     /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, codes with which a
     /// simulated drone flew badly at this loss are not advised.
     pub frame_loss: f64,
-    /// Processor core, such as `M4F`, whose measured instruction counts apply.
+    /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
+    /// on it.
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
@@ -264,8 +265,9 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme briefly, and adds the scheme to `reaching` or, with the reason, to `others`. If the simulated
-    /// drone flew badly with the scheme, the scheme is not tuned, and is added to `others`.
+    /// Decides whether a scheme suits the recording. Tunes the scheme briefly. Adds it to `reaching` if the settings
+    /// found are within the allowed RMSE, and otherwise to `others`, with the reason. A scheme with which the simulated
+    /// drone flew badly is not tuned. It is added to `unflown` and `others`.
     fn consider(
         &mut self,
         request: &AdviseRequest,

@@ -62,7 +62,8 @@ impl Bank {
         self.collect(events, Codec::finish);
     }
 
-    /// Runs `take` on each codec, and appends the codecs' events, sorted by sample, then by slot and channel.
+    /// Calls `take` on each channel's codec, and appends the events of all codecs. The events are sorted by sample,
+    /// then by slot (sub-timestep), then by channel.
     fn collect(
         &mut self,
         events: &mut Vec<Event>,

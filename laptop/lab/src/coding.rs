@@ -37,7 +37,7 @@ impl Coding {
         Self::parse(path, &text)
     }
 
-    /// Parses the text of a TOML file of parameters; `file` is its name in errors.
+    /// Parses `text`, the content of a TOML file of parameters. Errors report the file as `file`.
     ///
     /// # Errors
     /// See [`read`](Self::read).

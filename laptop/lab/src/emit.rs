@@ -73,9 +73,9 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     write(directory, "codecs", &files, spikewire).map_err(unwritten)
 }
 
-/// Writes a crate that builds a C library with a sender and a receiver for each flight. `flights` pairs each flight
-/// with its name in C. The crate is written into the new directory `directory`. It depends on the checkout at
-/// `spikewire`, or on the published crates if `None`.
+/// Writes a crate into the new directory `directory`. The crate builds a C library with a sender and a receiver for
+/// each flight. `flights` pairs each flight with its name in C. If `spikewire` is the path of a checkout, the crate
+/// depends on this checkout; if it is `None`, the crate depends on the published crates.
 ///
 /// # Errors
 /// Returns an error if a scheme has no constant, if two flights share a name, or if the directory exists.
@@ -124,7 +124,7 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
 }
 
-/// Returns the declaration of a codec with the given name and constant.
+/// Returns the lines that declare a codec with the given name and constant in `spikewire_c::codecs!`.
 fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
     let Constant { scheme: kind, value } = constant;
     let text = Coding::of_settings(scheme, settings).to_toml(&[]);

@@ -23,7 +23,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Starts with a channel that has no samples yet.
+    /// Makes the statistics of a channel that has no samples yet.
     pub fn new(scheme: Scheme, settings: &Settings) -> Self {
         // A rate code's largest value is the sum of its taps above its shift.
         let reach = settings
@@ -144,8 +144,8 @@ pub fn rounding(settings: &Settings) -> Option<String> {
     (!words.is_empty()).then(|| format!("in {}, {}", settings.sample, words.join(", ")))
 }
 
-/// Completes an error about settings. If `sample` cannot hold the steps from sample to sample in `values`, the error is
-/// extended by this reason; otherwise the error is returned unchanged.
+/// Adds the likely reason to an error about settings: `sample` is too coarse for the steps from sample to sample in
+/// `values`. Returns the error unchanged if `sample` is fine enough.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

@@ -92,14 +92,15 @@ pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
     period.ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
 }
 
-/// Returns options that read a flight's channels from the recording that `options` reads.
+/// Returns a copy of `options` in which the columns are the sources of the flight's channels.
 pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     let mut own = options.clone();
     own.channel.columns = flight.channels.iter().map(|own| own.source.clone()).collect();
     own
 }
 
-/// A source of samples that are converted to the sensor's counts and then filtered, as in the flight's sender.
+/// A source of samples that are prepared as in the flight's sender: converted to the sensor's counts, and then
+/// filtered.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,

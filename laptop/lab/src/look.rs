@@ -51,7 +51,7 @@ pub struct ChannelSummary {
 pub enum Verdict {
     /// Fit for tuning.
     Good,
-    /// There are too few samples.
+    /// Too few samples for tuning.
     TooShort,
     /// All samples are equal.
     Constant,
@@ -65,8 +65,8 @@ pub enum Verdict {
 
 /// Fewest samples of a channel that is fit for tuning.
 const FEWEST: usize = 200;
-/// Smallest standard deviation with which a white channel is not taken for noise, as a multiple of the channel's
-/// `noise`.
+/// Factor that tells a signal from noise. A white channel (one with a flat spectrum) counts as noise if its standard
+/// deviation is below this multiple of the channel's `noise`.
 const ABOVE_NOISE: f64 = 2.0;
 /// Smallest spectral flatness with which a channel counts as white. Sensors at rest have a flatness of 0.67 to 0.95,
 /// and flights with vibration have 0.2 to 0.33.
@@ -173,9 +173,9 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Estimates the standard deviation of the noise in each window from second differences, and returns the tenth
-/// percentile of all windows. The second differences of a slow signal are near 0. The second differences of white noise
-/// have √6 times the standard deviation of the noise.
+/// Returns an estimate of the noise's standard deviation: the tenth percentile of the estimates for all windows. The
+/// estimate for a window is made from second differences, which are near 0 for a slow signal. For white noise, the
+/// standard deviation of the second differences is √6 times that of the noise.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));
@@ -241,8 +241,8 @@ fn bandwidth(values: &[f64]) -> f64 {
     bin.unwrap_or_default() as f64 / values.len() as f64
 }
 
-/// Returns the standard deviation of the time between samples, in ms and without the gaps, and the number of gaps.
-/// `times` are in µs.
+/// Returns the standard deviation of the time between samples in ms, and the number of gaps. The standard deviation
+/// leaves out the gaps. `times` are in µs.
 fn steps(times: &[i64]) -> (Option<f64>, usize) {
     let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
     let mut sorted = steps.clone();

@@ -4,8 +4,9 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Largest mean error that rounding to a sample type may cause in a column's steps from sample to sample, as a share of
-/// the steps' mean size. A sample type with a larger error is said to lose the steps.
+/// Maximum error of a sample type that is fine enough for a column's steps from sample to sample. The error is the mean
+/// error that rounding to the type causes in a step, as a share of the mean step. A sample type with a larger error is
+/// said to lose the steps.
 const PART: f64 = 0.1;
 
 /// The steps of a column from sample to sample, and the errors that rounding to a sample type causes in them.
@@ -15,9 +16,9 @@ pub struct Resolution {
     steps: u64,
     /// Sum of the absolute sizes of the steps from sample to sample.
     moved: f64,
-    /// Sum of the absolute errors that rounding to the sample type causes in the steps.
+    /// Sum of the absolute errors that rounding to `sample` causes in the steps from sample to sample.
     off: f64,
-    /// Sum of the absolute errors that rounding to `f32` causes in the steps.
+    /// Sum of the absolute errors that rounding to `f32` causes in the steps from sample to sample.
     off_single: f64,
     min: f64,
     max: f64,
@@ -66,7 +67,7 @@ impl Resolution {
         }
     }
 
-    /// Returns whether the sample type changes any step.
+    /// Returns whether rounding to the sample type changes any step from one sample to the next.
     pub fn is_rounded(&self) -> bool {
         self.off > 0.0
     }
@@ -112,8 +113,9 @@ impl Resolution {
         (self.off_single <= PART * self.moved).then_some(SampleType::F32)
     }
 
-    /// Returns the fixed-point type with the fewest bits whose range holds the column and whose resolution holds the
-    /// column's steps. If the column consists of whole numbers, the type must hold them exactly.
+    /// Returns the fixed-point type with the fewest bits that can hold the column. All values must lie in the type's
+    /// range, and its resolution must be fine enough for the steps from sample to sample. If the column consists of
+    /// whole numbers, the type must hold them exactly.
     fn fixed(&self) -> Option<SampleType> {
         let holds = |own: &SampleType| {
             let (low, high) = own.range();
@@ -129,8 +131,9 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column's steps survive rounding to multiples of `step`. Rounding causes a mean error of a
-    /// third of `step` in a step of the column. For a margin, half of `step` is assumed.
+    /// Returns whether the column keeps its steps from sample to sample if its values are rounded to multiples of
+    /// `step`. Rounding changes each of these steps by a third of `step` on average. To be safe, half of `step` is
+    /// assumed.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }

@@ -275,7 +275,7 @@ impl Default for ReckOn {
 /// An access to a memory in this clock cycle.
 struct Access {
     address: usize,
-    /// Data and mask of a write; `None` for a read.
+    /// Data and mask of a write, which changes the bits where the mask is 1; `None` for a read.
     write: Option<(u128, u128)>,
 }
 
@@ -460,7 +460,8 @@ impl ReckOn {
         }
     }
 
-    /// Returns the highest number of a neuron, an input or an output. A time step of the chip counts up to this number.
+    /// Returns the highest number of a neuron, an input or an output. In each time step, the counter `step_count` runs
+    /// from 0 to this number.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }
@@ -902,7 +903,9 @@ impl ReckOn {
         self.now = new;
     }
 
-    /// Advances the random generators.
+    /// Advances the random generators that this clock cycle uses. A reset or a write of a seed instead sets the
+    /// generator's state; `prog` has the flags of the seeds that are written. `alpha` is the share of its potential
+    /// that a neuron keeps, in units of 1/32 768. `draws` selects the generators that learning uses.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;
         let is_reset = now.resets[1];

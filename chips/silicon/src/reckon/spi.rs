@@ -31,7 +31,8 @@ pub(super) struct SpiSlave {
     pub(super) data: u32,
     /// The writes that the core is to make, with one bit for each kind of write: the `PROG_` constants.
     pub(super) writing: u16,
-    /// Flags of the reads that the core is to make: bit `n - 1` is for the memory with code `n`.
+    /// The memory reads that the core is to make, with one bit for each memory, from bit 0 on: pairs of neurons,
+    /// outputs' potentials, weights from inputs, weights between neurons, weights to outputs.
     pub(super) reading: u8,
     registers: [u32; REGISTERS],
 }

@@ -67,8 +67,8 @@ pub(crate) struct Advise {
     /// recording of one channel, or --channel
     #[arg(long)]
     picture: Option<PathBuf>,
-    /// Write the advised bank as a flight file (`flight.toml`), which `emit`, `encode`, `listen`, Python and a
-    /// firmware's build script read
+    /// Write the advised bank of encoders, one for each channel, as a flight file (`flight.toml`). It is read by `emit`,
+    /// `encode`, `listen`, Python and a firmware's build script
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print the whole report as JSON

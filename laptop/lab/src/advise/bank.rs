@@ -34,7 +34,7 @@ pub struct BankAdvice {
     others: Vec<String>,
     /// The names of the channels that are unfit for tuning. The [`Advice`] on each such channel gives the reason.
     left_out: Vec<String>,
-    /// Remarks on what neither the log nor the simulator can show.
+    /// Questions that the advice leaves open, such as how the user's drone flies with the code.
     unknown: Vec<String>,
     /// Share of frames that the link loses, in percent.
     frame_loss: f64,
@@ -264,7 +264,7 @@ fn bank(
     }))
 }
 
-/// Lists remarks on what neither the log nor the simulator can show.
+/// Lists the questions that the advice leaves open, such as how the user's drone flies with the code.
 fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     let mut all = Vec::new();
     if request.loop_bandwidth.is_none() {
@@ -315,7 +315,8 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
 }
 
 /// Returns the total number of events of all channels, and the number of bytes that the link sends, including
-/// keyframes. If `in_loop`, a frame is sent for each sample; otherwise, a frame is sent once it is full.
+/// keyframes. If `in_loop` is true, each sample is sent in a frame of its own, as a control loop needs it. Otherwise,
+/// events of several samples share a frame.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

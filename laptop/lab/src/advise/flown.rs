@@ -10,10 +10,11 @@ use std::sync::LazyLock;
 /// because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
-/// The parameters with which the codes flew, as JSON; a symbolic link like `verdicts.json`.
+/// The parameters with which the schemes flew, as JSON; a symbolic link like `verdicts.json`.
 const FOUND: &str = include_str!("banks.json");
 
-/// Largest attitude error with which a code counts as fit to fly, as a multiple of the error without a code.
+/// Largest attitude error with which a scheme counts as fit to fly, as a multiple of the error without a code.
+/// Without a code, the controller reads the samples themselves.
 const WITHIN: f64 = 1.2;
 
 /// Shares of lost frames in the simulated flights, in percent, lowest first.
@@ -31,9 +32,9 @@ pub(crate) struct Flown {
     low_pass: Option<f32>,
     /// Time between keyframes, in ms; `None` if the code needs none.
     keyframe_ms: Option<f64>,
-    /// Flights of the reference drone and its controller, with 1 % of the frames lost.
+    /// Flights of the reference drone and its controller, on a link that loses 1 % of the frames.
     here: Flights,
-    /// Flights of the reference drone and its controller, with 10 % of the frames lost.
+    /// Flights of the reference drone and its controller, on a link that loses 10 % of the frames.
     #[serde(rename = "every tenth frame lost")]
     tenth: Flights,
     /// Flights of several drones and controllers at several sample rates. A key names simulator, controller and rate.
@@ -55,7 +56,7 @@ struct Flights {
 pub(crate) struct Error {
     /// Error of the flights with the code.
     pub(crate) coded: f64,
-    /// Error of the flights without a code.
+    /// Error of the flights without a code, in which the controller read the samples themselves.
     pub(crate) plain: f64,
 }
 

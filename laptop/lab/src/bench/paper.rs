@@ -13,9 +13,9 @@ pub const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
 pub struct Table {
     /// Title of the table.
     pub title: &'static str,
-    /// Means, indexed by case and then by scheme.
+    /// Means of the table's figure over the signals of a case, indexed by case and then by scheme.
     pub means: [[f64; 6]; 5],
-    /// Standard deviations, indexed by case and then by scheme.
+    /// Standard deviations of the table's figure over the signals of a case, indexed by case and then by scheme.
     pub deviations: [[f64; 6]; 5],
     /// Number of decimals that the paper prints.
     pub decimals: usize,

@@ -81,8 +81,8 @@ fn first(signal: &[f32]) -> f32 {
     signal.first().copied().unwrap_or_default()
 }
 
-/// Runs a step code as the toolbox does. The encoder is primed with `past`. The first decoded value is `start`, and the
-/// decoder adds the steps from the second sample on.
+/// Runs a step code (each spike moves the decoded value by one step) as the paper's toolbox does. Primes the encoder
+/// with `past`. The first decoded value is `start`. From the second sample on, the decoder adds the steps.
 fn step_outcome<P>(signal: &[f32], scheme: &P, past: &[f32], start: f32) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Spike>,

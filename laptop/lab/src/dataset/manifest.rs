@@ -50,7 +50,8 @@ pub struct Row {
     pub split: Option<Split>,
     /// Reason that the log was refused, if it was.
     pub refused: Option<String>,
-    /// Name of the kind of error for which the log was refused, for programs.
+    /// Name of the error's kind, such as `Open`, for programs that read the manifest. `None` if the log was not
+    /// refused.
     pub refused_kind: Option<String>,
     /// Path of the file of spikes, relative to the directory of the data set.
     pub events: Option<String>,
@@ -159,7 +160,7 @@ impl File {
     /// Reads the length and the modification time of a log.
     ///
     /// # Errors
-    /// Returns an error if the log is missing, or can be read only once.
+    /// Returns an error if the log is missing, or if it is not a regular file. A pipe can be read only once.
     pub(super) fn of(log: &Path) -> Result<Self> {
         let mut own = Self { bytes: 0, modified_us: 0 };
         for file in files(log)? {

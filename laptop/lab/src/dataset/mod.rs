@@ -77,7 +77,7 @@ pub enum Flights {
 /// The channels to read from logs of one kind, written `ulog=sensor_combined.gyro_rad[0],sensor_combined.gyro_rad[1]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelsOf {
-    /// Name of the kind, one of [`NAMES`].
+    /// Name of the kind of log, one of [`NAMES`].
     pub kind: &'static str,
     /// Names of the channels: columns of a table, or `TOPIC.FIELD` of a log.
     pub names: Vec<String>,

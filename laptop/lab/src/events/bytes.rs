@@ -13,7 +13,7 @@ pub(super) struct Reader<D> {
     hooks: Hooks<D>,
 }
 
-/// Operations on a decoder that differ from format to format.
+/// Functions that [`Reader`] calls on a decoder `D`. Each format has its own.
 pub(super) struct Hooks<D> {
     /// Returns an error if the bytes that the decoder has read are not of its format.
     pub check: fn(&D) -> Result<()>,

@@ -199,7 +199,7 @@ fn name_of(kind: SampleKind) -> String {
     }
 }
 
-/// Writes a table of events, or of decoded values if `values` is their sample type.
+/// Writes a table of events or, if `values` holds a sample type, of decoded values of that type.
 pub(super) struct Writer {
     values: Option<SampleType>,
     has_begun: bool,
@@ -227,7 +227,8 @@ impl Writer {
         self.line.push(b',');
     }
 
-    /// Appends a number to the line, with the fewest digits that read back as the same bits in the sample type.
+    /// Appends a number to the line. Writes the fewest digits from which the sample type reads back exactly the same
+    /// value.
     fn value(&mut self, value: f64) {
         let mut digits = zmij::Buffer::new();
         let text = match self.values {

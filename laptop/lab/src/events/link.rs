@@ -6,10 +6,10 @@ use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Se
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// A decoder of link frames to values.
+/// Decodes link frames to the values that the sender encoded.
 pub trait Values {
     /// Decodes a frame, and appends the decoded values to `items`. A temporal code gives a value for each keyframe and
-    /// event, and any other code a value for each sample that has ended.
+    /// each event. Any other code gives a value for each sample, once the time of the sample is over.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
     /// Appends the values of the last sample. Call it after the last frame.
@@ -119,9 +119,9 @@ pub(super) struct Writer {
     keyframes: Vec<Keyframe>,
     /// Tick of the latest keyframe, for an empty frame that reports a loss.
     tick: Tick,
-    /// Number of sender restarts so far, which numbers the sessions.
+    /// Number of sender restarts so far. It is also the number of the current session.
     starts: u32,
-    /// Whether no frame of this session has been written yet.
+    /// Whether no frame has been written since the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
     /// Whether a loss or a restart is still to be reported in a frame.

@@ -65,7 +65,7 @@ pub enum Known {
     Estimate,
 }
 
-/// Converts bytes of a format to items.
+/// A reader of the bytes of one event format. It converts the bytes to items: spikes, keyframes, losses and restarts.
 pub trait EventReader {
     /// Reads the next bytes of the input, and appends the items that they complete. The input may be split between any
     /// two bytes.
@@ -89,7 +89,7 @@ pub trait EventReader {
     fn set_arrival(&mut self, _: Tick) {}
 }
 
-/// Converts items to bytes of a format.
+/// A writer of one event format. It converts items to the bytes of the format.
 pub trait EventWriter {
     /// Writes an item, or keeps it to be written later.
     ///

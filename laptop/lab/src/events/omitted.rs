@@ -19,8 +19,8 @@ impl Omitted {
         self.dropped += 1;
     }
 
-    /// Counts an event whose time was changed by writing: `event` is the time before, and `read` is the time that a
-    /// reader gets.
+    /// Records the time of a written event. Counts the event if the format changed its time. `event` is the event's own
+    /// time, and `read` is the time that a reader gets from the file.
     pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());

@@ -5,7 +5,7 @@ use std::fmt;
 /// The kind of an unusual step from one sample's time to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A step forward that is too long.
+    /// A step forward that exceeds the limit, which is a multiple of the usual step.
     Gap,
     /// A step back: samples are out of order.
     Backward,
@@ -21,7 +21,7 @@ pub struct Step {
     pub kind: Kind,
     /// Index of the sample before the step.
     pub after: u64,
-    /// The length of the step in µs; negative if it goes back.
+    /// Time from the sample before the step to the sample after it, in µs; negative for a step back.
     pub microseconds: i64,
 }
 
@@ -51,9 +51,10 @@ impl fmt::Display for Jump {
 pub struct Clock {
     usual_step: f64,
     longest_step: f64,
-    /// Longest step back, in µs, that still counts as samples out of order. A longer step back counts as a restart.
+    /// Longest step back, in µs, that is taken for samples out of order. A longer step back is taken for a restart of
+    /// the recorder's clock.
     longest_back: f64,
-    /// Number of samples for each step forward: above 1 if samples come in batches that share a time, otherwise 1.
+    /// Mean number of samples that share a time. Above 1 if samples come in batches, otherwise 1.
     samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
@@ -78,7 +79,7 @@ const RUN: usize = 64;
 /// Longest step back that still counts as samples out of order, as a multiple of the usual step. A longer step back
 /// counts as a restart of the recorder's clock.
 const RESTART: f64 = 10.0;
-/// Factor by which the sample rate must change to be reported.
+/// Factor by which the sample rate must rise or fall before the change is reported.
 const JUMP: f64 = 1.5;
 
 /// The number of findings of one kind, such as gaps, with the first few of them.
@@ -95,8 +96,9 @@ impl<T> Default for Listed<T> {
 }
 
 impl Clock {
-    /// Makes a clock. Measures the usual step from one time to the next in `first_times` or, if that is impossible,
-    /// computes it from `rate`, in samples a second. A step longer than `steps` usual steps counts as a gap.
+    /// Makes a clock. The usual step between the times of two samples is measured in `first_times`. If it cannot be
+    /// measured, it is computed from `rate`, in samples a second. A step longer than `steps` times the usual step
+    /// counts as a gap.
     pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
         let are_sorted = !is_disordered(first_times);
         let usual = if are_sorted {

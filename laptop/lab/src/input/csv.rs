@@ -58,7 +58,8 @@ struct Column {
 struct Time {
     column: Column,
     reading: Reading,
-    /// The column with the nanoseconds that belong to whole seconds in `column`, if there is one.
+    /// Column of nanoseconds, which are added to the whole seconds in `column`. `None` if the times are in a single
+    /// column.
     nanoseconds: Option<Column>,
     has_decimal_commas: bool,
 }
@@ -89,8 +90,8 @@ impl Table {
         Self::of_text(text, 0, cut, file, options)
     }
 
-    /// Opens a table whose file has a format other than CSV. `rows` is the table converted to CSV. Its header line is
-    /// not counted as a line of the file.
+    /// Opens a table from a file that is not CSV. `rows` is the table converted to CSV. The file has no line for the
+    /// header line of `rows`, so line numbers in errors do not count the header line.
     ///
     /// # Errors
     /// See [`open`](Self::open).
@@ -99,7 +100,8 @@ impl Table {
         Self::of_text(rows, 1, Rc::default(), file, options)
     }
 
-    /// Opens a table of CSV text. `above` is the number of lines at the start of `text` that are not in the file.
+    /// Opens a table of CSV text. `above` is the number of lines that were added at the start of `text`, such as a
+    /// header. The file itself has no such lines.
     fn of_text(
         text: Box<dyn Read>,
         above: u64,
@@ -362,13 +364,13 @@ struct Rows {
     reader: Reader<Box<dyn Read>>,
     /// Whether the table's lines end in CR and LF. If they do, the CSV reader counts the LF as part of the next line.
     is_of_windows: bool,
-    /// Number of lines at the start of the text that are not in the file.
+    /// Number of lines that were added at the start of the text, such as a header. The file itself has no such lines.
     above: u64,
 }
 
 impl Rows {
     /// Makes a reader of the rows in `start` and then in `input`. Comment lines are counted in `count`. `above` is the
-    /// number of lines in `start` that are not in the file.
+    /// number of lines that were added at the start of `start`, such as a header. The file itself has no such lines.
     fn new(
         start: Start,
         input: impl Read + 'static,
@@ -399,8 +401,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the line at which `record`, the row read last, begins. Does not use the position that `record` stores:
-    /// it is the position of any comments before the row.
+    /// Returns the number of the line at which `record`, the row read last, begins. The position that `record` stores
+    /// is of no use here: if comments precede the row, that position is where the comments begin.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);

@@ -25,7 +25,8 @@ pub(super) struct Header {
 }
 
 impl Start {
-    /// Reads lines up to the first line that is neither a comment nor empty, and then that line and the next line.
+    /// Reads the start of a table: the comments and empty lines at the top, the first line after them, and one more
+    /// line.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read.

@@ -64,9 +64,9 @@ pub struct ChannelOptions {
     /// Columns of a table by name, such as `gyro_x`. The name `all` stands for all columns except times and counts. For
     /// a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
-    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
-    /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use. A log's message has, by default,
-    /// the time at which it was recorded.
+    /// Name of the column or field that holds the time: a column of a table, or a field of a log, such as
+    /// `header.stamp`. The default for a table is a column with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas
+    /// uses for the time. The default for a message of a log is the time at which the message was recorded.
     pub time: Option<String>,
     /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
     /// `stamp_ns`, or from the column's values.
@@ -310,17 +310,17 @@ impl InputOptions {
         self.input == Path::new("-")
     }
 
-    /// Returns the input's name for messages.
+    /// Returns the name that messages to the user give the input: its path, or `standard input`.
     pub fn name(&self) -> String {
         if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
     }
 
-    /// Returns the columns that were chosen.
+    /// Returns the table columns that the options choose.
     fn columns(&self) -> impl Iterator<Item = &str> {
         self.column.iter().chain(&self.columns).map(String::as_str)
     }
 
-    /// Returns the fields that were chosen.
+    /// Returns the message fields that the options choose.
     fn fields(&self) -> impl Iterator<Item = &str> {
         self.field.iter().chain(&self.fields).map(String::as_str)
     }

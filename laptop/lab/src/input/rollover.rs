@@ -7,11 +7,10 @@ use catalogue::run::Words;
 /// Ranges of 32-bit clocks, in µs. The first clock counts µs, the second ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Longest time in µs between two samples over which a wrap of the clock is always recognised. [`STEPS`] may allow a
-/// longer time.
+/// Limit in µs on the time between the last sample before a wrap of the clock and the first sample after it. A wrap
+/// within the limit is recognised. [`STEPS`] may raise the limit.
 const SECOND: i64 = 1_000_000;
-/// Longest time between two samples over which a wrap of the clock is recognised, as a multiple of the latest step
-/// forward. The longest time is at least [`SECOND`].
+/// Factor that may raise the limit [`SECOND`]. The limit is at least this multiple of the latest step forward.
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.

@@ -139,8 +139,9 @@ mod encoding {
     }
 }
 
-/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them.
-/// The conversion tables of all encodings would make up a tenth of the page.
+/// Replacements of the text decoders, for the web page. They decode only Latin-1, because the conversion tables of all
+/// encodings would make up a tenth of the page. The browser decodes files in other encodings before this library reads
+/// them.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

@@ -77,7 +77,8 @@ impl fmt::Display for TimeUnit {
 pub(super) enum Named {
     /// The times are in the given unit.
     In(TimeUnit),
-    /// The values decide the unit. Whole numbers that are too small for a time since 1970 are in the given unit.
+    /// The unit follows from the values. The given unit applies to whole numbers that are too small for times since
+    /// 1970.
     Whole(TimeUnit),
     /// The values are times if they are dates; otherwise the column has no times.
     Dates,
@@ -216,7 +217,7 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
 /// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp are used, while a
 /// float would keep only 15. Returns `None` if the field contains an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
-    /// Maximum number of digits before the decimal point, which keeps the sum within 128 bits.
+    /// Maximum number of digits before the decimal point. The limit keeps the time in ps within 128 bits.
     const MOST: usize = 24;
     let (is_negative, digits) = match field {
         [b'-', digits @ ..] => (true, digits),

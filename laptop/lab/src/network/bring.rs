@@ -18,7 +18,7 @@ pub struct Request<'a> {
     pub trained: &'a Trained,
     /// Input spikes of the recording on which the chip's parameters are tuned, by step.
     pub tuned: &'a Trains,
-    /// A second recording, on which the quantised network is only tested; `None` to test it on `tuned` only.
+    /// A second recording, which only tests the quantised network. If `None`, the network is tested on `tuned`.
     pub held_out: Option<HeldOut<'a>>,
     /// Output spikes that the training framework computed, by step. The first entry is for the recording `tuned`, the
     /// second for `held_out`. `None` if the framework's spikes are not known.
@@ -31,7 +31,7 @@ pub struct Request<'a> {
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// A recording for testing a network after its parameters were tuned on another.
+/// A recording on which a network is tested after its parameters were tuned on a different recording.
 #[derive(Clone, Copy)]
 pub struct HeldOut<'a> {
     /// Input spikes of all steps, including those before `from`.
@@ -172,7 +172,7 @@ fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
 /// The reference for comparisons: the spikes and potentials of one run in double precision, and the sizes of the
 /// layers.
 pub(super) struct Original {
-    /// Name and number of neurons of each layer whose neurons fire.
+    /// For each layer whose neurons fire: the layer's name and its number of neurons.
     pub layers: Vec<(String, usize)>,
     /// Name of the output layer and number of outputs, if the outputs never fire; `None` if the outputs are spikes.
     pub readout: Option<(String, usize)>,

@@ -114,8 +114,8 @@ pub struct Ran {
 pub struct Stepped {
     /// The neurons that fired in the step, by layer.
     pub fired: Vec<Vec<u16>>,
-    /// Number of clock cycles that the chip took for the step. For the flight controller: number of weights that the
-    /// step added.
+    /// Number of clock cycles that the step took on the chip. If the network runs on the flight controller instead,
+    /// this is the number of weights that the step added.
     pub clocks: u64,
 }
 
@@ -159,7 +159,7 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Converts an error of a chip's driver in a run on the chip's model.
+/// Wraps an error that a chip's driver returned while a network ran on the chip's model.
 pub(super) fn refused<B, P>(error: ChipError<B, P>) -> crate::Error
 where
     ChipError<B, P>: std::error::Error + Send + Sync + 'static,

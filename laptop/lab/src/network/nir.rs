@@ -157,12 +157,12 @@ fn node_at(name: &str) -> Spot {
 const DEEPEST: usize = 8;
 
 impl Graph {
-    /// Adds the nodes and edges of the NIR graph in `group`, and of the graphs nested in it, to this graph. The names
-    /// of the nodes get the prefix `path`. Returns the names of the input node and the output node of the graph in
-    /// `group`.
+    /// Adds the nodes and edges of the NIR graph in `group` to this graph, together with those of the graphs nested in
+    /// it. The name of each node gets the prefix `path`. `depth` is the number of graphs around the graph in `group`.
+    /// Returns the names of the input node and the output node of the graph in `group`.
     ///
     /// # Errors
-    /// Returns an error if the group is not a graph with one input and one output.
+    /// Returns an error if the group is not a graph with one input and one output, or if graphs are nested too deeply.
     fn take(&mut self, group: &Group, path: &str, depth: usize) -> Result<(String, String)> {
         let at = || Place { file: None, spot: (!path.is_empty()).then(|| node_at(path)) };
         ensure!(depth < DEEPEST, NirKind::TooDeep { most: DEEPEST }.at(at()));

@@ -114,7 +114,7 @@ pub(super) fn is_same(output: &Path, input: &Path) -> bool {
 
 /// Follows symbolic links to the last target, even if no file exists there yet.
 fn target(mut path: PathBuf) -> io::Result<PathBuf> {
-    /// Maximum number of links to follow. A longer chain of links is taken for a circle.
+    /// Maximum number of links to follow. A longer chain is assumed to lead in a circle.
     const MOST: usize = 40;
     for _ in 0..MOST {
         if !fs::symlink_metadata(&path).is_ok_and(|data| data.is_symlink()) {

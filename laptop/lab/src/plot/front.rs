@@ -17,7 +17,7 @@ pub struct Panel {
     pub title: String,
     /// The signal's unit, if it is known.
     pub unit: Option<String>,
-    /// The front of each scheme.
+    /// The Pareto front of each scheme: its best settings, by spikes and error.
     pub curves: Vec<Curve>,
 }
 
@@ -34,7 +34,8 @@ const LOWEST: f64 = -100.0;
 /// Number of steps into which the efficiency axis is divided to compare schemes.
 const STEPS: usize = 400;
 
-/// A scheme that forms a part of the common front, and the colour of its line.
+/// A scheme that forms a part of the common front (the least error of all schemes at each efficiency), and the colour
+/// of the scheme's line.
 pub(super) type Named = (Scheme, RGBColor);
 
 /// Returns the efficiency, in percent, at the given step along the axis, from 0 to [`STEPS`].
@@ -184,8 +185,9 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the efficiency and error of the middle one of the points that `scheme` contributes to the panel's common
-/// front. Only points with an efficiency of at least `left` percent count. Returns `None` if there are no such points.
+/// Finds the point at which the panel names the line of `scheme`: the middle of the scheme's part of the common front.
+/// Returns the efficiency and error at this point. Leaves out points with an efficiency below `left` percent, and
+/// returns `None` if no points are left.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

@@ -1,5 +1,5 @@
-//! The colours of pictures: the paper's blue for the signal and orange for the reconstruction, and the catalogue's
-//! colours of the schemes.
+//! The colours of pictures. As in the paper, the signal is blue and the reconstruction orange. Each scheme has the
+//! colour that the scheme catalogue gives it.
 
 use crate::scheme::Scheme;
 use plotters::style::RGBColor;

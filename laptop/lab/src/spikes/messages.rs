@@ -22,8 +22,8 @@ pub struct Messages {
     /// Number of sub-timesteps (slots) of each sample.
     slots: usize,
     is_signed: bool,
-    /// Whether the log has a header, as this library writes it. In such a log, a message whose input is missing or NaN
-    /// stands for a sample that was not encoded.
+    /// Whether the log has a header, as in logs that this library wrote. In such a log, a message stands for a sample
+    /// that was not encoded if the message's field `input` is missing or NaN.
     has_header: bool,
     items: VecDeque<Item>,
 }

@@ -1,8 +1,9 @@
 //! Files of spikes. Lines `# key=value` hold everything that decoding needs. Below them is a table with the columns
 //! `index,address,polarity`.
 //!
-//! `index` is the sample's index or, with sub-timesteps, that index times the number of slots, plus the slot. Neurons
-//! are numbered across all channels: the neurons of channel 1 follow the neurons of channel 0.
+//! `index` is the sample's index. If a scheme divides each sample into sub-timesteps (slots), `index` counts slots
+//! instead: `sample * slots + slot`. Neurons are numbered across all channels: the neurons of channel 1 follow the
+//! neurons of channel 0.
 //!
 //! Comments between the events report values that were not finite, and gaps in time. Each comment stands where the
 //! value or gap occurs. Further comments give the time at the first sample, before each gap, and at the last sample.

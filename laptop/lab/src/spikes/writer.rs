@@ -11,8 +11,9 @@ use std::io::Write;
 
 /// A file of spikes that is being written.
 ///
-/// Encoders count only finite samples, while the file counts all samples. If an encoder looks ahead, its events come
-/// late. The writer then holds back notes on later samples until the events are written.
+/// Encoders count only finite samples, while the file counts all samples. The comments of the file, such as notes on
+/// gaps, stand between the events in the order of the samples. If an encoder looks ahead, its events come late. The
+/// writer then holds back the notes on later samples until the events are written.
 pub struct Writer {
     output: Output,
     slots: u64,

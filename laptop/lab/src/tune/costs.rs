@@ -26,7 +26,7 @@ static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
 /// The costs of one channel on a flight controller.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Costs {
-    /// Latency of the code: the number of samples from a sample to its code.
+    /// Latency of the code: how many samples after a sample the encoder emits its code.
     pub latency: usize,
     /// Size of the encoder's state in bytes, if known.
     pub ram: Option<usize>,
@@ -63,7 +63,8 @@ impl Costs {
     }
 }
 
-/// Returns the name of the measured sample type that has the same width as `sample`.
+/// Returns the name of the sample type whose measured instruction counts stand for `sample`. Both types have the same
+/// width.
 fn measured_as(sample: SampleType) -> &'static str {
     match sample {
         SampleType::F32 => "f32",

@@ -5,7 +5,8 @@
 
 use super::chance::Chance;
 
-/// Number of remembered scale factors, and of remembered crossover rates, that gave better points.
+/// Number of entries in the memory of scale factors, and in the memory of crossover rates. An entry is a mean of values
+/// that gave points better than their parents.
 const MEMORY: usize = 6;
 /// Number of parents when the budget is spent.
 const FEWEST: usize = 4;
@@ -94,9 +95,9 @@ impl Evolution {
     /// Takes points that `ask` returned, with their values, in the same order. The caller may have moved points, and
     /// may leave out the last points.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Maximum weight of a point that is better than its parent. Below the maximum, the weight is the difference
-        /// between the values of parent and point. Without a maximum, parents that break a limit would outweigh all
-        /// others.
+        /// Maximum weight of a point that is better than its parent. Up to this maximum, the weight is the amount by
+        /// which the function is smaller at the point than at its parent. Without a maximum, points whose parents break
+        /// a limit would outweigh all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);

@@ -7,8 +7,8 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Figures of settings, such as the RMSE, over the scored samples of one or more stretches. Each stretch is coded in
-/// one piece.
+/// Figures that rate settings, such as the RMSE and the number of spikes. They cover the scored samples of one or more
+/// stretches (runs of samples that are coded in one piece).
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Figures {
     /// Number of samples.

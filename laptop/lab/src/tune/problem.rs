@@ -23,7 +23,7 @@ pub enum Goal {
 pub struct Limits {
     /// Maximum size of a channel's encoder, in bytes.
     pub ram: Option<f64>,
-    /// Maximum of the mean number of instructions to encode a sample.
+    /// Upper limit on the mean number of instructions that encoding a sample takes.
     pub instructions: Option<f64>,
     /// Maximum delay of the code, in samples.
     pub latency: Option<f64>,
@@ -68,7 +68,7 @@ impl Tally {
 pub enum Limit {
     /// Size of a channel's encoder in bytes.
     Ram,
-    /// Number of instructions to encode a sample.
+    /// Mean number of instructions that encoding a sample takes.
     Instructions,
     /// Delay of the code in samples.
     Latency,
@@ -81,7 +81,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// Returns the name of the request's setting that limits the quantity.
+    /// Returns the name under which a request sets this limit, such as `max_ram`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ram => "max_ram",
@@ -99,9 +99,9 @@ impl Limit {
 pub struct Excess {
     /// The limited quantity.
     pub limit: Limit,
-    /// Value of the quantity that the settings have.
+    /// Value of the quantity for these settings.
     pub value: f64,
-    /// Value of the quantity that the limit allows.
+    /// The limit itself: the largest or smallest value that is allowed.
     pub allowed: f64,
     /// Amount by which the limit is exceeded, as a share of the limit.
     pub part: f64,
@@ -114,7 +114,7 @@ pub struct Scored {
     pub options: Asked,
     /// Counts of samples, spikes and errors.
     pub tally: Tally,
-    /// Costs on a flight controller.
+    /// Costs of the settings on a flight controller, such as memory and instructions.
     pub costs: Costs,
     /// The limits that the settings break, including the one in the goal.
     pub excess: Vec<Excess>,
@@ -141,9 +141,9 @@ pub struct Problem<'a> {
     pub goal: Goal,
     /// Upper limits on what settings may cost.
     pub limits: &'a Limits,
-    /// The core whose measured instruction counts apply.
+    /// Name of the processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: &'a str,
-    /// Range and mean of the stretches to tune on.
+    /// Range and mean of the samples in `train`.
     pub extent: Extent,
     calibrated: Calibrated,
 }
@@ -230,7 +230,8 @@ impl<'a> Problem<'a> {
         Ok((tally, latency))
     }
 
-    /// Scores settings as [`tally`](Self::tally) does. Also returns the full settings for the last stretch.
+    /// Scores settings on stretches, like [`tally`](Self::tally). Returns the counts, the code's latency in samples,
+    /// and the complete settings for the last stretch.
     fn tallied(
         &self,
         options: &Asked,
@@ -342,7 +343,8 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Smallest value of settings that break a limit.
+/// Smallest result of [`Problem::value`] for settings that break a limit. Settings that break no limit have smaller
+/// results.
 const NOT_ALLOWED: f64 = 1e12;
 
 /// Returns the largest number of spikes at which the efficiency is at least `efficiency` percent. If the percentage was

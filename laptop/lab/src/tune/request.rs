@@ -27,7 +27,8 @@ pub struct TuneRequest {
     pub fixed: Asked,
     /// Whether the taps of a filter are searched one by one, rather than by shape, length and sum.
     pub free_taps: bool,
-    /// The goal. `None` stands for the least error at the efficiency of the paper's settings.
+    /// Goal of the search. `None` stands for the least error at an efficiency at least as high as that of the paper's
+    /// settings.
     pub goal: Option<Goal>,
     /// Upper limits on what settings may cost.
     pub limits: Limits,

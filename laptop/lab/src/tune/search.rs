@@ -34,7 +34,8 @@ pub struct Found {
     pub front: Vec<Scored>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes of thresholds that were listed and compared in exact arithmetic, without the codec.
+    /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
+    /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
     /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
@@ -57,9 +58,10 @@ pub struct Method {
 pub(super) const BATCH: usize = 64;
 /// Smallest and largest number of parents with which an evolution starts.
 const PARENTS: (usize, usize) = (10, 100);
-/// Efficiencies in percent. To find a Pareto front, settings are searched for each of these efficiencies.
+/// Efficiencies in percent: 100 less the number of spikes for every 100 samples. To find a Pareto front, the search
+/// seeks the settings with the least error for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
-/// Smallest value that [`Run::tighten`] gives to a parameter that is a maximum.
+/// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
 /// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
@@ -134,8 +136,8 @@ impl Run<'_> {
         self.found.is_cut_short
     }
 
-    /// Scores options until the budget is spent, and keeps the best and the Pareto front. Returns each score, or `None`
-    /// for invalid options.
+    /// Scores the first entries of `all`, as many as the budget allows. Records the best settings and those that may be
+    /// on the Pareto front. Returns the score of each entry that was tried, or `None` for an invalid entry.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;

@@ -38,7 +38,7 @@ pub(super) enum Role {
     Log(f64),
     /// The difference between the parameter and the first given value, divided by the second given value.
     Around(f64, f64),
-    /// The parameter divided by the sum of the absolute values of the filter's taps.
+    /// The quotient of the parameter and the sum of the absolute values of the filter's taps.
     OfFilter,
     /// The natural logarithm of a quotient: the parameter divided by the threshold.
     Thresholds,
@@ -50,9 +50,9 @@ pub(super) enum Role {
     Length,
     Shape,
     Alpha,
-    /// The natural logarithm of a quotient: the sum of the filter's taps divided by the height of the signal's mean
-    /// above the parameter `shift`. The quotient is the number of samples for each spike while the signal is at its
-    /// mean. The two values are the bounds of the sum of the taps.
+    /// The natural logarithm of the quotient S / H. S is the sum of the filter's taps. H is the height of the signal's
+    /// mean above the parameter `shift`. A signal that stays at its mean gives one spike every S / H samples. The two
+    /// values are the lower and the upper bound of S.
     Sum(f64, f64),
     /// A tap of the filter, as a multiple of the given unit.
     Tap(f64),
@@ -80,7 +80,8 @@ pub(crate) struct Inner {
 }
 
 impl Space {
-    /// Makes the space of the scheme's parameters that `fixed` leaves open.
+    /// Makes the space of those of the scheme's parameters that are searched and have no value in `fixed`. `extent`
+    /// holds the range and mean of the samples.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {
@@ -93,8 +94,8 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// Returns a space with an axis for each tap of the filter, instead of axes for the filter's shape, length and sum.
-    /// Integer parameters have no axis, and keep their values in `found`.
+    /// Returns a search space in which each tap of the filter has an axis. The axes for the filter's shape, length and
+    /// sum are left out. Parameters that are integers or words have no axes either, and keep their values in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -147,7 +148,8 @@ impl Space {
     }
 
     /// Returns `count` points to start from, spread over each axis. `share` is the share of samples at which the code
-    /// may spike. The sums of filters are such that about this share of spikes decodes to the signal's mean.
+    /// may spike. The sums of filter taps are chosen such that spikes at about this share of the samples decode to the
+    /// signal's mean.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);
@@ -205,7 +207,8 @@ impl Space {
         all
     }
 
-    /// Converts a point of the unit cube to options.
+    /// Converts a point of the unit cube to options, which give values to the scheme's parameters. The point has one
+    /// coordinate for each axis.
     pub(crate) fn options(&self, point: &[f64]) -> Asked {
         let numbers: Vec<f64> =
             point.iter().enumerate().map(|(axis, place)| self.number(axis, *place)).collect();
@@ -263,8 +266,8 @@ impl Space {
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())
     }
 
-    /// Converts options to a point of the unit cube. On an axis for which the options have no value, the point lies in
-    /// the middle.
+    /// Converts options to a point of the unit cube, with one coordinate for each axis. If the options have no value
+    /// for an axis, the coordinate is 0.5.
     pub(crate) fn point(&self, options: &Asked) -> Vec<f64> {
         let number = |name: &str| options.number(name);
         let taps = taps_of(options).unwrap_or_default();

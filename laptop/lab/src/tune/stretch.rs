@@ -64,7 +64,7 @@ pub struct HoldOut {
     pub part: f64,
 }
 
-/// Minimum number of samples in a block.
+/// Minimum number of samples in each block of a recording.
 const SHORTEST: usize = 20;
 
 /// Offset of the held-out blocks, which are spread evenly. If 30 % of 20 blocks are held out, neither the first nor the
@@ -130,8 +130,8 @@ mod tests {
     use super::{HoldOut, Stretch, cut};
     use crate::trial::Recording;
 
-    /// If 40 % of 5 blocks are held out, these are the second and the fifth block. They are coded together with the
-    /// blocks before them.
+    /// Cuts a recording into 5 blocks, and holds out 40 % of them: the second and the fifth block. Each is coded
+    /// together with the blocks before it.
     #[test]
     fn what_is_held_out_is_coded_with_what_is_before_it() {
         let values: Vec<f64> = (0..200).map(f64::from).collect();

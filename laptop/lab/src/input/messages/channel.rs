@@ -65,8 +65,8 @@ impl Channel {
         })
     }
 
-    /// Finds the positions of the chosen fields in the messages of topics that the log has introduced since the last
-    /// call.
+    /// Plans how to read the topics that the log has introduced since the last call. Finds the positions of the chosen
+    /// fields in the messages of these topics.
     fn plan(&mut self) -> Result<()> {
         for topic in self.log.topics().iter().skip(self.plans.len()) {
             // ROS accepts a topic's name with and without a leading slash.

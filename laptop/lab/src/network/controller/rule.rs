@@ -76,8 +76,8 @@ pub enum Current {
 pub struct Asked {
     /// The training framework, which implies some of the other parts.
     pub framework: Option<Framework>,
-    /// How a spike resets its neuron: one entry for all layers, or one entry for each layer that fires; empty if not
-    /// given.
+    /// The ways in which a spike resets its neuron. A single entry applies to all layers. Otherwise, there is
+    /// one entry for each layer that fires. Empty if the user gave none.
     pub resets: Vec<Reset>,
     /// Whether a neuron fires at its threshold, or only above it.
     pub fires: Option<Fires>,
@@ -106,8 +106,9 @@ pub struct Rule {
     pub dt: f64,
 }
 
-/// The rule of networks in JSON. A neuron fires above its threshold, and a spike sets the potential to 0 in the same
-/// step. Decay and duration of a step play no role, because the parameters in JSON apply to one step.
+/// The rule that the neurons of a network in JSON follow. A neuron fires if its potential is above its threshold. The
+/// spike sets the potential to 0 in the same step. `decay` and `dt` play no role, because the parameters in JSON apply
+/// to one step.
 pub(super) const PLAIN: Rule = Rule {
     framework: None,
     reset: Reset::ToValue,
@@ -144,7 +145,7 @@ impl Framework {
         }
     }
 
-    /// Returns the parts of the rule that the framework implies.
+    /// Returns the parts of the rule for decay, firing and reset that this framework implies.
     fn says(self) -> Asked {
         use {Current as C, Decay as D, Fires as F, Framework as W, Reset as R};
         let (reset, fires, decay, current, dt) = match self {
@@ -225,8 +226,8 @@ impl Asked {
         }
     }
 
-    /// Returns the first of the resets that the user gave. If the user gave none, returns the reset in `says`, which
-    /// contains the parts of the rule that the framework implies.
+    /// Returns the first of the resets that the user gave. If the user gave none, returns the first reset in `says`,
+    /// the parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }

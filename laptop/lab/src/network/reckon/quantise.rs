@@ -20,8 +20,8 @@ const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Scales to try for a pair of neurons, as multiples of the largest scale at which the pair's weights and potentials
-/// fit the chip.
+/// Scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales are
+/// multiples of the largest scale at which the pair's weights and potentials fit the chip.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
 /// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
@@ -45,9 +45,9 @@ pub(super) struct Quantised {
     /// The weights of outputs: one row for each neuron, with one weight for each output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
-    /// Number of the input that carries the bias and must fire in every step; `None` if the network has no bias.
+    /// Index of the input that carries the bias. This input must fire in every step. `None` if the network has no bias.
     pub(super) bias: Option<usize>,
-    /// Name and number of neurons of each layer.
+    /// For each layer: its name and its number of neurons.
     pub(super) layers: Vec<(String, usize)>,
     /// Value of an output's potential of 1 on the chip, in the units of the trained network; `None` if the outputs
     /// report the spikes of neurons.
@@ -125,8 +125,9 @@ impl Source {
     }
 }
 
-/// Returns the largest scale at which the weights and potentials of a pair of neurons fit the chip. `shifts` are the
-/// left shifts of input weights and of weights between neurons.
+/// Returns the scale of a pair of neurons: the largest factor by which the pair's weights and potentials can be
+/// multiplied so that all of them fit the chip. `shifts` are the chip's left shifts of input weights and of weights
+/// between neurons.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -136,8 +137,9 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     (ROOM / room).min(of_kind(0)).min(of_kind(1))
 }
 
-/// Returns a measure of how much rounding changes a pair of neurons. It is the sum of the squared changes of the
-/// weights and of the squared losses of potential. Potential is lost because the chip rounds each leak.
+/// Returns a measure of how much rounding changes a pair: two neurons of the chip that share a leak and a threshold.
+/// The measure sums the squared changes of the weights and the squared losses of potential. A neuron loses potential
+/// because the chip rounds each leak.
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -384,8 +386,8 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Runs the neuron on the spikes `drives`, and returns the distance of its spikes from those that neuron `neuron`
-    /// has in `fired`.
+    /// Runs the neuron on the spikes in `drives`. Returns the distance between its spikes and the spikes in `fired` of
+    /// the neuron with index `neuron`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let mut is_over = false;

@@ -2,12 +2,12 @@
 
 use super::shape::Shape;
 
-/// A neuron that compares its potential with its threshold once a step, and the weights that lead to the neuron.
-/// Potentials do not include the offset by which the chip lowers the neuron during a step.
+/// A neuron that compares its potential with its threshold once a step, and the weights that lead to the neuron. The
+/// chip lowers the potentials of all neurons by an offset during a step. Potentials are given here without this offset.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
-    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
-    /// inputs. On the chip, a weight is the sum over several rows of synapses.
+    /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
+    /// neuron of the layer follows. On the chip, a weight is the sum over several rows of synapses.
     pub weights: Vec<i16>,
     /// Weight that acts in every step.
     pub bias: i16,
@@ -26,7 +26,7 @@ pub(super) struct GatedNeuron {
 /// The sums of the weights that act on a neuron in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Added {
-    /// Sum of all weights.
+    /// Sum of all weights that act on the neuron in the step.
     pub all: i32,
     /// Sum of the positive weights only. The potential may rise by this sum during the step, because positive weights
     /// may arrive before negative ones.
@@ -86,9 +86,9 @@ impl GatedNeuron {
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// Returns the initial potential and the threshold of the neuron on the chip. The initial potential is the offset
-    /// downwards, of [`below`](Shape::below) rungs. The threshold on the chip is higher than
-    /// [`threshold`](Self::threshold) by [`above`](Shape::above) rungs.
+    /// Returns the neuron's initial potential and threshold on the chip. A rung is an event that raises the potential
+    /// by [`rung`](Self::rung). The initial potential is [`below`](Shape::below) rungs below 0. The threshold on the
+    /// chip is [`above`](Shape::above) rungs higher than [`threshold`](Self::threshold).
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

@@ -4,13 +4,13 @@
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, NEURONS, ROWS};
 
-/// Maximum number of leaks that a step sends while the potential of a neuron at rest is above 0. A step sends as many
-/// leaks below 0, and one at or near 0.
+/// Maximum number of leaks that a step sends while a neuron at rest has a potential above 0. The step sends the same
+/// number of leaks while the potential is below 0, and one leak while it is at or near 0.
 const LEVELS: u16 = 6;
 /// Numbers of rows of synapses to try for each weight.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
-/// Factor by which the number of rungs (events that raise the neurons) exceeds the number that the recording needs. The
-/// excess is for other recordings, in which a step may add more to a potential.
+/// Number of rungs (events that raise the neurons) in a shape, as a multiple of the number that the recording needs.
+/// The spare rungs serve other recordings, in which a step may add more to a potential.
 const SPARE: f64 = 1.5;
 /// Maximum number of rungs (events that raise the neurons) between two leaks.
 const WIDEST: f64 = 12.0;
@@ -19,7 +19,7 @@ const WIDEST: f64 = 12.0;
 /// from firing. Then events called *rungs* raise the neurons, each by a fixed amount, until they can fire.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Number of rows of synapses for each input or sending neuron. A weight is the sum over its rows.
+    /// Number of rows of synapses that each input or sending neuron has. Each of its weights is split over these rows.
     pub rows: u16,
     /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
     /// They follow the rungs that [`below`](Self::below) counts.
