@@ -4,7 +4,7 @@ import { at } from "./dom.js";
 import { axes, plots } from "./drawings.js";
 import { filesOf, together } from "./dropped.js";
 import * as link from "./link.js";
-import { board, listenToLive, video, watch } from "./live.js";
+import { board, connect, listenToLive, video, watch } from "./live.js";
 import { loadChannel, open, whenRead } from "./recording.js";
 import { showFile } from "./render-file.js";
 import { showSearch, showTaken } from "./render-search.js";
@@ -32,10 +32,11 @@ function render() {
   showTaken();
 }
 
-/** Takes files: a clip, a flight's file, or recordings. */
+/** Takes files: a clip, what a board sent, a flight's file, or recordings. */
 function takeFiles(files) {
   if (!files.length) return;
   if (files[0].type.startsWith("video/")) watch(files[0]);
+  else if (files[0].name.endsWith(".link")) connect(files[0]);
   else if (files.length === 1 && files[0].name.endsWith(".toml")) takeFlight(files[0]);
   else openFiles(together(files), files);
 }

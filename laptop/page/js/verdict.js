@@ -11,6 +11,17 @@ function groupOf(field) {
   return /acc/i.test(`${topic}.${field}`) ? (place < 2 ? 1 : 2) : 0;
 }
 
+/** In which units some logs are, by the names of their fields: how many of them are 1 rad/s or 1 m/s²; undefined where nobody knows. */
+const UNITS = [[/gyroADC|gyroUnfilt|deg/, 180 / Math.PI], [/^[xyz]gyro$/, 1000], [/^[xyz]acc$/, 1000 / 9.80665], [/accSmooth/, undefined]];
+
+/** The parameters with which a scheme flew on an axis, in the log's unit; none where that is not known. */
+function flownOn({ flown, parameters }, field) {
+  const [, scale] = UNITS.find(([name]) => name.test(field)) ?? [undefined, 1];
+  if (scale === undefined) return {};
+  const inUnit = (name) => parameters.find((own) => own.name === name)?.unit === "signal";
+  return Object.fromEntries(Object.entries(flown.groups[groupOf(field)]).map(([name, value]) => [name, inUnit(name) ? value * scale : value]));
+}
+
 /** Samples a second of the slowest loop that flew. */
 const SLOWEST = 250;
 const isNear = (own, flown) => (typeof flown === "number" ? Math.abs(Number(own) - flown) <= 0.02 * Math.abs(flown) : own === String(flown));
@@ -20,7 +31,8 @@ export function verdict(setting, { settings }) {
   const { flown, name, parameters } = schemeOf(setting);
   if (!flown) return ["not flown", `${name} was not flown on a drone whose rotors shake it.`];
   if (flown.objection) return ["no", `${name} ${flown.objection}.`];
-  const group = flown.groups[groupOf(state.recording.field)];
+  const group = flownOn(schemeOf(setting), state.recording.field);
+  if (!Object.keys(group).length) return ["not known", `${name} flew in rad/s and m/s²; the unit of this channel is not known.`];
   const { filter, keyframe_ms: keyframes } = setting, corner = filter?.kind === "low-pass" ? filter.corner : null;
   const differ = Object.entries(group).filter(([own, value]) => !isNear(settings[parameters.find((each) => each.name === own)?.key ?? own], value))
     .map(([own, value]) => `${own} ${typeof value === "number" ? fine(value) : value}`);
@@ -28,16 +40,16 @@ export function verdict(setting, { settings }) {
   if (!isNear(keyframes, flown.keyframe_ms)) differ.push(`keyframes every ${flown.keyframe_ms} ms`);
   if (state.recording.rate < 0.99 * SLOWEST) differ.push(`${SLOWEST} samples a second or more`);
   const far = `${fine(flown.beside)} times the error without a code`;
-  return differ.length ? ["not known", `${name} flew, with ${far}, but with ${differ.join(", ")} in rad/s and m/s².`] : ["yes", `Flown just so: no flight was lost, with ${far}.`];
+  return differ.length ? ["not known", `${name} flew, with ${far}, but with ${differ.join(", ")}.`] : ["yes", `Flown just so: no flight was lost, with ${far}.`];
 }
 
 /** The setting with which its scheme flew, on all axes of the sensor. */
 export function asFlown(setting) {
-  const { flown } = schemeOf(setting), { opened, topic, field } = state.recording;
-  const texts = (place) => Object.fromEntries(Object.entries(flown.groups[place]).map(([name, value]) => [name, String(value)]));
+  const scheme = schemeOf(setting), { flown } = scheme, { opened, topic, field } = state.recording;
+  const texts = (own) => Object.fromEntries(Object.entries(flownOn(scheme, own)).map(([name, value]) => [name, typeof value === "number" ? String(Number(value.toPrecision(6))) : value]));
   const fields = [...new Set([field, ...siblings(opened.topics, topic)])];
   return {
-    scheme: setting.scheme, sample: setting.sample, parameters: texts(0), own: Object.fromEntries(fields.map((own) => [own, texts(groupOf(own))])),
+    scheme: setting.scheme, sample: setting.sample, parameters: texts(field), own: Object.fromEntries(fields.map((own) => [own, texts(own)])),
     filter: flown.low_pass === null ? null : { kind: "low-pass", corner: flown.low_pass }, keyframe_ms: flown.keyframe_ms,
   };
 }

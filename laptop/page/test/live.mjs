@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { accessible, opened, saved, settled, spikewire, text, work } from "./harness.mjs";
+import { accessible, drop, opened, saved, settled, spikewire, text, work } from "./harness.mjs";
 import { link } from "./made.mjs";
 
 export const steps = {
@@ -98,6 +98,16 @@ export const steps = {
       assert.equal(await page.evaluate(() => globalThis.asked.baudRate), 921600);
       values += theirs.split("\n").length - 2;
     }
+    // A file of the same bytes says the same.
+    const port = await saved(page, "[data-heard=values]");
+    await page.selectOption("#meaning", "spikes");
+    await drop(page, { name: "captured.link", bytes });
+    await page.waitForFunction(() => /1 lost in 1 gaps/.test(document.getElementById("board-words").textContent) && document.getElementById("connect").disabled === false);
+    assert.equal(await heard("spikes"), spikewire("convert", "--from", "link", "--to", "csv", captured).toString());
+    await page.selectOption("#meaning", "values");
+    await drop(page, { name: "captured.link", bytes });
+    await page.waitForFunction(() => document.getElementById("connect").disabled === false);
+    assert((await saved(page, "[data-heard=values]")).equals(port));
     console.log(`  ${values} values of ${bytes.length} bytes in three ways`);
     await accessible(page, "a board");
     await page.selectOption("#scheme", "grf-slots");

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { accessible, choose, compare, DATA, drop, enter, exported, figure, opened, picture, PICTURES, settled, spikewire, text, work } from "./harness.mjs";
+import { decoded } from "./made.mjs";
 
 export const steps = {
   async "takes steps back and forth, and a flight's file both ways"() {
@@ -109,6 +110,13 @@ export const steps = {
     await settled(other);
     await choose(other, file);
     assert.equal(await other.innerText("#figures"), figures);
+    // In a log of degrees the thresholds are degrees.
+    await drop(other, { name: "decoded.csv", bytes: decoded() });
+    await other.selectOption("#scheme", "sod");
+    await settled(other);
+    await other.click("#as-flown");
+    await settled(other);
+    assert.equal(await other.inputValue("#parameter-threshold"), "5.33685");
     await other.context().close();
     await page.context().close();
   },
