@@ -116,7 +116,7 @@ export const steps = {
     await settled(other);
     await other.click("#as-flown");
     await settled(other);
-    assert.equal(await other.inputValue("#parameter-threshold"), "5.33685");
+    assert.equal(await other.inputValue("#parameter-threshold"), "5.33684");
     await other.context().close();
     await page.context().close();
   },
