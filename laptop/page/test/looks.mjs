@@ -12,6 +12,7 @@ export const steps = {
     const ready = await page.evaluate(() => Number(document.body.dataset.ready));
     console.log(`  ready after ${ready} ms; ${statSync(PAGE).size} bytes`);
     assert.match(await page.textContent("#about"), /gyro_x, 3,627 samples/);
+    assert(statSync(PAGE).size <= 1_500_000, "1.5 MB at most");
     await page.context().close();
   },
 
