@@ -59,8 +59,8 @@ pub struct AdviseRequest {
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
     /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
     pub loop_bandwidth: Option<f64>,
-    /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, codes with which a
-    /// simulated drone flew badly at this loss are not advised.
+    /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, the advice excludes each
+    /// code with which a simulated drone crashed or strayed far at such a loss.
     pub frame_loss: f64,
     /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
     /// on it.
@@ -138,7 +138,8 @@ struct Filtered {
 }
 
 impl Filtered {
-    /// Prepares a filter. Returns `None` if `rate`, in samples a second, does not allow the filter's corner frequency.
+    /// Prepares a filter for a signal of `rate` samples a second. Returns `None` if the filter's corner frequency is
+    /// not possible at this rate.
     fn new(filter: Filter, sample: SampleType, rate: f64) -> Option<Self> {
         let rate = rate as f32;
         drop(filter.start(sample, rate).ok()?);

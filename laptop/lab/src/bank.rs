@@ -46,7 +46,7 @@ impl Bank {
         self.codecs.first().map_or(0, Codec::latency)
     }
 
-    /// Encodes the next samples of all channels, which must be finite, and appends their events.
+    /// Encodes the next samples of all channels, and appends their events. All samples must be finite.
     pub fn encode(&mut self, columns: &[Vec<f64>], events: &mut Vec<Event>) {
         let mut columns = columns.iter();
         self.collect(events, |codec, own| {

@@ -70,7 +70,7 @@ pub(crate) struct Start<'a> {
 /// The outcome of encoding a recording.
 #[cfg_attr(not(feature = "datasets"), allow(dead_code, reason = "a data set reads all fields"))]
 pub(crate) struct Encoded {
-    /// The output, which the caller must finish.
+    /// The output with all spikes. The caller must call its [`finish`](Output::finish), which completes the file.
     pub output: Output,
     /// Names of the channels.
     pub names: Vec<String>,
@@ -105,8 +105,8 @@ fn encode_to(
     Ok((encoded.output, encoded.notes))
 }
 
-/// Encodes channels of a recording, and passes the spikes to the writer that `write` makes. `write` is called once
-/// recording and parameters are known to be valid.
+/// Encodes channels of a recording, and passes the spikes to the writer that `write` makes. Calls `write` only after
+/// the recording and the parameters have proved valid.
 ///
 /// # Errors
 /// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.

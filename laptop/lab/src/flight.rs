@@ -35,8 +35,9 @@ impl Coding {
 /// `rate` samples a second. The flight sends 20 keyframes a second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, if they differ in scheme or in a parameter that is not a plain number,
-/// such as a count or a filter, or if the sample period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, or if their schemes differ. Returns an error if a parameter that must be
+/// equal in all channels, such as a filter or a count, differs. Returns an error if the sample period cannot be
+/// expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
@@ -52,8 +53,8 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
 /// second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, if they differ in a parameter that is not a plain number, such as a count
-/// or a filter, or if the sample period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, or if a parameter that must be equal in all channels, such as a filter or
+/// a count, differs. Returns an error if the sample period cannot be expressed in whole µs.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,

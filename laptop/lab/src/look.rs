@@ -55,7 +55,7 @@ pub enum Verdict {
     TooShort,
     /// All samples are equal.
     Constant,
-    /// The channel moves no more than its own white noise. The drone never flew, or there is no signal at all.
+    /// The channel holds nothing but white noise. The drone never flew, or there is no signal at all.
     OnlyNoise,
     /// More than a fifth of the samples are missing.
     FullOfHoles,
@@ -133,7 +133,7 @@ impl ChannelSummary {
         }
     }
 
-    /// Returns the reason not to tune on the channel, if there is one.
+    /// Returns a text for the user that says why the channel is unfit for tuning. Returns `None` if the channel is fit.
     pub fn objection(&self) -> Option<String> {
         let Self { name, samples, min, rejected, deviation, noise, clipped, .. } = self;
         match self.verdict {

@@ -72,8 +72,9 @@ impl Resolution {
         self.off > 0.0
     }
 
-    /// Returns a sentence that describes the lost steps, and names the sample types that would hold these steps.
-    /// Returns `None` if the sample type loses no steps.
+    /// Returns a sentence for the user if the sample type is too coarse for the column's steps from sample to sample.
+    /// The sentence also names the sample types that hold these steps. Returns `None` if the sample type is fine
+    /// enough.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {

@@ -52,7 +52,8 @@ impl Slope {
         self.part
     }
 
-    /// Returns a sentence for the user that compares both slopes.
+    /// Returns a sentence for the user. The sentence compares the signal's largest slope with the largest slope that
+    /// the code can follow.
     pub fn words(&self) -> String {
         const FEW: f64 = 0.1;
         let Self { scheme, steps_above_threshold: above, part, per, .. } = self;

@@ -10,10 +10,10 @@ use spikewire::link::{Received, Receiver, Withheld};
 use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
-/// Maximum number of channels of a code with one neuron a channel.
+/// Maximum number of channels if each channel has one neuron.
 const MOST: usize = 256;
 
-/// Maximum number of channels of a code with several neurons a channel. 64 channels of 1024 neurons fill all addresses.
+/// Maximum number of channels if each channel has several neurons. 64 channels of 1024 neurons fill all addresses.
 const FEWER: usize = 64;
 
 /// Maximum number of events in one sample, over all channels.

@@ -21,8 +21,8 @@ use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 /// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
 
-/// Seconds between keyframes of a scheme that was not flown in a control loop. A receiver that joins late waits up to
-/// this long.
+/// Seconds between keyframes, if no simulated flights in a control loop give this time. A receiver that joins late
+/// waits for a keyframe up to this long.
 const KEYFRAMES: f64 = 1.0;
 
 /// The advice on all channels together.

@@ -100,7 +100,8 @@ fn without_a_code() -> Option<&'static Flown> {
     BANKS.get("without a code")
 }
 
-/// Returns the flights of the scheme named `scheme`, if it was flown.
+/// Returns the results of the simulated flights with the scheme named `scheme`. Returns `None` if there are no such
+/// flights.
 pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
     BANKS.get(scheme)
 }
@@ -136,7 +137,7 @@ pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
 }
 
 impl Flown {
-    /// Returns the filter that stood before the code in the flights.
+    /// Returns the low-pass filter that preceded the encoder in the simulated flights, if there was one.
     pub(crate) fn filter(&self) -> Option<Filter> {
         self.low_pass.map(|corner| Filter::LowPass { corner })
     }

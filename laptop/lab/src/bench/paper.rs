@@ -6,7 +6,7 @@ pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];
 /// Number of signals in each case.
 pub const TESTS: usize = 1000;
 
-/// The schemes for which the tables have figures, in the order of their columns.
+/// The schemes in the columns of Tables I and II, from left to right.
 pub const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
 
 /// One of the paper's two tables.

@@ -67,7 +67,8 @@ fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, C
     Ok(step_outcome(signal, &scheme, &before, 0.0))
 }
 
-/// Runs the moving window. The encoder is primed with the first window; decoding starts from the first sample.
+/// Runs the moving window. Before the run, the encoder's window is filled with the first samples of the signal.
+/// Decoding starts from the value of the first sample.
 fn moving_window(signal: &[f32]) -> Outcome {
     let window = signal.get(..WINDOW).unwrap_or_default();
     step_outcome(signal, &MOVING_WINDOW, window, first(signal))
@@ -106,8 +107,8 @@ where
     outcome(signal, count(&spikes), error)
 }
 
-/// Runs a rate code as the toolbox does. The toolbox's loops end one sample early: no window contains the last sample,
-/// and the code of the last sample is `last`.
+/// Runs a rate code as the paper's toolbox does. The toolbox's loops end one sample early. Therefore, no window
+/// contains the last sample, and the code of this sample is always `last`.
 fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,

@@ -20,7 +20,7 @@ const SETTINGS: &str = "dataset.json";
 pub(super) const EVENTS: &str = "events";
 pub(super) const VALUES: &str = "values";
 
-/// The side of the split between training and testing on which a flight is.
+/// The part of a data set to which a flight belongs: the part for training or the part for testing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Split {
@@ -46,7 +46,8 @@ pub struct Row {
     pub sha256: String,
     /// SHA-256 of the settings, as in `dataset.json`.
     pub settings: String,
-    /// Side of the split. `None` before the run ends, or if the log was refused.
+    /// Whether the log's flight is for training or for testing. `None` if the log was refused; also `None` for all logs
+    /// until the run ends.
     pub split: Option<Split>,
     /// Reason that the log was refused, if it was.
     pub refused: Option<String>,
@@ -75,7 +76,8 @@ pub struct Row {
     pub spikes: Vec<u64>,
     /// Number of gaps in time.
     pub gaps: u64,
-    /// Number of steps back in time.
+    /// Number of samples whose time is earlier than the time of the preceding sample. Restarts of the clock are not
+    /// counted.
     pub steps_back: u64,
     /// Number of times that the clock restarted.
     pub restarts: u64,

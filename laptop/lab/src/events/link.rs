@@ -117,7 +117,7 @@ pub(super) struct Writer {
     coding: Coding,
     /// Keyframes that wait to be written, all of the same tick and sample type.
     keyframes: Vec<Keyframe>,
-    /// Tick of the latest keyframe, for an empty frame that reports a loss.
+    /// Tick of the latest keyframe. An empty frame that reports a loss or a restart carries this tick.
     tick: Tick,
     /// Number of sender restarts so far. It is also the number of the current session.
     starts: u32,

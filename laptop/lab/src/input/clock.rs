@@ -19,9 +19,9 @@ pub enum Kind {
 pub struct Step {
     /// The kind of the step.
     pub kind: Kind,
-    /// Index of the sample before the step.
+    /// Index of the first of the two samples.
     pub after: u64,
-    /// Time from the sample before the step to the sample after it, in µs; negative for a step back.
+    /// Time from the first to the second sample, in µs; negative for a step back.
     pub microseconds: i64,
 }
 
@@ -150,7 +150,8 @@ impl Clock {
         self.gaps.count
     }
 
-    /// Returns the number of steps back in time. Restarts of the clock are not counted.
+    /// Returns the number of samples whose time is earlier than the time of the preceding sample. Restarts of the clock
+    /// are not counted.
     pub fn steps_back(&self) -> u64 {
         self.backward.count
     }

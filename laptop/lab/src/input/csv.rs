@@ -306,7 +306,7 @@ impl Table {
 }
 
 impl Time {
-    /// Reads the time of a row in ps; returns `None` if a field is not a time.
+    /// Returns the time of a row, in ps. Returns `None` if a field of the time is invalid.
     fn read(&self, record: &ByteRecord) -> Option<i128> {
         let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
         let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;
@@ -491,7 +491,7 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
     }
 }
 
-/// Returns the columns that hold neither times nor counts.
+/// Returns the columns of signals: all columns except that of the times and those that count rows, such as `index`.
 fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
     let is_signal = move |&(index, name): &(usize, &String)| {
         time.is_none_or(|time| time.index != index)

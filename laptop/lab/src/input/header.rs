@@ -55,8 +55,8 @@ impl Start {
         self.text[self.next..].starts_with(b"#")
     }
 
-    /// Returns the delimiter that occurs most often in the first line after the comments. If the line has none, returns
-    /// a blank if the columns are aligned by blanks, otherwise a comma.
+    /// Returns the delimiter that occurs most often in the first line after the comments. If the line contains no
+    /// delimiter, returns a blank for aligned columns and a comma for all others.
     pub(super) fn delimiter(&self) -> u8 {
         let (header, row) = (&self.text[self.line..self.next], &self.text[self.next..]);
         match delimiter(header) {
@@ -66,8 +66,9 @@ impl Start {
         }
     }
 
-    /// Returns the header if a comment holds it: the last comment that contains no number and has as many fields as the
-    /// line after the comments. This line must contain a number. `asked` is the delimiter, if the user gave one.
+    /// Returns the header if it stands in a comment. A comment is the header if it contains no number and has as many
+    /// fields as the line after the comments. This line must contain a number. Of several such comments, the last one
+    /// is the header. `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));

@@ -77,7 +77,7 @@ pub struct ChannelOptions {
     pub topic: Option<String>,
     /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,
-    /// Further fields of the topic.
+    /// Further fields of the topic, read after those in [`field`](Self::field).
     pub fields: Vec<String>,
     /// Samples a second, for a recording without times.
     pub rate: Option<f64>,

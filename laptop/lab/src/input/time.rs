@@ -159,7 +159,7 @@ fn last_word(name: &str) -> Option<(&str, &str)> {
 /// The format of a column's times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// Numbers in the given unit.
+    /// Times as numbers in the given unit.
     Numbers(TimeUnit),
     /// Dates with a time, such as `2024-05-01 12:00:00.005`.
     Dates,

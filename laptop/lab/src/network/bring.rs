@@ -49,10 +49,10 @@ pub struct Brought {
     pub tuned: Figures,
     /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
-    /// The effect of each part of the chip's arithmetic by itself: the network runs in double precision except for this
-    /// part. The number is the share of active steps in which the same outputs fire as in full double precision. A step
-    /// is active if an output fires in either run. The recording is the held-out one or, if there is none, the tuned
-    /// one.
+    /// The effect of each part of the chip's arithmetic. To find the effect, the network runs with this part alone, and
+    /// otherwise in double precision. The number is the share of active steps in which this run and full double
+    /// precision fire the same outputs. A step is active if an output fires in either run. The recording is the
+    /// held-out one. If there is none, it is the recording on which the parameters were tuned.
     pub costs: Vec<(Cost, f64)>,
     /// Share of active steps in which the same outputs fire in double precision and in the training framework. A low
     /// share suggests that the network's file, or the rule of its neurons, was understood wrongly. `None` if the
@@ -75,8 +75,8 @@ pub struct Figures {
     pub active_agreeing: usize,
     /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
     pub windows: usize,
-    /// Number of the windows counted in [`windows`](Self::windows) in which the same outputs have the most spikes in
-    /// double precision and on the chip.
+    /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in double precision
+    /// as on the chip.
     pub windows_agreeing: usize,
     /// Mean number of clock cycles that the chip takes for a step. For the flight controller: mean number of weights
     /// that a step adds.

@@ -23,7 +23,7 @@ pub struct Trained {
 /// Leaky neurons that never fire, and whose potentials are the network's outputs.
 #[derive(Clone, Debug)]
 pub struct Readout {
-    /// Name in the network's file.
+    /// Name of the layer in the network's file.
     pub name: String,
     /// The weights: one row for each output, with one weight for each neuron of the last layer.
     pub weights: Vec<Vec<f64>>,
@@ -66,7 +66,7 @@ impl Readout {
 /// A layer of neurons that fire, and the weights that lead to them.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// Name in the network's file.
+    /// Name of the layer in the network's file.
     pub name: String,
     /// The weights: one row for each neuron, with one weight for each input.
     pub weights: Vec<Vec<f64>>,

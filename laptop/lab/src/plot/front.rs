@@ -61,8 +61,9 @@ impl Panel {
     }
 }
 
-/// Returns the schemes that form most of the common fronts. The scheme with the largest share comes first. At most as
-/// many schemes are returned as there are colours.
+/// Returns the schemes that get a name and a colour, each with its colour. These are the schemes that form the largest
+/// shares of all channels' common fronts, the largest share first. At most as many schemes are returned as there are
+/// colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
     /// A scheme gets a name and a colour only if it forms more than this share of the common fronts.
     const PART: f64 = 0.03;

@@ -142,7 +142,7 @@ struct Found {
     /// Text of the header, in logs that this library wrote.
     header: Option<String>,
     scheme: String,
-    /// Start value in the first message of the topic.
+    /// Value from which decoding starts, as given in the topic's first message.
     start: f64,
     range: (f64, f64),
     neurons: usize,
@@ -262,8 +262,9 @@ const MOST: usize = 1 << 16;
 mod tests {
     use super::Found;
 
-    /// A log with the scheme `gaussian_fields` of the toolbox is decoded as GRF over a range moved down by one field,
-    /// because neuron 7 of the toolbox has the centre of this crate's neuron 6. With the scheme `grf`, the range stays.
+    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The range moves down by
+    /// the distance between two neighbouring fields, because neuron 7 of the toolbox has the same centre as neuron 6 of
+    /// this crate. For a log with the scheme `grf`, the range stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

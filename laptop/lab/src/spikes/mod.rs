@@ -65,7 +65,7 @@ pub trait Spikes {
     /// Returns an error if an item is invalid, or if the end of the file is missing.
     fn next(&mut self) -> Result<Item>;
 
-    /// Returns the place of the latest item, for an error.
+    /// Returns the place of the latest item in the file, to be named in an error.
     fn place(&self) -> Place;
 
     /// Returns notes for the user on the file. The notes are complete once the last item was read.

@@ -20,7 +20,7 @@ pub(crate) struct Spyke {
     pub input: f32,
     /// Name of the scheme in the paper's toolbox.
     pub scheme: &'static str,
-    /// Time of the sample.
+    /// Time of the sample by the recording's clock. If the recording has no times, the time since the first sample.
     pub time: Duration,
 }
 

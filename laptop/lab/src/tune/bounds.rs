@@ -1,5 +1,5 @@
-//! Reports parameters whose best value lies at a bound of the search, unless the scheme allows no value beyond this
-//! bound.
+//! Reports parameters whose best value lies at a bound of the search, so that a better value may lie beyond the bound.
+//! Leaves out a parameter if the scheme allows no value beyond the bound.
 
 use super::Problem;
 use super::space::{Axis, Role, Space};

@@ -8,9 +8,10 @@ use super::chance::Chance;
 /// Number of entries in the memory of scale factors, and in the memory of crossover rates. An entry is a mean of values
 /// that gave points better than their parents.
 const MEMORY: usize = 6;
-/// Number of parents when the budget is spent.
+/// Number of parents at the end of the search. Parents are the points from which new points are made. The number of
+/// parents falls while the budget is spent.
 const FEWEST: usize = 4;
-/// Share of the parents that count as the best. Each new point moves towards one of the best parents.
+/// Share of all parents that count as best parents. Each new point moves towards one of these best parents.
 const BEST: f64 = 0.15;
 
 /// An optimiser that seeks the smallest value of a function. The caller computes the values.
@@ -92,8 +93,8 @@ impl Evolution {
         point
     }
 
-    /// Takes points that `ask` returned, with their values, in the same order. The caller may have moved points, and
-    /// may leave out the last points.
+    /// Takes points that `ask` returned, in the same order, each with its value. The caller may have changed the
+    /// coordinates of these points, and may leave out points at the end.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
         /// Maximum weight of a point that is better than its parent. Up to this maximum, the weight is the amount by
         /// which the function is smaller at the point than at its parent. Without a maximum, points whose parents break

@@ -33,7 +33,8 @@ pub struct Figures {
     pub events_per_second: Option<f64>,
     /// Entropy of the spikes in bits a second: the entropy of a sample's code, times the sample rate.
     pub bits_per_second: Option<f64>,
-    /// Bits a second that raw samples would need if they were rounded to the same RMSE.
+    /// Bits a second that the raw samples need after rounding to a step so large that the rounding error has the code's
+    /// RMSE.
     pub raw_bits_per_second: Option<f64>,
 }
 
@@ -210,8 +211,8 @@ mod tests {
         }
     }
 
-    /// Of two waves with 5 and 40 cycles in 1000 samples, only the slower wave counts below a frequency limit between
-    /// them.
+    /// A signal is the sum of two waves, with 5 and 40 cycles in 1000 samples. With a frequency limit between the two,
+    /// only the slower wave is measured.
     #[test]
     fn a_limit_keeps_what_is_below() {
         let wave = |cycles: f64| move |i: i32| (TAU * cycles * f64::from(i) / 1000.0).sin();

@@ -126,7 +126,9 @@ impl Run<'_> {
         Some((combinations, all))
     }
 
-    /// Returns a function that rates an outcome on `samples` samples by the goal. A smaller result is better.
+    /// Returns a function that rates an outcome (a threshold with its spikes and error) by how well it reaches the
+    /// goal. A smaller rating is better. `samples` is the number of samples in which the spikes and the error were
+    /// counted.
     fn in_order(&self, samples: usize) -> impl Fn(&Outcome) -> f64 + use<> {
         const NOT_ALLOWED: f64 = 1e100;
         let (goal, count) = (self.problem.goal, samples as f64);

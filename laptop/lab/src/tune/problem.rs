@@ -10,9 +10,10 @@ use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
 /// The goal of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The least RMSE with at least this efficiency, in percent.
+    /// The least RMSE among settings that have at least this efficiency, in percent. The efficiency is 100 less the
+    /// number of spikes for every 100 samples.
     LeastError(f64),
-    /// The greatest spiking efficiency, with at most this RMSE.
+    /// The highest efficiency among settings that have at most this RMSE.
     MostEfficient(f64),
     /// The Pareto front: all settings that no other settings beat in both spikes and error.
     Front,
@@ -116,12 +117,12 @@ pub struct Scored {
     pub tally: Tally,
     /// Costs of the settings on a flight controller, such as memory and instructions.
     pub costs: Costs,
-    /// The limits that the settings break, including the one in the goal.
+    /// The limits that the settings break. The goal's limit on RMSE or efficiency is one of the possible limits.
     pub excess: Vec<Excess>,
 }
 
 impl Scored {
-    /// Returns whether the settings keep to all limits, including the one in the goal.
+    /// Returns whether the settings break no limit. The goal's limit on RMSE or efficiency is one of the limits.
     pub fn is_allowed(&self) -> bool {
         self.excess.is_empty()
     }
@@ -187,7 +188,8 @@ impl<'a> Problem<'a> {
         Ok(self.scheme.resolve(sample, options, &known)?)
     }
 
-    /// Encodes and decodes a stretch; returns its events, decoded values and latency.
+    /// Encodes and decodes a stretch (a part of a recording). Returns the events, the decoded values, and the code's
+    /// latency in samples.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.
@@ -216,7 +218,8 @@ impl<'a> Problem<'a> {
         Ok((events, decoded, codec.latency()))
     }
 
-    /// Scores settings on stretches. Returns the counts, and the code's latency in samples.
+    /// Scores settings on stretches (parts of recordings). Returns the counts of samples, spikes and errors, and the
+    /// code's latency in samples.
     ///
     /// # Errors
     /// Returns an error if the settings are invalid.

@@ -39,7 +39,7 @@ pub struct Row {
     pub parameters: BTreeMap<&'static str, Value>,
     /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
-    /// Figures on the stretches that were held out, if there are any.
+    /// Figures on the stretches that were held out from tuning. `None` if no stretch was held out.
     pub held_out: Option<Figures>,
     /// Figures on whole segments of the recordings, each coded in one piece.
     pub whole: Figures,
@@ -74,7 +74,7 @@ pub struct Row {
 pub struct Paper {
     /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
-    /// Figures on the stretches that were held out, if there are any.
+    /// Figures on the stretches that were held out from tuning. `None` if no stretch was held out.
     pub held_out: Option<Figures>,
 }
 
@@ -228,7 +228,8 @@ impl Row {
         flags
     }
 
-    /// Returns comments on the settings of a channel, for the file that holds them.
+    /// Returns the comments, one for each line, for a file with a channel's settings. The comments name the channel,
+    /// the scheme and the sample type, and give the settings' efficiency and RMSE.
     pub fn comments(&self, channel: &str) -> Vec<String> {
         let Self { scheme, sample, tuned_on, held_out, .. } = self;
         let held_out = held_out.map_or(String::new(), |own| {

@@ -25,7 +25,8 @@ pub struct TuneRequest {
     pub sample: SampleType,
     /// Parameters that keep the given values.
     pub fixed: Asked,
-    /// Whether the taps of a filter are searched one by one, rather than by shape, length and sum.
+    /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
+    /// and sum.
     pub free_taps: bool,
     /// Goal of the search. `None` stands for the least error at an efficiency at least as high as that of the paper's
     /// settings.

@@ -50,7 +50,8 @@ pub struct Found {
 pub struct Method {
     /// Seed of the random generator.
     pub seed: u64,
-    /// Whether the taps of a filter are searched one by one.
+    /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
+    /// and sum.
     pub free_taps: bool,
 }
 
@@ -253,9 +254,9 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample, because a high maximum
-    /// costs time. The new value is twice the number of spikes that the signal needs, but at least [`ROOM`], because
-    /// held-out blocks and other recordings may need more.
+    /// Lowers the parameter that limits the number of spikes in a sample, because a high limit costs time. The new
+    /// limit is twice the largest number of spikes in a sample of the signal, but at least [`ROOM`]. Held-out blocks
+    /// and other recordings may need more spikes than this signal.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;

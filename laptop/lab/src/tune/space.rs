@@ -69,7 +69,7 @@ pub(crate) struct Space {
     extent: Extent,
 }
 
-/// The axis along which a scheme compares many values in one pass over the signal.
+/// An axis of the search space. In one pass over the signal, a scheme can compare many values on this axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inner {
     /// Index of the axis in the space.
@@ -126,7 +126,8 @@ impl Space {
         &self.axes
     }
 
-    /// Returns the number on an axis at `place`, from 0 at its lower bound to 1 at its upper bound.
+    /// Converts a place on the axis of index `axis` to the number at this place. `place` runs from 0 at the axis's
+    /// lower bound to 1 at its upper bound.
     pub(crate) fn number(&self, axis: usize, place: f64) -> f64 {
         let Axis { low, high, .. } = self.axes[axis];
         low + place.clamp(0.0, 1.0) * (high - low)
@@ -326,7 +327,8 @@ impl Shaped {
     }
 }
 
-/// Returns the taps of the parameter `filter`, which is given by a shape or as a list.
+/// Returns the taps that the parameter `filter` gives as a list, or as a shape such as `triang:15`. Returns `None` if
+/// the parameter is missing or invalid.
 fn taps_of(asked: &Asked) -> Option<Vec<f64>> {
     match asked.get("filter")? {
         Value::Word(shape) => taps(shape).ok(),
@@ -367,7 +369,8 @@ mod tests {
     use crate::scheme::Scheme;
     use catalogue::run::Asked;
 
-    /// Each scheme accepts the options at the lower bounds of its space, at the upper bounds, and in the middle.
+    /// Each scheme accepts the options at the lower bounds of all axes of its search space, those at the upper bounds,
+    /// and those in the middle.
     #[test]
     fn every_corner_is_understood() {
         for scheme in Scheme::all() {

@@ -215,7 +215,8 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
 
 struct Stepped {
     neuron: Neuron<f64>,
-    /// Factor by which the weights that lead to the neuron must be multiplied.
+    /// Factor for all weights that lead to the neuron. It depends on the neuron's resistance and time constants, and on
+    /// the duration of a step.
     gain: f64,
 }
 

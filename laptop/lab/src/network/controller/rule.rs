@@ -63,15 +63,15 @@ pub enum Decay {
 pub enum Current {
     /// The current after this step's inputs were added to it.
     New,
-    /// The current of the step before.
+    /// The current before this step's decay and inputs.
     Old,
     /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`. With `New`,
     /// a spike adds its weight times `dt / tau`.
     Whole,
 }
 
-/// The parts of the rule for decay, firing and reset that the user gave. The framework may imply further parts; the
-/// others are open.
+/// The parts of the rule for decay, firing and reset that the user gave. The other parts are `None` or empty. The
+/// framework may imply some of these.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The training framework, which implies some of the other parts.
@@ -83,7 +83,7 @@ pub struct Asked {
     pub fires: Option<Fires>,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Option<Decay>,
-    /// Which value of the synaptic current a step adds to the potential.
+    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
     pub current: Option<Current>,
     /// Duration of a step, in seconds.
     pub dt: Option<f64>,
@@ -100,7 +100,7 @@ pub struct Rule {
     pub fires: Fires,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Decay,
-    /// Which value of the synaptic current a step adds to the potential.
+    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
     pub current: Current,
     /// Duration of a step, in seconds.
     pub dt: f64,
@@ -201,8 +201,8 @@ impl Asked {
         })
     }
 
-    /// Returns the rule of a network in JSON: [`PLAIN`], with the reset and the condition for firing that the user or
-    /// the framework gives.
+    /// Returns the rule of a network in JSON. This is [`PLAIN`], unless the user or the framework gives another reset
+    /// or another condition for firing.
     pub(in super::super) fn or_plain(&self) -> Rule {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Rule {

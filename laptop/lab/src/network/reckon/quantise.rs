@@ -439,10 +439,12 @@ impl Quantised {
         *most = most.max(difference);
     }
 
-    /// Sets the outputs' weights, shift and leak, for a network whose outputs are potentials.
+    /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
+    /// spikes.
     ///
     /// # Errors
-    /// Returns an error if the outputs keep too little of their potential to be read.
+    /// Returns an error if the outputs' leak is too strong for the chip. The mean share of the potential that the
+    /// outputs keep in a step then rounds to 0.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
         let mean = keep.iter().sum::<f64>() / keep.len() as f64;

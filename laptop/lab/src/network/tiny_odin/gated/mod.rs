@@ -193,8 +193,8 @@ impl Gated {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
 
-    /// Returns the layer that the chip's neuron `neuron` belongs to, its index in the layer, and its parameters; `None`
-    /// if the neuron is not in use.
+    /// Finds the chip's neuron `neuron` in the network. Returns the index of its layer, its index in this layer, and
+    /// its parameters. Returns `None` if the network does not use the neuron.
     fn at(&self, neuron: usize) -> Option<(usize, usize, &GatedNeuron)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {

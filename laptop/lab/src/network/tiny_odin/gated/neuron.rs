@@ -46,8 +46,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that all
-    /// neurons receive in the step. Each entry is the number of events that have lowered the neurons before the leak.
+    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` has one entry for each leak
+    /// that all neurons receive in the step. The entry is the number of events that lower the neurons before this leak.
     #[inline]
     pub(super) fn step(
         &self,

@@ -56,8 +56,7 @@ struct Choice {
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Number of leaks that the neuron receives after a spike, in addition to those that its reset needs; negative for
-    /// fewer leaks.
+    /// Number of leaks after a spike, in addition to the number that [`own_leaks`] returns. Negative for fewer leaks.
     more: i16,
 }
 

@@ -26,11 +26,11 @@ pub(super) struct Shape {
     pub above: u16,
     /// Number of rungs that raise a neuron at rest from the offset to 0.
     pub below: u16,
-    /// The leaks that all neurons receive in a step, as one list for each step of a cycle that repeats. For each leak,
-    /// the list contains the number of events that have lowered the neurons before it.
+    /// The leaks that all neurons receive: one list for each step. After the last list, the next step uses the first
+    /// list again. A list has one entry for each leak: the number of events that lower the neurons before this leak.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of rungs that raise all neurons again at the end of a step. The neurons that fired then receive leaks
-    /// that no other neurons receive. 0 if spikes subtract the threshold.
+    /// Number of rungs that raise all neurons again at the end of a step. Each neuron that fired in the step then
+    /// receives leaks of its own. 0 if spikes subtract the threshold.
     pub lift: u16,
     /// Number of rungs between two leaks of a step. Several leaks in a step together reduce a potential by a share of
     /// its value. 0 if a step sends fewer than two leaks to all neurons.
