@@ -21,7 +21,7 @@ impl Gated {
         let own_leaks: Vec<u16> = neurons.map(|neuron| neuron.own_leaks).collect();
         see(&Steps {
             inputs: self.inputs as u16,
-            has_bias: self.has_bias,
+            has_bias: self.shape.has_bias,
             rows: self.shape.rows,
             layers: &layers,
             rungs: self.shape.rungs(),
