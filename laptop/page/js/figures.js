@@ -32,7 +32,8 @@ export function showFigures(good, { unit: given, rate }) {
   for (const [name, value] of rows) {
     const row = body.insertRow();
     row.append(element("th", { textContent: name, scope: "row" }));
-    for (const run of good) row.insertCell().textContent = value(run);
+    // Of what is previewed no figure of the whole is known yet.
+    for (const run of good) row.insertCell().textContent = run.isPreview ? "…" : value(run);
   }
   table.replaceChildren(caption, head, body);
 }

@@ -7,6 +7,8 @@ import { changed, choiceOf, current, outcome, state } from "./state.js";
 const LONG = 200_000;
 /** Samples that are coded for a picture, and those before it from which the code comes into step. */
 const MOST = 150_000, LEAD = 2_000;
+/** Columns of pixels that share a piece of a long view: to start a code takes as long as to code some thousand samples. */
+const COLUMNS = 3;
 /** How long a knob rests, in ms, before the whole recording is coded. */
 const REST = 400;
 
@@ -31,9 +33,9 @@ export async function preview(plots, then) {
       // What was found in the whole signal holds for its parts.
       const choice = { ...own, parameters: { ...answer.asked, ...own.parameters } };
       const [start, end] = plots.samples(), from = Math.max(0, start - LEAD);
-      const made = await state.library.ask({ ask: "preview", choice, from, to: end, pieces: plots.columns(), most: MOST });
+      const made = await state.library.ask({ ask: "preview", choice, from, to: end, pieces: Math.ceil(plots.columns() / COLUMNS), most: MOST });
       if (answer !== outcome().answer) break;
-      recording.preview = { of: answer, run: { ...answer, isPreview: true, neurons: made.neurons, slots: made.slots, arrays: made.arrays, pyramid: new Pieces(made.arrays.decoded, made) } };
+      recording.preview = { of: answer, run: { ...answer, isPreview: true, isPart: made.length < made.stride, neurons: made.neurons, slots: made.slots, arrays: made.arrays, pyramid: new Pieces(made.arrays.decoded, made) } };
       changed();
     } while (isStale);
   } catch {

@@ -73,9 +73,9 @@ export function showSettings() {
   showBank(setting);
   fail("error", error);
   render((answer?.notes ?? []).map((words) => html`<li>${words}</li>`), at("notes"));
-  at("verdict").textContent = answer ? verdict(setting, answer)[1] : "";
+  at("verdict").textContent = answer && recording.preview?.of !== answer ? verdict(setting, answer)[1] : "";
   const good = coded();
-  render([entry("signal", "--signal"), ...good.map(({ name, variable }) => entry(`${name}, decoded`, variable))], at("legend"));
+  render([entry("signal", "--signal"), ...good.map(({ name, variable, isPart }) => entry(`${name}, decoded${isPart ? " in part" : ""}`, variable))], at("legend"));
   showFigures(good, recording);
   plots.setRuns(good, state.hidden);
   spectrum.draw();
