@@ -30,6 +30,7 @@ pub fn build_with(
 /// Builds the package's programs for the board; returns the directory with the images.
 pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
     let mut cargo = building("build", &format!("--package {package}"), board)?;
+    cargo.args(programs.iter().flat_map(|program| ["--bin", program]));
     kept(&mut cargo, package, programs, board)
 }
 
