@@ -221,11 +221,14 @@ class Installed:
             wanted[sample].append((int(row["address"]), slot, int(row["polarity"])))
 
         writer = peer.writer("/imu", peer.types.Imu, peer.reliable)
-        spikes = peer.reader("/spikes", peer.types.Spikes)
-        values = [peer.reader(f"/{node}/decoded", peer.types.Values) for node in ("flight", "decode")]
+        spikes = peer.reader("/six/spikes", peer.types.Spikes)
+        values = [peer.reader(f"/six/{node}/decoded", peer.types.Values) for node in ("flight", "decode")]
         every = [spikes, *values]
         arguments = launched(self.launch.with_name("flight.launch.xml"), {"flight": str(file), "topic": "/imu"})
-        with self.node("flight", {}, *arguments) as node, self.node("decode", {"flight": str(file)}) as decoder:
+        with (
+            self.node("flight", {}, *arguments, namespace="/six") as node,
+            self.node("decode", {"flight": str(file)}, namespace="/six") as decoder,
+        ):
             until(lambda: peer.has_readers(writer) and all(one.is_matched() for one in every), "discovery")
             # A node hears its publisher a little later than that hears the node.
             time.sleep(2.0)
