@@ -27,8 +27,9 @@ use std::time::Instant;
 /// Search a scheme's parameters for a goal: the least RMSE at a given spiking efficiency, the greatest efficiency at a
 /// given RMSE, or the Pareto front of both.
 ///
-/// Some blocks of each log are held out, and the settings found are scored on them too. Settings are scored with the
-/// codec that flies, in the sample type given. Parameters that are given stay fixed; the others are searched. The
+/// The spiking efficiency is 100 less the number of spikes for every 100 samples. Some blocks of each log are held out,
+/// and the settings found are scored on these blocks too. Settings are scored with the encoder and decoder that run on
+/// the drone, in the sample type of --sample. Parameters that are given stay fixed; the others are searched. The
 /// default goal is the least RMSE at the efficiency that the settings of Dupeyroux et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -58,14 +59,14 @@ pub(crate) struct Tune {
     /// Goal: greatest efficiency, with at most this RMSE, in the signal's unit
     #[arg(long, value_name = "RMSE", conflicts_with = "min_efficiency", value_parser = lab::input::above_zero, help_heading = "Goal")]
     max_rmse: Option<f64>,
-    /// Goal: the Pareto front, all settings that no other settings beat in both RMSE and efficiency; drawn to this
-    /// `.svg` or `.png`
+    /// Goal: the Pareto front, drawn in this `.svg` or `.png` file. The front consists of the settings that no other
+    /// settings beat in both RMSE and efficiency
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["min_efficiency", "max_rmse", "emit"], help_heading = "Goal")]
     front: Option<PathBuf>,
     /// Maximum RAM of a channel's encoder, in bytes
     #[arg(long, value_name = "BYTES", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_ram: Option<f64>,
-    /// Maximum of the mean number of instructions that a sample takes to encode on --core
+    /// Maximum of the mean number of instructions that the core given by --core needs to encode a sample
     #[arg(long, value_name = "COUNT", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_instructions: Option<f64>,
     /// Maximum delay of the code, in samples
@@ -74,17 +75,18 @@ pub(crate) struct Tune {
     /// Maximum number of events a second
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
-    /// Core on which instructions were counted, for costs and limits: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
+    /// Core on which instructions are counted, for the reported costs and for --max-instructions: Cortex-M0 (`M0`) or
+    /// Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
-    /// Share of the blocks that is held out, 0 for none
+    /// Share of the blocks to hold out; 0 holds out none
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
     /// Number of blocks of equal length into which each log is cut
     #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
-    /// Stop after this many seconds in total, and keep the best settings so far, which then depend on the machine's
-    /// speed; Ctrl-C stops too
+    /// Stop after this many seconds in total, and keep the best settings found by then. With this limit, the result
+    /// depends on the machine's speed. Ctrl-C stops the search too
     #[arg(long, value_parser = lab::input::above_zero, help_heading = "Search")]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel
@@ -93,10 +95,10 @@ pub(crate) struct Tune {
     /// Seed of the search; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>, help_heading = "Search")]
     seed: u64,
-    /// Search even if the log is a bad guide: nothing but noise, never in the air, full of gaps, or clipped
+    /// Search even if the log is unsuitable: nothing but noise, never in the air, full of gaps, or clipped
     #[arg(long, help_heading = "Search")]
     anyway: bool,
-    /// Also report the RMSE of the error's part below this frequency, such as `40Hz`
+    /// Also report the RMSE after the error is low-pass filtered at this frequency, such as `40Hz`
     #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     below: Option<f64>,
     /// Form in which to write the settings: a constant in Rust, a file for --params, or a flight file (`flight.toml`)
@@ -137,7 +139,7 @@ fn hertz(text: &str) -> lab::Result<f64> {
 /// The value of `--emit`: the form in which settings are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Emit {
-    /// A constant with parameters and taps, which compiles without std
+    /// A Rust constant with parameters and filter coefficients, which compiles without std
     Rust,
     /// A file of parameters, for --params
     Toml,
@@ -151,8 +153,8 @@ struct Fixed(Asked);
 
 option_group!(Fixed, |command| augment(command, is_fixable), |matches| given(matches, is_fixable));
 
-/// Returns whether an option can fix this parameter. `seed` cannot be fixed, because `--seed` is the seed of the
-/// search.
+/// Returns whether the command line can fix this parameter. A scheme's `seed` cannot be fixed, because `--seed` is the
+/// seed of the search.
 fn is_fixable(parameter: &Parameter) -> bool {
     parameter.name != "seed"
 }
@@ -213,7 +215,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// Converts the options to a request to the library; the request does not contain the logs yet.
+    /// Converts the options to a request to the library. The request holds no logs yet.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Schemes::One(scheme) => vec![scheme],
@@ -307,7 +309,8 @@ impl Tune {
         Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
     }
 
-    /// Prints the tables on standard output, or on standard error if the settings themselves go to standard output.
+    /// Prints a table of the tuned settings for each channel, or JSON with `--json`. The tables go to standard output.
+    /// They go to standard error if `--emit` writes the settings to standard output.
     fn tell(&self, results: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
         if self.json {
             let channels: serde_json::Map<String, serde_json::Value> = results
@@ -336,9 +339,9 @@ impl Tune {
 /// Length of the progress bar in steps.
 const BAR: u64 = 1000;
 
-/// Returns the position of the progress bar, 0 to [`BAR`]. The search has a budget of settings and a budget of time.
-/// `settings` and `time` are the used shares of the two. The bar shows the larger share, because either budget ends the
-/// search.
+/// Returns the position of the progress bar, 0 to [`BAR`]. `settings` is the number of scored settings divided by its
+/// maximum. `time` is the elapsed time divided by the time limit. The bar shows the larger quotient, because the search
+/// ends at the limit that is reached first.
 fn position(settings: f64, time: f64) -> u64 {
     (settings.max(time).clamp(0.0, 1.0) * BAR as f64) as u64
 }

@@ -1,4 +1,5 @@
-//! Searches settings. If the scheme can list its outcomes, the search is exact; otherwise, it uses evolution.
+//! Searches for settings. If the scheme can list the outcomes of all thresholds, the search is exact; otherwise, the
+//! search is an evolution.
 //!
 //! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
 //! every machine.
@@ -21,7 +22,7 @@ pub struct Budget<'a> {
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Called with the number of settings scored so far, and the best of them.
+    /// Called after each batch with the number of settings scored so far, and the best of them.
     pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
 }
 
@@ -33,13 +34,14 @@ pub struct Found {
     pub front: Vec<Scored>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were listed and compared in exact arithmetic, if the scheme can list them.
+    /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
+    /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether every possible outcome was listed.
+    /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
-    /// The bounds of the search at which the best settings lie, if the scheme allows values beyond these bounds.
+    /// The parameters whose best value lies at a bound of the search, if the scheme allows values beyond this bound.
     pub bounds: Vec<Bound>,
 }
 
@@ -48,7 +50,8 @@ pub struct Found {
 pub struct Method {
     /// Seed of the random generator.
     pub seed: u64,
-    /// Whether the taps of a filter are searched one by one.
+    /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
+    /// and sum.
     pub free_taps: bool,
 }
 
@@ -56,14 +59,15 @@ pub struct Method {
 pub(super) const BATCH: usize = 64;
 /// Smallest and largest number of parents with which an evolution starts.
 const PARENTS: (usize, usize) = (10, 100);
-/// Efficiencies in percent. To find a Pareto front, settings are searched for each of these efficiencies.
+/// Efficiencies in percent: 100 less the number of spikes for every 100 samples. To find a Pareto front, the search
+/// seeks the settings with the least error for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
-/// Smallest maximum that [`Run::tighten`] sets.
+/// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
 /// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
 
-/// Searches the best settings for a problem within a budget.
+/// Searches for the best settings for a problem within a budget.
 pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     let rounded: Vec<Vec<f64>> =
         problem.train.iter().map(|stretch| stretch.rounded(problem.sample)).collect();
@@ -116,7 +120,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
 pub(super) struct Run<'a> {
     pub problem: &'a Problem<'a>,
     pub budget: &'a Budget<'a>,
-    /// The stretches to tune on, rounded to the sample type.
+    /// Samples of the stretches (parts of the recording) that are used for tuning, rounded to the sample type.
     pub rounded: &'a [Vec<f64>],
     pub found: Found,
     least: f64,
@@ -133,8 +137,8 @@ impl Run<'_> {
         self.found.is_cut_short
     }
 
-    /// Scores options until the budget is spent, and keeps the best and the Pareto front. Returns each score, or `None`
-    /// for invalid options.
+    /// Scores the first entries of `all`, as many as the budget allows. Records the best settings and those that may be
+    /// on the Pareto front. Returns the score of each entry that was tried, or `None` for an invalid entry.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;
@@ -168,7 +172,8 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Evolves settings for a goal, until `until` settings have been scored in the whole search.
+    /// Searches for settings that meet a goal by evolution, until `until` settings have been scored in the whole
+    /// search.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
         let own = until.saturating_sub(self.found.evaluated);
         let before = self.found.evaluated;
@@ -198,9 +203,10 @@ impl Run<'_> {
         }
     }
 
-    /// Moves each point along one axis to the best of several positions, which the scheme compares in a single pass
-    /// over the signal. The positions span the whole axis, or the share `width` of the axis around the point. Leaves
-    /// the points as they are if the scheme cannot compare values in this way.
+    /// Moves each point along one axis to the best of several positions. The scheme encodes the signal for all
+    /// positions in a single pass. If `width` is given, the positions lie around the point, within this share of the
+    /// axis. Otherwise, the positions span the whole axis. Leaves the points as they are if the scheme cannot process
+    /// several values in one pass.
     fn swept(
         &self,
         space: &Space,
@@ -248,9 +254,9 @@ impl Run<'_> {
         points
     }
 
-    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample. The parameter becomes
-    /// twice the number that the signal needs, because a higher maximum costs time. It stays at [`ROOM`] or above,
-    /// because held-out blocks and other recordings may jump further.
+    /// Lowers the parameter that limits the number of spikes in a sample, because a high limit costs time. The new
+    /// limit is twice the largest number of spikes in a sample of the signal, but at least [`ROOM`]. Held-out blocks
+    /// and other recordings may need more spikes than this signal.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;

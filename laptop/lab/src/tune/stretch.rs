@@ -7,7 +7,7 @@ use crate::trial::Recording;
 use catalogue::run::{Given, SampleType};
 use std::ops::Range;
 
-/// Consecutive samples that are coded in one piece, and the ranges of samples that are scored.
+/// Consecutive samples that are coded in one piece, and the ranges of those samples that are scored.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// The samples that are coded.
@@ -55,7 +55,7 @@ impl Stretch {
     }
 }
 
-/// The part of a recording that is held out.
+/// How much of a recording is held out.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldOut {
     /// Number of blocks into which the recording is cut.
@@ -64,18 +64,19 @@ pub struct HoldOut {
     pub part: f64,
 }
 
-/// Fewest samples in a block.
+/// Minimum number of samples in each block of a recording.
 const SHORTEST: usize = 20;
 
-/// Offset of the held-out blocks, which are spread evenly. With this offset, neither the first nor the last block is
-/// held out.
+/// Offset of the held-out blocks, which are spread evenly. If 30 % of 20 blocks are held out, neither the first nor the
+/// last block is among them.
 const OFFSET: f64 = 0.35;
 
-/// Cuts a recording into blocks. Returns the stretches to tune on, and the stretches whose held-out blocks are scored.
+/// Cuts a recording into blocks. Returns the stretches to tune on, and the stretches in which only the held-out blocks
+/// are scored.
 ///
 /// Adjacent blocks that are tuned on form one stretch. Held-out blocks are coded as in flight: each segment is coded in
 /// one piece, including the blocks to tune on, and only the held-out blocks are scored. If each block were coded alone,
-/// a code that drifts would start it from the right value, and its drift would not show.
+/// a code that drifts would start each block from the right value, and its drift would not show.
 ///
 /// # Errors
 /// Returns an error if the blocks are too short, or if no block is left to tune on.
@@ -129,8 +130,8 @@ mod tests {
     use super::{HoldOut, Stretch, cut};
     use crate::trial::Recording;
 
-    /// If 40 % of 5 blocks are held out, these are the second and the fifth block. They are coded together with the
-    /// blocks before them.
+    /// Cuts a recording into 5 blocks, and holds out 40 % of them: the second and the fifth block. Each is coded
+    /// together with the blocks before it.
     #[test]
     fn what_is_held_out_is_coded_with_what_is_before_it() {
         let values: Vec<f64> = (0..200).map(f64::from).collect();
