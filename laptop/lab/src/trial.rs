@@ -11,6 +11,7 @@ use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings, Shap
 use std::ops::Range;
 
 /// One channel of a recording, in memory.
+#[derive(Clone)]
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,

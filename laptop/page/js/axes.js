@@ -1,11 +1,11 @@
 // The other axes of the sensor: each with its spikes by the settings that are open, below the channel that is looked at.
 
-import { at, css, element, fine, fixed } from "./dom.js";
+import { css, element, fine, fixed } from "./dom.js";
 import { siblings } from "./channels.js";
 import { Library } from "./library.js";
-import { Times } from "./plots.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
-import { loadRequest, openRequest, state } from "./state.js";
+import { choiceOf, loadRequest, openRequest, state } from "./state.js";
+import { Times } from "./times.js";
 
 /** Longer recordings show one channel alone: each axis takes 24 bytes a sample. */
 const MOST_SAMPLES = 3_000_000;
@@ -23,7 +23,7 @@ export class Axes {
 
   /** What was open is gone. */
   forget() {
-    const { opened } = state, topic = at("topic").value;
+    const { opened, channel: { topic } } = state;
     if (this.#of && this.#of.opened === opened && this.#of.topic === topic) return;
     for (const { library } of this.#all) library.stop();
     this.#all = [];
@@ -33,7 +33,7 @@ export class Axes {
 
   /** Runs a setting on the other axes of the topic that is open, and draws them. */
   async show(setting) {
-    const { opened, recording } = state, topic = at("topic").value, shown = at("field").value;
+    const { opened, recording } = state, { topic, field: shown } = recording;
     this.#setting = structuredClone(setting);
     if (!opened || recording.samples > MOST_SAMPLES) return;
     if (!this.#of) {
@@ -56,14 +56,13 @@ export class Axes {
   async #run(axis, setting) {
     try {
       if (!axis.recording) {
-        const { opened } = state, acceptCut = at("accept-cut").checked;
-        await axis.library.ask(openRequest(opened, acceptCut), { files: opened.files });
-        const channel = { topic: at("topic").value, field: axis.field, rate: at("rate").value, skip: at("skip").checked };
-        axis.recording = await axis.library.ask(loadRequest(channel, acceptCut));
+        const { opened, channel } = state;
+        await axis.library.ask(openRequest(opened), { files: opened.files });
+        axis.recording = await axis.library.ask(loadRequest({ ...channel, field: axis.field }));
         axis.times = new Times(axis.recording.samples, axis.recording.rate, axis.recording.arrays.times);
         axis.signal = new Pyramid(axis.recording.arrays.values);
       }
-      axis.answer = await axis.library.ask({ ask: "run", choice: setting });
+      axis.answer = await axis.library.ask({ ask: "run", choice: choiceOf(setting, axis.field) });
       axis.decoded = new Pyramid(axis.answer.arrays.decoded);
       const { spikes, spikes_per_second: rate, rmse } = axis.answer.figures;
       axis.words.textContent = `${axis.field}: ${rate === null ? `${fixed(spikes, 0)} spikes` : `${fixed(rate, 1)} spikes a second`}, RMSE ${fine(rmse)}`;
@@ -81,10 +80,7 @@ export class Axes {
     axis.canvas = element("canvas");
     axis.button = element("button", { type: "button", className: "axis" });
     axis.button.append(axis.words, axis.canvas);
-    axis.button.addEventListener("click", () => {
-      at("field").value = axis.field;
-      at("field").dispatchEvent(new Event("change"));
-    });
+    axis.button.addEventListener("click", () => this.onChoice(axis.field));
     return axis.button;
   }
 

@@ -1,8 +1,8 @@
 // Which channels a flight's log was opened for: the gyroscope's and the accelerometer's axes, found by their names and rates.
 
 /** How the axes of each sensor are called, behind their topic and a dot. */
-const GYRO = /gyr|angular_?velocity|angular_?rate|rotation_?rate|body_?rate|(^|[._/\s])(w|omega)_?([a-z_]*_)?[xyz]($|[\s[_(])/;
-const ACCEL = /acc(el|smooth|adc|[xyz_.[]|$)|linear_?acceleration|specific_?force|(^|[._/\s])a_?([a-z_]*_)?[xyz]($|[\s[_(])|[xyz]acc$/;
+const GYRO = /gyr|angular_?velocity|angular_?rate|rotation_?rate|body_?rate|(^|[._/\s])(w|omega)_?([a-z_]*_)?[xyz]($|[\s[_(,])/;
+const ACCEL = /acc(el|smooth|adc|[xyz_.[]|$)|linear_?acceleration|specific_?force|(^|[._/\s])a_?([a-z_]*_)?[xyz]($|[\s[_(,])|[xyz]acc$/;
 /** What has such a name and is not what the sensor said. */
 const OTHER = /header|seq$|iteration|counter|time|stamp|setpoint|desired|target|bias|varian|integral|clip|temp|device|error|_dt|scale|offset|status|flag|saturat|calib|thrust|unfilt|noise|std|samples|priority|health|_sp\b/;
 const OTHER_TOPIC = /setpoint|bias|status|fifo|selection|debug|calib|health|allocat/;

@@ -1,11 +1,9 @@
 // The library in threads of its own, so that the page never waits.
 
+import { decompress } from "fzstd";
+
 /** The library's module, unpacked and compiled once for all threads. */
-const compiled = (async () => {
-  const packed = Uint8Array.from(atob(WASM), (letter) => letter.charCodeAt(0));
-  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
-})();
+const compiled = WebAssembly.compile(decompress(Uint8Array.from(atob(WASM), (letter) => letter.charCodeAt(0))));
 
 const source = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
 

@@ -10,6 +10,9 @@ use std::sync::LazyLock;
 /// because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
+/// The parameters with which the schemes flew, as JSON; a symbolic link like `verdicts.json`.
+const FOUND: &str = include_str!("banks.json");
+
 /// Largest attitude error with which a scheme counts as fit to fly, as a multiple of the error without a code.
 /// Without a code, the controller reads the samples themselves.
 const WITHIN: f64 = 1.2;
@@ -60,6 +63,38 @@ pub(crate) struct Error {
 static BANKS: LazyLock<BTreeMap<String, Flown>> = LazyLock::new(|| {
     serde_json::from_str::<Figures>(FIGURES).map(|figures| figures.banks).unwrap_or_default()
 });
+
+/// What the simulated flights show of a scheme, and the settings that they had.
+#[derive(Debug, Serialize)]
+pub struct Verdict {
+    /// The reason not to fly the scheme with 1 % of its frames lost; `None` if it flies.
+    pub objection: Option<String>,
+    /// Mean ratio of the attitude error to that without a code; `None` if no flight came to its end.
+    pub beside: Option<f64>,
+    /// Corner frequency of the low-pass before the code, in Hz; `None` without a low-pass.
+    pub low_pass: Option<f32>,
+    /// Time between keyframes, in ms; `None` if the code needs none.
+    pub keyframe_ms: Option<f64>,
+    /// Parameters for turn rates, for sideways forces and for the force along the thrust, in rad/s and m/s².
+    pub groups: Vec<serde_json::Value>,
+}
+
+/// Returns the verdict on the scheme named `scheme`, if it was flown.
+pub fn verdict(scheme: &str) -> Option<Verdict> {
+    #[derive(Deserialize)]
+    struct Found {
+        groups: Vec<serde_json::Value>,
+    }
+    let own = flown(scheme)?;
+    let mut found = serde_json::from_str::<BTreeMap<String, Found>>(FOUND).ok()?;
+    Some(Verdict {
+        objection: objection(scheme, LOSSES[0]),
+        beside: without_a_code().and_then(|plain| own.beside(plain)),
+        low_pass: own.low_pass,
+        keyframe_ms: own.keyframe_ms,
+        groups: found.remove(scheme).map(|own| own.groups).unwrap_or_default(),
+    })
+}
 
 fn without_a_code() -> Option<&'static Flown> {
     BANKS.get("without a code")
@@ -135,7 +170,7 @@ impl Flown {
 
 #[cfg(test)]
 mod tests {
-    use super::{BANKS, LOSSES, flown, objection, without_a_code};
+    use super::{BANKS, LOSSES, flown, objection, verdict, without_a_code};
     use crate::scheme::Scheme;
 
     #[test]
@@ -155,6 +190,20 @@ mod tests {
             count += 1;
         }
         assert!(count > 0 && count < BANKS.len(), "{count} of {}", BANKS.len());
+    }
+
+    #[test]
+    fn each_flown_scheme_has_the_parameters_of_its_bank() {
+        let own = verdict("sod").unwrap();
+        assert_eq!((own.objection, own.low_pass, own.keyframe_ms), (None, Some(80.0), Some(200.0)));
+        for scheme in Scheme::all().filter(|own| flown(own.name()).is_some()) {
+            let own = verdict(scheme.name()).unwrap();
+            assert_eq!(own.groups.len(), 3, "{}", scheme.name());
+            for name in own.groups[0].as_object().unwrap().keys() {
+                assert!(scheme.info().parameter(name).is_some(), "{} {name}", scheme.name());
+            }
+        }
+        assert!(verdict("bernoulli").is_none());
     }
 
     #[test]

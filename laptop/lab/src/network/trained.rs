@@ -120,6 +120,21 @@ impl Layer {
         self.weights.first().map_or(0, Vec::len)
     }
 
+    /// Replaces a reset that no chip has by the one that is most like it.
+    pub(super) fn reset_by_chip(self) -> Self {
+        let reset = match self.reset {
+            Reset::ToValueHeld => Reset::ToValue,
+            Reset::SubtractNoDelay => Reset::Subtract,
+            reset => reset,
+        };
+        Self { reset, ..self }
+    }
+
+    /// Returns whether no chip has this reset.
+    pub(super) fn has_own_reset(&self) -> bool {
+        matches!(self.reset, Reset::ToValueHeld | Reset::SubtractNoDelay)
+    }
+
     fn check(&self) -> Result<()> {
         let Self { weights, recurrent, bias, neurons, .. } = self;
         let first = self.inputs();

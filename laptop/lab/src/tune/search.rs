@@ -1,8 +1,8 @@
-//! Searches for settings. If the scheme can list the outcomes of all thresholds, the search is exact; otherwise, the
-//! search is an evolution.
+//! Searches for the settings of a scheme. The search is exact if the scheme can list the number of spikes and the error
+//! for all thresholds. Otherwise, the search is an evolution.
 //!
-//! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
-//! every machine.
+//! The length of a search is counted in settings scored with the codec, not in seconds. Therefore the result is the
+//! same on every machine.
 
 use super::Bound;
 use super::bounds::bounds;
@@ -37,7 +37,7 @@ pub struct Found {
     /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
     /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether every possible outcome of a threshold was listed.
+    /// Whether the listed outcomes are all outcomes that thresholds can have.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
@@ -45,7 +45,7 @@ pub struct Found {
     pub bounds: Vec<Bound>,
 }
 
-/// Options of a search that do not belong to its problem.
+/// Options of a search that its `Problem` does not contain.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
     /// Seed of the random generator.
@@ -64,7 +64,8 @@ const PARENTS: (usize, usize) = (10, 100);
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
-/// Value of settings that cannot be built. It is worse than the value of any other settings.
+/// Value of the searched function for invalid settings, for which no codec can be built. The search seeks small
+/// values, and all other settings have smaller ones.
 const NONE: f64 = 1e30;
 
 /// Searches for the best settings for a problem within a budget.
@@ -172,8 +173,8 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Searches for settings that meet a goal by evolution, until `until` settings have been scored in the whole
-    /// search.
+    /// Runs an evolution that searches for settings for `goal`. The evolution ends when the whole search has scored
+    /// `until` settings, or when the budget is spent.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
         let own = until.saturating_sub(self.found.evaluated);
         let before = self.found.evaluated;

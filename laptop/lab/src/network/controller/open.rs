@@ -14,9 +14,9 @@ pub enum Choice {
     Reset,
     /// Whether a neuron fires at its threshold or only above it.
     Fires,
-    /// How a time constant becomes the factor by which a step multiplies a potential.
+    /// The formula that turns a time constant into the factor by which a step multiplies a potential.
     Decay,
-    /// Whether the potential takes the current of this step or of the step before.
+    /// Whether a step adds its own current to the potential, or the current of the step before.
     Current,
     /// The duration of a step, in seconds.
     Step,

@@ -5,8 +5,9 @@ use crate::Spot;
 use crate::network::fault::{FitKind, Result, ensure};
 
 const NEURONS: usize = 256;
-const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
+/// Largest difference between the shares of a potential that two neurons keep in a step, if one leak serves both.
+const SAME: f64 = 1e-4;
 
 /// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which
 /// shares a leak and a threshold. The network's neurons in a pair therefore belong to the same layer, and their trained
@@ -14,7 +15,7 @@ const OUTPUTS: usize = 16;
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
-    /// that stays free because a layer has an odd number of neurons.
+    /// that stays free because the other neuron of its pair has a leak of its own, or a layer an odd number of neurons.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
     /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
     by_layer: Vec<Vec<usize>>,
@@ -25,11 +26,22 @@ fn part(layer: &str) -> Spot {
 }
 
 impl Places {
+    /// Number of the chip's inputs.
+    pub(super) const INPUTS: usize = 256;
+
     /// Assigns all neurons of a network to the chip.
     ///
     /// # Errors
     /// Returns an error if the chip has too few neurons, inputs or outputs.
     pub(super) fn new(trained: &Trained, has_bias: bool) -> Result<Self> {
+        // Neurons of different leaks get a pair each, unless the chip is too small for that.
+        let apart = Self::placed(trained, has_bias, SAME);
+        if apart.is_ok() { apart } else { Self::placed(trained, has_bias, f64::INFINITY) }
+    }
+
+    /// Assigns all neurons of a network to the chip. Two neurons of a layer form a pair if the shares of the potential
+    /// that they keep in a step differ by at most `most`.
+    fn placed(trained: &Trained, has_bias: bool, most: f64) -> Result<Self> {
         let mut neurons = Vec::new();
         let mut by_layer = Vec::new();
         for (at, layer) in trained.layers.iter().enumerate() {
@@ -41,7 +53,13 @@ impl Places {
                 neurons.push(None);
             }
             let mut own = vec![0; order.len()];
+            let mut last = 0.0;
             for neuron in order {
+                let keep = layer.neurons[neuron].keep;
+                if !neurons.len().is_multiple_of(2) && keep - last > most {
+                    neurons.push(None);
+                }
+                last = keep;
                 own[neuron] = neurons.len();
                 neurons.push(Some((at, neuron)));
             }
@@ -51,8 +69,8 @@ impl Places {
             by_layer.push(own);
         }
         let inputs = trained.inputs() + usize::from(has_bias);
-        let kind = || FitKind::Inputs { most: INPUTS, inputs, has_bias };
-        ensure!(inputs <= INPUTS, kind().at(part(&trained.layers[0].name)));
+        let kind = || FitKind::Inputs { most: Self::INPUTS, inputs, has_bias };
+        ensure!(inputs <= Self::INPUTS, kind().at(part(&trained.layers[0].name)));
         let (name, outputs) = match (&trained.readout, trained.layers.last()) {
             (Some(readout), _) => (readout.name.as_str(), readout.weights.len()),
             (None, Some(layer)) => (layer.name.as_str(), layer.neurons.len()),

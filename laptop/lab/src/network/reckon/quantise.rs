@@ -1,4 +1,4 @@
-//! Quantises a network from double precision to the integers of `ReckOn`.
+//! Quantises a network from double precision to the integers of the chip `ReckOn`.
 
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
@@ -10,12 +10,17 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The integer that stands for a factor of 1, by which a step multiplies a neuron's potential.
+/// The integer that stands for a decay factor of 1. Each step multiplies a neuron's potential by its decay factor.
 const KEEP: f64 = 32_768.0;
-/// The integer that stands for a factor of 1, by which a step multiplies an output's potential.
+/// The integer that stands for a decay factor of 1 of an output. Each step multiplies the output's potential by this
+/// factor.
 const OUTPUT_KEEP: f64 = 128.0;
-/// Smallest factor by which a step can multiply the potential of the chip's neurons.
+/// Smallest factor by which a tick can multiply the potential of the chip's neurons.
 const LEAST_KEEP: f64 = 0.875;
+/// Maximum number of ticks in a step.
+const MOST_TICKS: u32 = 16;
+/// Factor by which gates lower a neuron more than the recording needs.
+const SPARE: f64 = 1.5;
 const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
@@ -28,8 +33,8 @@ const SHIFTS: u8 = 8;
 /// Weight, left shift and decay factor of an output that reports the spikes of one neuron. Each step halves the
 /// output's potential, so that the potential's bits say in which of the last steps the neuron fired.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// For an output that reports the spikes of one neuron: the bit of its potential that is 1 if the neuron fired in the
-/// latest step.
+/// Number of a bit in the potential of an output that reports the spikes of one neuron. The bit is 1 if the neuron
+/// fired in the latest step.
 pub(super) const FIRED: u32 = 12;
 
 /// A network in the integers of `ReckOn`.
@@ -45,12 +50,12 @@ pub(super) struct Quantised {
     /// The weights of outputs: one row for each neuron, with one weight for each output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
-    /// Index of the input that carries the bias. This input must fire in every step. `None` if the network has no bias.
-    pub(super) bias: Option<usize>,
-    /// For each layer: its name and its number of neurons.
+    /// The ticks of a step, and the inputs that fire before each of them.
+    pub(super) ticks: Vec<Tick>,
+    /// Name and number of neurons of each layer.
     pub(super) layers: Vec<(String, usize)>,
-    /// Value of an output's potential of 1 on the chip, in the units of the trained network; `None` if the outputs
-    /// report the spikes of neurons.
+    /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
+    /// outputs report the spikes of neurons.
     pub(super) unit: Option<f64>,
     /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
     /// these weights.
@@ -59,6 +64,19 @@ pub(super) struct Quantised {
     /// share one, and all outputs share one. The first figure is the number of neurons and outputs whose leak differs.
     /// The second figure is the largest difference between a decay factor on the chip and the trained factor.
     pub(super) shared_keeps: (usize, f64),
+}
+
+/// A tick of a step. A step has several ticks if neurons keep less of their potential in a step than the chip can keep
+/// in a tick. The network's own inputs fire before the first tick. The neurons of layer `n` then compare at tick `n` of
+/// the step (in a cycle). If spikes subtract the threshold or act on their own layer, gates keep the layer from firing
+/// at other ticks: inputs that lower all its neurons after it has compared, and raise them when it compares again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tick {
+    /// Inputs that fire before the tick in every step: biases, and gates that lower neurons.
+    pub(super) always: Vec<usize>,
+    /// Inputs that fire before the tick unless no gate has lowered their neurons yet: in the first step they fire only
+    /// before its last tick.
+    pub(super) raises: Vec<usize>,
 }
 
 /// How rounding changed the weights of a layer, or those of the outputs.
@@ -102,13 +120,15 @@ struct Source {
     layer: usize,
     neuron: usize,
     keep: f64,
-    /// The weight of each input; then the bias, if the network has a bias.
+    /// The weight of each input.
     inputs: Vec<f64>,
+    bias: f64,
+    /// Amount by which gates lower the neuron, 0 if it needs none.
+    gate: f64,
     /// For each neuron that sends spikes to this one: the number of the chip's neuron that holds the sender, and the
     /// weight.
     recurrent: Vec<(usize, f64)>,
-    has_bias: bool,
-    /// Largest absolute potential that the neuron reaches in double precision.
+    /// Largest absolute potential that the neuron reaches in double precision, below the gate.
     peak: f64,
 }
 
@@ -119,7 +139,7 @@ fn largest(weights: impl Iterator<Item = f64>) -> f64 {
 impl Source {
     fn largest(&self) -> [f64; 2] {
         [
-            largest(self.inputs.iter().copied()),
+            largest(self.inputs.iter().copied().chain([self.bias])),
             largest(self.recurrent.iter().map(|(_, weight)| *weight)),
         ]
     }
@@ -145,7 +165,8 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
     let squared = |weight: f64, scale: f64| ((weight * scale).round() / scale - weight).powi(2);
     let of_source = |source: &Source| {
-        let inputs: f64 = source.inputs.iter().map(|&weight| squared(weight, inputs)).sum();
+        let inputs: f64 =
+            source.inputs.iter().chain([&source.bias]).map(|&weight| squared(weight, inputs)).sum();
         let own: f64 = source.recurrent.iter().map(|&(_, weight)| squared(weight, recurrent)).sum();
         let lost = 0.5 / (1.0 - source.keep).max(0.01) / scale;
         inputs + own + lost * lost
@@ -176,14 +197,13 @@ pub(super) fn quantise(
     let mut neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
     ensure!(neurons.all(|neuron| neuron.leak == 0.0), FitKind::LeakByAmount { owner: "ReckOn's" });
     let at = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
-    let peaks = peaks(trained, inputs, fired);
+    let ticks = ticks(trained);
+    let original =
+        Recorded { trained, places: &places, ticks, peaks: peaks(trained, inputs, fired), fired };
     let pairs: Vec<Vec<Source>> = places
         .pairs()
         .map(|pair| {
-            let of = |(layer, neuron): (usize, usize)| {
-                source(trained, &places, has_bias, layer, neuron, peaks[layer][neuron])
-            };
-            pair.into_iter().map(of).collect()
+            pair.into_iter().map(|(layer, neuron)| original.source(layer, neuron)).collect()
         })
         .collect();
     let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
@@ -196,7 +216,7 @@ pub(super) fn quantise(
     let done = AtomicUsize::new(0);
     let total: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
     let chosen = pairs.par_iter().map(|pair| {
-        let keep = mean_keep(pair);
+        let keep = mean_keep(pair, ticks);
         let candidates = SCALES.map(|part| part * scale(pair, shifts));
         let distance = |scale: f64| -> f64 {
             let of = |source: &Source| {
@@ -205,7 +225,7 @@ pub(super) fn quantise(
                     keep,
                     scale,
                     shifts,
-                    Firing { resets_to_zero, fires: at },
+                    Rule { ticks, resets_to_zero, fires: at },
                     &places,
                 )
                 .distance(
@@ -229,11 +249,11 @@ pub(super) fn quantise(
     let count = places.neurons.len();
     let mut network = Quantised {
         pairs: Vec::new(),
-        inputs: vec![vec![0; count]; trained.inputs() + usize::from(has_bias)],
+        inputs: vec![vec![0; count]; trained.inputs()],
         recurrent: vec![vec![0; count]; count],
         outputs: Vec::new(),
         shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero },
-        bias: has_bias.then(|| trained.inputs()),
+        ticks: vec![Tick::default(); ticks],
         layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
         unit: None,
         changes: trained
@@ -248,9 +268,13 @@ pub(super) fn quantise(
         network.pairs.push(ReckOnPair { keep, threshold: fires_at(scale, at) as i16 });
         for source in pair {
             network.put(source, scale, shifts);
-            network.tell_keep(source.keep, f64::from(keep) / KEEP, 1e-4);
+            network.tell_keep(source.keep, (f64::from(keep) / KEEP).powi(ticks as i32), 1e-4);
         }
     }
+    network.put_bias(&pairs, &chosen, shifts[0]);
+    network.put_gates(&pairs, &chosen, shifts[0]);
+    let (inputs, most) = (network.inputs.len(), Places::INPUTS);
+    ensure!(inputs <= most, FitKind::Inputs { most, inputs, has_bias });
     match &trained.readout {
         Some(readout) => network.read_out(readout, &trained.potentials(fired))?,
         None => network.follow(trained.layers.len() - 1),
@@ -258,38 +282,99 @@ pub(super) fn quantise(
     Ok(network)
 }
 
-fn mean_keep(pair: &[Source]) -> u16 {
-    let mean = pair.iter().map(|source| source.keep).sum::<f64>() / pair.len().max(1) as f64;
-    (mean.max(LEAST_KEEP) * KEEP).round() as u16
+/// Returns the number of ticks in a step: the smallest in which the chip's neurons can lose what the network's neurons
+/// lose in a step.
+fn ticks(trained: &Trained) -> usize {
+    let neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
+    let least = neurons.map(|neuron| neuron.keep).fold(1.0, f64::min);
+    let most = LEAST_KEEP.powi(MOST_TICKS as i32);
+    (least.max(most).ln() / LEAST_KEEP.ln() - 1e-9).ceil().max(1.0) as usize
 }
 
-fn source(
-    trained: &Trained,
-    places: &Places,
-    has_bias: bool,
-    at: usize,
-    neuron: usize,
-    peak: f64,
-) -> Source {
-    let layer = &trained.layers[at];
-    let Neuron { keep, threshold, .. } = layer.neurons[neuron];
-    let part = |weight: &f64| weight / threshold;
-    let row = layer.weights[neuron].iter().map(part);
-    let mut inputs = vec![0.0; trained.inputs()];
-    let mut recurrent: Vec<(usize, f64)> = Vec::new();
-    match at.checked_sub(1) {
-        None => inputs = row.collect(),
-        Some(before) => {
-            recurrent
-                .extend(row.enumerate().map(|(from, weight)| (places.of(before, from), weight)));
+/// Returns the share of its potential that a neuron keeps in each of `ticks` ticks, if it keeps `keep` in a step.
+fn keep_of(keep: f64, ticks: usize) -> f64 {
+    keep.powf(1.0 / ticks as f64).max(LEAST_KEEP)
+}
+
+fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
+    let kept = pair.iter().map(|source| keep_of(source.keep, ticks));
+    (kept.sum::<f64>() / pair.len().max(1) as f64 * KEEP).round() as u16
+}
+
+/// The network in double precision, and what it did in the recording.
+struct Recorded<'a> {
+    trained: &'a Trained,
+    places: &'a Places,
+    ticks: usize,
+    /// Largest absolute potential of each neuron, by layer.
+    peaks: Vec<Vec<f64>>,
+    fired: &'a [Trains],
+}
+
+impl Recorded<'_> {
+    /// Returns neuron `neuron` of layer `at`, and the weights that lead to it.
+    fn source(&self, at: usize, neuron: usize) -> Source {
+        let Self { trained, places, ticks, .. } = *self;
+        let layer = &trained.layers[at];
+        let Neuron { keep, threshold, .. } = layer.neurons[neuron];
+        let part = |weight: &f64| weight / threshold;
+        let row = layer.weights[neuron].iter().map(part);
+        let mut inputs = vec![0.0; trained.inputs()];
+        let mut recurrent: Vec<(usize, f64)> = Vec::new();
+        match at.checked_sub(1) {
+            None => inputs = row.collect(),
+            Some(before) => {
+                let of = |(from, weight)| (places.of(before, from), weight);
+                recurrent.extend(row.enumerate().map(of));
+            }
         }
+        // The layer's own spikes, and a reset that subtracts, act at the tick after the layer has compared. Until it
+        // compares again, less is left of them than in training, where they act when the neuron compares.
+        let kept = keep_of(keep, ticks);
+        let grown = kept.powi(1 - ticks as i32);
+        let mut own: Vec<f64> =
+            layer.recurrent.get(neuron).into_iter().flatten().map(part).collect();
+        own.resize(layer.neurons.len(), 0.0);
+        for weight in &mut own {
+            *weight *= grown;
+        }
+        if layer.reset.subtracts() {
+            own[neuron] += 1.0 - grown;
+        }
+        let peak = self.peaks[at][neuron] / threshold;
+        let gate = if ticks > 1 && own.iter().any(|weight| *weight != 0.0) {
+            let sum = |fired: &Vec<u16>| -> f64 {
+                fired.iter().map(|&from| own[usize::from(from)]).sum()
+            };
+            let added = self.fired[at].iter().map(sum).fold(0.0, f64::max);
+            let left = if layer.reset.subtracts() { (peak * kept - 1.0).max(kept) } else { kept };
+            SPARE * (left + added)
+        } else {
+            0.0
+        };
+        let own = own.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0);
+        recurrent.extend(own.map(|(from, weight)| (places.of(at, from), weight)));
+        let bias = layer.bias[neuron] / threshold;
+        Source { layer: at, neuron, keep, inputs, bias, gate, recurrent, peak: peak + gate }
     }
-    let own = layer.recurrent.get(neuron).into_iter().flatten().map(part);
-    recurrent.extend(own.enumerate().map(|(from, weight)| (places.of(at, from), weight)));
-    if has_bias {
-        inputs.push(layer.bias[neuron] / threshold);
+}
+
+/// Returns the amount by which gates lower a neuron, and the amount by which they raise it again. By then the first
+/// amount has leaked in all of `ticks` ticks but one. Both are multiples of `1 << shift`, the first at least `gate`. Of
+/// such amounts, chooses one of which almost a multiple remains.
+fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
+    if gate == 0.0 {
+        return (0, 0);
     }
-    Source { layer: at, neuron, keep, inputs, recurrent, has_bias, peak: peak / threshold }
+    let unit = 1 << shift;
+    let least = (gate / f64::from(unit)).ceil() as i32;
+    let left = |lowered: i32| {
+        (1..ticks).fold(-lowered * unit, |potential, _| (potential * i32::from(keep)) >> 15)
+    };
+    let raised = |lowered: i32| (f64::from(-left(lowered)) / f64::from(unit)).round() as i32 * unit;
+    let wrong = |lowered: &i32| (left(*lowered) + raised(*lowered)).abs();
+    let lowered = (least..=least + least / 4).min_by_key(wrong).unwrap_or(least);
+    (lowered * unit, raised(lowered))
 }
 
 /// Returns the largest absolute potential that each neuron reaches in double precision, by layer and neuron.
@@ -303,43 +388,44 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
     trained.layers.iter().zip(before).map(of_layer).collect()
 }
 
-/// The spikes that act on a layer in a step.
+/// The spikes that act on a layer in a step, and those of the layer itself.
 struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
-    /// Neurons that fire, each as layer and index. Neurons of the layer before fire in the same step, neurons of the
-    /// layer itself in the step before.
-    neurons: Vec<(usize, usize)>,
+    /// Neurons of the layer before that fire, each as the index of its layer and its index in the layer.
+    before: Vec<(usize, usize)>,
+    /// Neurons of the layer itself that fire in the step. Their spikes act at the tick after.
+    own: Vec<(usize, usize)>,
 }
 
 /// Returns the spikes that act on each layer in each step, if all neurons fire as in double precision.
 fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive>> {
-    let of_layer = |(at, layer): (usize, &Layer)| {
+    let of_layer = |at: usize| {
+        let spikes = |layer: usize, step: usize| {
+            fired[layer][step].iter().map(move |&neuron| (layer, neuron.into())).collect()
+        };
         let of_step = |step: usize| {
-            let mut drive = Drive { inputs: vec![], neurons: vec![] };
+            let mut drive = Drive { inputs: vec![], before: vec![], own: spikes(at, step) };
             match at.checked_sub(1) {
                 None => {
                     drive.inputs.clone_from(&inputs[step]);
                     drive.inputs.sort_unstable();
                     drive.inputs.dedup();
                 }
-                Some(before) => drive
-                    .neurons
-                    .extend(fired[before][step].iter().map(|&neuron| (before, neuron.into()))),
-            }
-            if let (Some(last), false) = (step.checked_sub(1), layer.recurrent.is_empty()) {
-                drive.neurons.extend(fired[at][last].iter().map(|&neuron| (at, neuron.into())));
+                Some(before) => drive.before = spikes(before, step),
             }
             drive
         };
         (0..inputs.len()).map(of_step).collect()
     };
-    trained.layers.iter().enumerate().map(of_layer).collect()
+    (0..trained.layers.len()).map(of_layer).collect()
 }
 
 /// The rule by which all neurons of the chip fire and reset.
 #[derive(Clone, Copy)]
-struct Firing {
+struct Rule {
+    /// Number of ticks in a step.
+    ticks: usize,
     resets_to_zero: bool,
     fires: Fires,
 }
@@ -351,7 +437,9 @@ struct Held<'a> {
     inputs: Vec<i32>,
     recurrent: Vec<i32>,
     bias: i32,
-    resets_to_zero: bool,
+    /// Amounts by which gates lower and raise the neuron.
+    gates: (i32, i32),
+    rule: Rule,
     places: &'a Places,
 }
 
@@ -361,7 +449,7 @@ impl<'a> Held<'a> {
         keep: u16,
         scale: f64,
         shifts: [u8; 2],
-        rule: Firing,
+        rule: Rule,
         places: &'a Places,
     ) -> Self {
         let mut change = Change::default();
@@ -374,14 +462,15 @@ impl<'a> Held<'a> {
         for &(from, weight) in &source.recurrent {
             recurrent[from] = held(weight, shifts[1]);
         }
-        let bias = inputs.last().copied().filter(|_| source.has_bias).unwrap_or(0);
+        let bias = held(source.bias, shifts[0]);
         Self {
             keep: keep.into(),
             threshold: fires_at(scale, rule.fires) as i32,
             inputs,
             recurrent,
             bias,
-            resets_to_zero: rule.resets_to_zero,
+            gates: gates(source.gate * scale, keep, rule.ticks, shifts[0]),
+            rule,
             places,
         }
     }
@@ -390,20 +479,35 @@ impl<'a> Held<'a> {
     /// the neuron with index `neuron`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
-        let mut is_over = false;
+        let (mut is_over, mut raised) = (false, 0);
+        let mut own = 0;
         for (drive, meant) in drives.iter().zip(fired) {
-            let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
-            let own = drive.neurons.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]);
-            let added: i32 = first.chain(own).sum();
-            let kept = match (is_over, self.resets_to_zero) {
-                (false, _) => (potential * self.keep) >> 15,
-                (true, true) => 0,
-                (true, false) => ((potential * self.keep) >> 15) - self.threshold,
+            let sum = |spikes: &[(usize, usize)]| -> i32 {
+                spikes.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]).sum()
             };
-            potential = (kept + added + self.bias).clamp(i16::MIN.into(), i16::MAX.into());
-            is_over = potential >= self.threshold;
+            let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
+            let first = first.sum::<i32>() + sum(&drive.before) + self.bias + raised;
+            let mut count = 0;
+            for tick in 0..self.rule.ticks {
+                let added = own
+                    + match tick {
+                        0 => first,
+                        1 => -self.gates.0,
+                        _ => 0,
+                    };
+                own = if tick == 0 { sum(&drive.own) } else { 0 };
+                let kept = match (is_over, self.rule.resets_to_zero) {
+                    (false, _) => (potential * self.keep) >> 15,
+                    (true, true) => 0,
+                    (true, false) => ((potential * self.keep) >> 15) - self.threshold,
+                };
+                potential = (kept + added).clamp(i16::MIN.into(), i16::MAX.into());
+                is_over = potential >= self.threshold;
+                count += usize::from(is_over);
+            }
+            raised = self.gates.1;
             let meant = meant.iter().filter(|fired| usize::from(**fired) == neuron).count();
-            distance.step(is_over.into(), meant);
+            distance.step(count, meant);
         }
         distance.value()
     }
@@ -414,6 +518,70 @@ impl Quantised {
     /// their effect.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
+    }
+
+    /// Returns the inputs that fire before tick `tick` of the recording, beside the network's own.
+    pub(super) fn beside(&self, tick: usize) -> impl Iterator<Item = usize> {
+        let Tick { always, raises } = &self.ticks[tick % self.ticks.len()];
+        let raises = if tick + 1 >= self.ticks.len() { &raises[..] } else { &[] };
+        always.iter().chain(raises).copied()
+    }
+
+    /// Adds an input with the weights of `rows`, each for a neuron of the chip, and returns its number.
+    fn add_input(&mut self, weights: impl IntoIterator<Item = (usize, i8)>) -> usize {
+        let mut row = vec![0; self.places.neurons.len()];
+        for (at, weight) in weights {
+            row[at] = weight;
+        }
+        self.inputs.push(row);
+        self.inputs.len() - 1
+    }
+
+    /// Adds the inputs for biases: one for all layers that compare at the same tick of a step.
+    fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+        for tick in 0..self.ticks.len() {
+            let mut weights = Vec::new();
+            for (pair, (_, scale)) in pairs.iter().zip(chosen) {
+                let at_tick = |source: &&Source| source.layer % self.ticks.len() == tick;
+                for source in pair.iter().filter(at_tick).filter(|source| source.bias != 0.0) {
+                    let at = self.places.of(source.layer, source.neuron);
+                    let scale = scale / f64::from(1 << shift);
+                    weights.push((at, self.changes[source.layer].weight(source.bias, scale)));
+                }
+            }
+            if !weights.is_empty() {
+                let input = self.add_input(weights);
+                self.ticks[tick].always.push(input);
+            }
+        }
+    }
+
+    /// Adds the inputs that keep neurons from firing at ticks at which they must not.
+    fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+        let ticks = self.ticks.len();
+        for layer in 0..self.layers.len() {
+            let mut rests: Vec<(usize, [i32; 2])> = Vec::new();
+            for (pair, (keep, scale)) in pairs.iter().zip(chosen) {
+                for source in pair.iter().filter(|source| source.layer == layer) {
+                    let (lowered, raised) = gates(source.gate * scale, *keep, ticks, shift);
+                    let at = self.places.of(layer, source.neuron);
+                    rests.push((at, [-lowered >> shift, raised >> shift]));
+                }
+            }
+            for (kind, tick) in [(0, (layer + 1) % ticks), (1, layer % ticks)] {
+                while rests.iter().any(|(_, rest)| rest[kind] != 0) {
+                    let take = |(at, rest): &mut (usize, [i32; 2])| {
+                        let weight = rest[kind].clamp(-128, 127);
+                        rest[kind] -= weight;
+                        (*at, weight as i8)
+                    };
+                    let weights: Vec<(usize, i8)> = rests.iter_mut().map(take).collect();
+                    let input = self.add_input(weights);
+                    let tick = &mut self.ticks[tick];
+                    if kind == 0 { tick.always.push(input) } else { tick.raises.push(input) }
+                }
+            }
+        }
     }
 
     fn put(&mut self, source: &Source, scale: f64, shifts: [u8; 2]) {
@@ -447,12 +615,15 @@ impl Quantised {
     /// outputs keep in a step then rounds to 0.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
-        let mean = keep.iter().sum::<f64>() / keep.len() as f64;
+        let ticks = self.ticks.len();
+        let kept = keep.iter().map(|keep| keep.powf(1.0 / ticks as f64));
+        let mean = kept.sum::<f64>() / keep.len() as f64;
         let held = (mean * OUTPUT_KEEP).round();
         let kind = FitKind::OutputLeak { keep: mean };
         ensure!(held >= 1.0, kind.at(Spot::Part(name.clone())));
         for &keep in keep {
-            self.tell_keep(keep, held / OUTPUT_KEEP, 0.5 / OUTPUT_KEEP);
+            let held = (held / OUTPUT_KEEP).powi(ticks as i32);
+            self.tell_keep(keep, held, 0.5 * ticks as f64 / OUTPUT_KEEP);
         }
         let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
         let room = ROOM / largest(potentials.iter().flatten().copied()).max(most);

@@ -17,6 +17,8 @@ const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
+/// Number of initial choices by which a [shape](Shape) is rated on a neuron: those that change the neuron least.
+const RATED: usize = 6;
 
 /// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
 /// the layer's own neurons that fired one step earlier follow. They are numbered after the inputs.
@@ -58,6 +60,9 @@ struct Choice {
     rung: u8,
     /// Number of leaks after a spike, in addition to the number that [`own_leaks`] returns. Negative for fewer leaks.
     more: i16,
+    /// Amount that every step adds to the potential, in addition to the trained bias and to what makes up for the
+    /// drift of the leaks.
+    bias: i16,
 }
 
 /// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
@@ -66,7 +71,10 @@ struct Choice {
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
-    let first = choices(layer, at, aim.shape);
+    let mut first = choices(layer, at, aim.shape);
+    if climbs == 0 {
+        first.truncate(RATED);
+    }
     let (least, best) = climb(first, neighbours, distance, climbs);
     (least, made(layer, at, aim.shape, best))
 }
@@ -80,26 +88,26 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
     let weights: Vec<f64> = weights.copied().collect();
     let largest = weights.iter().fold(0.0_f64, |most, weight| most.max(weight.abs()));
     let Neuron { keep, threshold, leak: amount } = layer.neurons[at];
+    let rungs = if shape.share.is_some() { &RUNGS[..2] } else { &RUNGS };
     let mut choices: Vec<(f64, Choice)> = Vec::new();
     for most in LARGEST {
-        let most = most * f64::from(shape.rows);
+        let most = most * f64::from(shape.events_a_spike());
         let unit = if largest > 0.0 { largest / most } else { threshold / LARGEST_RUNG };
         let threshold = fires_at(threshold / unit, layer.fires);
-        let rounded =
-            weights.iter().map(|weight| ((weight / unit).round() * unit - weight).powi(2));
+        let rounded = weights
+            .iter()
+            .map(|weight| (f64::from(shape.held(weight / unit)) * unit - weight).powi(2));
         let rounded: f64 = rounded.sum();
-        for rung in RUNGS {
+        for &rung in rungs {
             let room = MAX_POTENTIAL - shape.above * u16::from(rung);
             let threshold = threshold.min(room.into()) as u16;
-            // Amount that the original neuron loses in a step at half its threshold; if leaks at several heights
-            // imitate a share, the amount between two of them.
-            let lost = amount / unit
-                + (1.0 - keep) / 2.0
-                    * if shape.spacing == 0 {
-                        threshold.into()
-                    } else {
-                        f64::from(shape.spacing * u16::from(rung))
-                    };
+            // The amount that a leak removes: the one at which the neuron loses its share of a potential or, with less
+            // than two leaks a step, the amount that it loses at half its threshold.
+            let of_share = match shape.share {
+                Some(leaks) => leaks.leak(keep, rung),
+                None => (1.0 - keep) / 2.0 * f64::from(threshold),
+            };
+            let lost = amount / unit + of_share;
             // If no step has leaks for all neurons, only the leaks after a spike remain, which may be as large as
             // possible.
             let leaks = if shape.leaks.is_empty() {
@@ -108,7 +116,7 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
                 [lost.floor(), lost.ceil()].map(|leak| leak.min(MAX_LEAK.into()))
             };
             for leak in leaks.map(|leak| leak as u8) {
-                let choice = Choice { unit, threshold, leak, rung, more: 0 };
+                let choice = Choice { unit, threshold, leak, rung, more: 0, bias: 0 };
                 if choices.iter().all(|(_, other)| *other != choice) {
                     let change = rounded + ((f64::from(leak) - lost) * unit).powi(2);
                     choices.push((change, choice));
@@ -122,7 +130,7 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
 
 impl Choice {
     fn neighbours(self, shape: &Shape) -> Vec<Self> {
-        let Self { unit, threshold, leak, rung, more } = self;
+        let Self { unit, threshold, leak, rung, more, bias } = self;
         let with = |threshold_by: i16, leak_by: i8, rung_by: i8, more_by: i16, unit_by: f64| {
             let rung = rung.saturating_add_signed(rung_by).clamp(1, LARGEST_RUNG as u8);
             let room = MAX_POTENTIAL - shape.above * u16::from(rung);
@@ -132,6 +140,7 @@ impl Choice {
                 leak: leak.saturating_add_signed(leak_by).min(MAX_LEAK),
                 rung,
                 more: more + more_by,
+                bias,
             }
         };
         let wide = (threshold / 16).max(2) as i16;
@@ -153,6 +162,9 @@ impl Choice {
                 with(-1, 1, 0, 0, 1.0),
             ]);
         }
+        if shape.has_bias {
+            all.extend([Self { bias: bias + 1, ..self }, Self { bias: bias - 1, ..self }]);
+        }
         if shape.lift == 0 {
             all.extend([with(0, 0, 0, 1, 1.0), with(0, 0, 0, -1, 1.0), with(0, 0, 0, 4, 1.0)]);
         }
@@ -162,25 +174,26 @@ impl Choice {
 
 /// Returns neuron `at` in the chip's integers, with the parameters in `choice`.
 fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron {
-    let Choice { unit, threshold, leak, rung, more } = choice;
-    let rows = f64::from(shape.rows);
+    let Choice { unit, threshold, leak, rung, more, .. } = choice;
     let mut clipped = 0;
     let mut quantised = |weight: &f64| {
-        let rounded = (weight / unit).round();
-        clipped += usize::from(!(-8.0 * rows..=7.0 * rows).contains(&rounded));
-        rounded.clamp(-8.0 * rows, 7.0 * rows) as i16
+        let held = shape.held(weight / unit);
+        clipped += usize::from(f64::from(held) != (weight / unit).round());
+        held
     };
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).map(&mut quantised).collect();
-    let bias = quantised(&layer.bias[at]);
-    let own_leaks =
-        own_leaks(layer, at, shape, choice).saturating_add(more.into()).clamp(0, 255) as u16;
+    let drift = shape.share.map_or(0.0, |leaks| leaks.drift(leak, rung));
+    let bias = quantised(&(layer.bias[at] + (f64::from(choice.bias) - drift) * unit));
+    let own_leaks = own_leaks(layer, at, shape, choice)
+        .saturating_add(more.into())
+        .clamp(0, i32::from(MAX_POTENTIAL)) as u16;
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, these
-/// leaks bring the potential back to 0 after other events of the step have moved it. If spikes subtract the threshold,
-/// these leaks make up for the difference between the chip's reset and the subtraction.
+/// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, other
+/// events of the step then move the potential, and these leaks bring it back to 0. If spikes subtract the threshold,
+/// these leaks correct the potential, because the chip's reset differs from a subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {
@@ -197,12 +210,9 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     }
     // After a spike, the whole rungs in the excess over the threshold remain. Leaks before that have acted on it as on
     // a potential far below 0.
-    let late = if layer.reset == Reset::SubtractLate {
-        f64::from(threshold) * (1.0 / keep.max(0.1) - 1.0)
-    } else {
-        0.0
-    };
-    let passed = if shape.spacing > 0 { (1.0 - keep) * above } else { 0.0 };
+    let late =
+        if layer.reset == Reset::SubtractLate { f64::from(threshold) * (1.0 - keep) } else { 0.0 };
+    let passed = if shape.share.is_some() { (1.0 - keep) * above } else { 0.0 };
     ((above - passed + rung / 2.0 - late) / leak).round().max(0.0) as i32
 }
 
