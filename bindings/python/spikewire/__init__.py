@@ -14,6 +14,7 @@ True
 
 from . import _native
 from ._bank import EVENTS, Bank
+from ._dataset import dataset
 from ._files import Log, read, read_events, read_ulog, write_events
 from ._filters import Filter, low_pass
 from ._flight import Flight
@@ -51,6 +52,7 @@ __all__ = [
     "ToSpikes",
     "Tuned",
     "advise",
+    "dataset",
     "low_pass",
     "plot",
     "read",

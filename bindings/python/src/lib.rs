@@ -5,6 +5,7 @@
 mod array;
 mod channel;
 mod coder;
+mod dataset;
 mod error;
 mod filter;
 mod fingerprint;
@@ -25,6 +26,8 @@ mod _native {
     use super::array::cut;
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
+    #[pymodule_export]
+    use super::dataset::{Dataset, encode_log};
     #[pymodule_export]
     use super::error::Error;
     #[pymodule_export]

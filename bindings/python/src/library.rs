@@ -58,7 +58,7 @@ fn recording(name: &str, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> P
 }
 
 impl Coder {
-    fn coding(&self) -> Coding {
+    pub(crate) fn coding(&self) -> Coding {
         Coding { scheme: self.scheme.into(), sample: self.sample, asked: self.asked.clone() }
     }
 
@@ -321,7 +321,11 @@ pub(crate) struct Input {
 }
 
 impl Input {
-    fn options(self, path: &str) -> Result<InputOptions> {
+    /// Returns the options for reading a recording.
+    ///
+    /// # Errors
+    /// A keyword makes no sense.
+    pub(crate) fn channel(self) -> Result<ChannelOptions> {
         for (name, value) in [("rate", self.rate), ("gap", self.gap)] {
             if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
                 let error = lab::Error::from(TableKind::NotAboveZero);
@@ -329,7 +333,7 @@ impl Input {
             }
         }
         let usual = ChannelOptions::default();
-        let channel = ChannelOptions {
+        Ok(ChannelOptions {
             columns: self.columns,
             time: self.time,
             time_unit: parsed("time_unit", self.time_unit)?,
@@ -341,8 +345,7 @@ impl Input {
             skip_non_finite: self.skip_non_finite,
             accept_cut: self.accept_cut,
             ..usual
-        };
-        Ok(InputOptions { input: path.into(), channel }.or_all()?)
+        })
     }
 }
 
@@ -361,7 +364,8 @@ fn parsed<T: FromStr<Err = lab::Error>>(
 #[pyfunction]
 pub(crate) fn read<'py>(py: Python<'py>, path: &str, keywords: Input) -> PyResult<Read<'py>> {
     let done = work::detached(py, true, || {
-        let mut source = keywords.options(path)?.open()?;
+        let options = InputOptions { input: path.into(), channel: keywords.channel()? };
+        let mut source = options.or_all()?.open()?;
         let all = source.rest()?;
         let names = source.names().into_iter().map(str::to_owned).collect();
         anyhow::Ok((names, all, source.notes().iter().map(ToString::to_string).collect()))

@@ -1,6 +1,6 @@
 //! The Python package, installed as a user installs it.
 
-use crate::common::{command, output, paths, run};
+use crate::common::{cargo, command, output, paths, run};
 use crate::products::c_library;
 use crate::programs::host;
 use crate::programs::python::{environment, install, package, pip};
@@ -26,6 +26,8 @@ pub fn python() -> Result<()> {
     let pytest = "-m pytest --quiet -rP --no-header --doctest-modules bindings/python/tests --pyargs spikewire";
     let mut tests = command(&python);
     tests.args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight);
+    run(&mut cargo("build --package spikewire-cli"))?;
+    tests.env("SPIKEWIRE", paths::target().join("debug/spikewire"));
     run(tests.env("FLIGHTS", c_library::write_flights()?))?;
     run(command(&python).arg("bindings/python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
     source_package(&python).map(drop)

@@ -246,9 +246,7 @@ impl Manifest {
         } else {
             write(&described, &described_as(settings, &serde_json::Value::Null))?;
         }
-        for own in [directory, &directory.join(EVENTS), &directory.join(VALUES)] {
-            delete_unfinished(own).map_err(failed)?;
-        }
+        delete_unfinished(directory).map_err(failed)?;
         let mut text = String::new();
         file.read_to_string(&mut text).map_err(failed)?;
         // A row that was being written is none.
@@ -311,6 +309,8 @@ impl Manifest {
         let shares = serde_json::json!({ "test": test, "by": by });
         write(&self.directory.join(SETTINGS), &described_as(settings, &shares))?;
         write(&path, &lines)?;
+        // A worker that was killed leaves its own, although the run went on.
+        delete_unfinished(&self.directory).map_err(|error| unwritten(error.into()))?;
         Ok(rows)
     }
 }
@@ -386,12 +386,14 @@ fn write(path: &Path, text: &str) -> Result<()> {
     all().map_err(unwritten)
 }
 
-/// Deletes the unfinished files of a killed run.
+/// Deletes the unfinished files of killed processes from the directories of a data set.
 fn delete_unfinished(directory: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(directory)? {
-        let entry = entry?;
-        if entry.file_name().to_string_lossy().starts_with(UNFINISHED_NAME) {
-            fs::remove_file(entry.path())?;
+    for own in [directory, &directory.join(EVENTS), &directory.join(VALUES)] {
+        for entry in fs::read_dir(own)? {
+            let entry = entry?;
+            if entry.file_name().to_string_lossy().starts_with(UNFINISHED_NAME) {
+                fs::remove_file(entry.path())?;
+            }
         }
     }
     Ok(())

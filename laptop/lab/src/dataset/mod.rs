@@ -139,30 +139,19 @@ pub struct Outcome {
 /// Returns an error if there are no logs, if the directory holds a data set with other settings, or if a file cannot be
 /// written. A log that cannot be read or encoded is not an error: the log's row in the manifest gives the reason.
 pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome> {
-    request.check()?;
-    let settings = request.settings();
-    let (logs, passed_over) = paths::find(&request.logs, &request.output)?;
-    let mut manifest = Manifest::open(&request.output, &settings)?;
-    let mut outcome = Outcome { logs: logs.len(), passed_over, ..Outcome::default() };
-    let mut left = Vec::new();
-    for log in &logs {
-        let file = File::of(log);
-        match &file {
-            Ok(file) if manifest.has(log, file) => outcome.done_before += 1,
-            _ => left.push((log, file)),
-        }
-    }
-    let mut progress = Progress { total: logs.len(), ..Progress::default() };
-    let (next, left) = (AtomicUsize::new(0), &left[..]);
+    let mut run = Run::open(request)?;
+    let (next, left) = (AtomicUsize::new(0), run.left());
+    let mut progress =
+        Progress { total: run.logs.len(), done: run.done_before(), ..Progress::default() };
     let (sender, rows) = mpsc::channel();
     thread::scope(|scope| -> Result<()> {
         // Dropped before the workers are waited for, even after an error: their next row finds nobody.
         let rows = rows;
         for _ in 0..request.jobs.clamp(1, left.len().max(1)) {
-            let (sender, settings, next) = (sender.clone(), &settings, &next);
+            let (sender, next, left) = (sender.clone(), &next, &left[..]);
             scope.spawn(move || {
-                while let Some((log, file)) = left.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if sender.send(request.row(log, file, settings)).is_err() {
+                while let Some(log) = left.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if sender.send(request.encode(log)).is_err() {
                         return;
                     }
                 }
@@ -170,28 +159,87 @@ pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome
         }
         drop(sender);
         let mut refused = 0;
-        progress.done = outcome.done_before;
         tell(&progress);
         for row in &rows {
             let row = row?;
             refused += usize::from(row.refused.is_some());
             progress.done += 1;
             progress.words = format!("{refused} refused, last {}", row.log);
-            manifest.add(row)?;
+            run.add(row)?;
             tell(&progress);
         }
         Ok(())
     })?;
-    let rows = manifest.finish(&settings, request.test, request.flights)?;
-    let logs: HashSet<String> = logs.iter().map(|log| log.display().to_string()).collect();
-    for row in rows.iter().filter(|row| logs.contains(&row.log)) {
-        outcome.refused += usize::from(row.refused.is_some());
-        outcome.samples += row.samples;
-        outcome.events += row.spikes.iter().sum::<u64>();
-        outcome.train += usize::from(row.split == Some(Split::Train));
-        outcome.test += usize::from(row.split == Some(Split::Test));
+    run.finish()
+}
+
+/// A data set that is being completed. Its directory is locked, which keeps other runs out.
+///
+/// [`run`] does all the work in one process. To share the work between processes, call [`Request::encode`] in any of
+/// them for each log of [`left`](Self::left), and [`add`](Self::add) the rows here.
+pub struct Run {
+    request: Request,
+    manifest: Manifest,
+    logs: Vec<PathBuf>,
+    left: Vec<PathBuf>,
+    passed_over: usize,
+}
+
+impl Run {
+    /// Finds the logs and opens the manifest.
+    ///
+    /// # Errors
+    /// Returns an error if the request is invalid, if there are no logs, or if the directory cannot be written, is in
+    /// use, or holds a data set with other settings.
+    pub fn open(request: &Request) -> Result<Self> {
+        request.check()?;
+        let (logs, passed_over) = paths::find(&request.logs, &request.output)?;
+        let manifest = Manifest::open(&request.output, &request.settings())?;
+        let is_left = |log: &&PathBuf| File::of(log).map_or(true, |file| !manifest.has(log, &file));
+        let left = logs.iter().filter(is_left).cloned().collect();
+        Ok(Self { request: request.clone(), manifest, logs, left, passed_over })
     }
-    Ok(outcome)
+
+    /// Returns the logs that had no row when the data set was opened.
+    pub fn left(&self) -> Vec<PathBuf> {
+        self.left.clone()
+    }
+
+    fn done_before(&self) -> usize {
+        self.logs.len() - self.left.len()
+    }
+
+    /// Appends the row of a log to the manifest. The row replaces an earlier one of the same log.
+    ///
+    /// # Errors
+    /// Returns an error if the manifest cannot be written.
+    pub fn add(&mut self, row: Row) -> Result<()> {
+        self.manifest.add(row)
+    }
+
+    /// Splits the flights, sorts the manifest by log, and counts the outcome of the requested logs.
+    ///
+    /// # Errors
+    /// Returns an error if a file cannot be written.
+    pub fn finish(self) -> Result<Outcome> {
+        let mut outcome = Outcome {
+            logs: self.logs.len(),
+            done_before: self.done_before(),
+            passed_over: self.passed_over,
+            ..Outcome::default()
+        };
+        let Request { test, flights, .. } = self.request;
+        let rows = self.manifest.finish(&self.request.settings(), test, flights)?;
+        let logs: HashSet<String> = self.logs.iter().map(|log| log.display().to_string()).collect();
+        for row in rows.iter().filter(|row| logs.contains(&row.log)) {
+            outcome.refused += usize::from(row.refused.is_some());
+            outcome.samples += row.samples;
+            outcome.events += row.spikes.iter().sum::<u64>();
+            outcome.train += usize::from(row.split == Some(Split::Train));
+            outcome.test += usize::from(row.split == Some(Split::Test));
+        }
+        Ok(outcome)
+    }
 }
 
 /// Returns the recordings among files, directories and patterns. The directory or the manifest of a data set is
@@ -274,16 +322,17 @@ impl Request {
         }))
     }
 
-    /// Encodes a log, and returns its row of the manifest.
+    /// Encodes a log to its files of spikes and samples, and returns its row of the manifest. The files replace those of
+    /// an earlier call for the same log once they are complete.
     ///
     /// # Errors
     /// Returns an error if the file of spikes or of samples cannot be written.
-    fn row(&self, log: &Path, file: &Result<File>, settings: &Settings) -> Result<Row> {
-        let mut row = Row::new(log, settings);
-        match file.as_ref().map_err(ToString::to_string) {
+    pub fn encode(&self, log: &Path) -> Result<Row> {
+        let mut row = Row::new(log, &self.settings());
+        match File::of(log) {
             Ok(file) => file.describe(&mut row),
             Err(why) => {
-                row.refuse("Open", why);
+                row.refuse("Open", why.to_string());
                 return Ok(row);
             }
         }

@@ -1,0 +1,110 @@
+"""Many logs as a data set of Parquet files, encoded on one machine or many."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+from . import _native, _progress
+from ._flight import Flight
+from ._scheme import Scheme
+
+
+def dataset(
+    paths: str | Path | Sequence[str | Path],
+    flight: str | Path | Scheme,
+    out: str | Path,
+    *,
+    client: Any = None,
+    channels: Sequence[str] = (),
+    channels_of: Sequence[str] = (),
+    time: str | None = None,
+    time_unit: str | None = None,
+    delimiter: str | None = None,
+    rate: float | None = None,
+    gap: float | None = None,
+    skip_non_finite: bool = False,
+    accept_cut: bool = False,
+    test: float = 0.2,
+    by_directory: bool = False,
+    jobs: int | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> dict[str, int]:
+    """Encodes many logs to Parquet files with a manifest, as ``spikewire dataset`` does; returns the counts.
+
+    `paths` are files, directories and patterns such as ``"logs/**/*.ulg"``. `flight` is a flight's file, or a scheme whose
+    `channels` to read are named; ``channels_of=["ulog=sensor_combined.gyro_rad[0]"]`` names those of one kind of log.
+    `test` is the share of the flights for testing, and `by_directory` makes all logs of a directory one flight. The other
+    keywords are those of :func:`~spikewire.read`.
+
+    `client` is a ``dask.distributed.Client``, or an executor of :mod:`concurrent.futures`; without one, `jobs` threads of
+    this process work. Each log is a task, and the workers need the same files under the same paths. Dask gives the tasks
+    of a worker that died to another one. Whoever encodes, the bytes of all files are the same. A call that was ended is
+    continued by the same call.
+    """
+    flight = flight if isinstance(flight, Scheme) else Path(flight)
+    if isinstance(flight, Path):
+        # An error names file and line.
+        Flight(flight)
+    keywords = {
+        "logs": [str(path) for path in ([paths] if isinstance(paths, (str, Path)) else paths)],
+        "flight": flight.read_text() if isinstance(flight, Path) else None,
+        "scheme": flight if isinstance(flight, Scheme) else None,
+        "input": {
+            "columns": list(channels),
+            "fields": [],
+            "topic": None,
+            "time": time,
+            "time_unit": time_unit,
+            "delimiter": delimiter,
+            "rate": rate,
+            "gap": gap,
+            "skip_non_finite": skip_non_finite,
+            "accept_cut": accept_cut,
+        },
+        "channels_of": list(channels_of),
+        "output": str(Path(out).absolute()),
+        "test": test,
+        "by_directory": by_directory,
+    }
+    run = _native.Dataset(_told(keywords))
+    left = run.left()
+    executor, is_own = _executor(client, jobs)
+    futures = []
+    try:
+        with _progress.bar(progress, "dataset") as tell:
+            futures = [executor.submit(_encoded, keywords, str(log)) for log in left]
+            for done, future in enumerate(as_completed(futures), 1):
+                run.add(future.result())
+                if tell:
+                    tell(done, len(left))
+    finally:
+        for future in futures:
+            future.cancel()
+        if is_own:
+            executor.shutdown()
+    return json.loads(run.finish())
+
+
+def _executor(client: Any, jobs: int | None) -> tuple[Executor, bool]:
+    """The executor of a client, and whether it ends with the call."""
+    if client is None:
+        return ThreadPoolExecutor(jobs), True
+    if hasattr(client, "get_executor"):
+        # A task that was computed before may have lost its files since.
+        return client.get_executor(pure=False), True
+    return client, False
+
+
+def _told(keywords: dict[str, Any]) -> dict[str, Any]:
+    """The keywords as the compiled half takes them. What it knows of a scheme does not go to another process."""
+    scheme = keywords["scheme"]
+    return {**keywords, "coder": None if scheme is None else scheme._coder}
+
+
+def _encoded(keywords: dict[str, Any], log: str) -> str:
+    """A task: encodes one log, and returns its row of the manifest."""
+    return _native.encode_log(_told(keywords), log)
