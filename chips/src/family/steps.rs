@@ -312,9 +312,9 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends a spike of an input or a neuron: on each of its rows of synapses, the number of events in `rows`. `first`
-    /// is the first row of all inputs, or of all neurons of the layer. `number` is the index of this input or neuron
-    /// among them.
+    /// Sends a spike of an input or a neuron, on each of its rows of synapses as many times as the network's `rows`
+    /// say. `first` is the first row of all inputs, or of all neurons of the layer. `number` is the index of this input
+    /// or neuron among them.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let rows = self.rows;
         let mut row = first.saturating_add(number.saturating_mul(rows.len() as u16));

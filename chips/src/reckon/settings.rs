@@ -59,7 +59,7 @@ pub struct ReckOnLearning {
     /// Four potentials, in ascending order. They divide the potentials of a neuron into five ranges. For each range,
     /// [`slopes`](Self::slopes) gives a slope of the surrogate gradient.
     pub thresholds: [i16; 4],
-    /// Slope of the surrogate gradient in each of the five ranges of a neuron's potential, -16 to 15.
+    /// Slopes of the surrogate gradient, -16 to 15: one for each of the five ranges of a neuron's potential.
     pub slopes: [i8; 5],
     /// Shifts that set how likely a weight is to change, as pairs of a right shift and a left shift, 0 to 31 each. The
     /// three pairs are for the weights from inputs, between neurons and to outputs, in this order.

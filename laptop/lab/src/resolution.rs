@@ -42,7 +42,8 @@ impl Resolution {
         }
     }
 
-    /// Examines the steps of a whole column, and the errors that rounding to the sample type `sample` causes in them.
+    /// Measures the steps from sample to sample in a whole column. Also measures how much rounding to the sample type
+    /// `sample` changes these steps.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
@@ -88,7 +89,8 @@ impl Resolution {
         })
     }
 
-    /// Returns a text that names the sample types which hold the steps, or says that no sample type does.
+    /// Returns a text that names the other sample types in which the steps from sample to sample survive rounding. If
+    /// there are none, the text says so.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()

@@ -31,8 +31,8 @@ pub struct Link {
     /// schemes. If the number of channels is not known, the receiver tries numbers of channels until one gives the
     /// fingerprint in the frames.
     pub fingerprint: Option<Fingerprint>,
-    /// Largest deviation of the sample period from its nominal length, in parts per million. `None` stands for the
-    /// receiver's default.
+    /// Largest deviation of the sample period from its nominal length, in parts per million. If `None`, the receiver
+    /// uses its default.
     pub clock_ppm: Option<u32>,
 }
 

@@ -124,7 +124,7 @@ pub(super) struct Writer {
     /// Whether no frame has been written since the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
-    /// Whether a loss or a restart is still to be reported in a frame.
+    /// Whether no frame has been written since the latest loss or restart. The next frame reports the loss or restart.
     owes_mark: bool,
 }
 

@@ -43,7 +43,7 @@ pub enum Item {
         address: u16,
         /// The decoded value, in the recording's unit.
         value: f64,
-        /// Certainty of the value.
+        /// Whether the value surely equals the value of the sender's own decoder.
         known: Known,
     },
     /// A loss of this number of frames on the link.

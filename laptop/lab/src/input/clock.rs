@@ -211,8 +211,8 @@ impl Clock {
     }
 
     /// Measures the sample rate of the latest run of steps. Records a change of rate if both the median and the mean of
-    /// the steps have changed: a gap changes only the mean, and steps that alternate between two lengths change only
-    /// the median.
+    /// the steps have changed. A gap changes only the mean. Steps that alternate between two lengths change only the
+    /// median.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {
@@ -296,10 +296,11 @@ fn is_disordered(times: &[i64]) -> bool {
     back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
 }
 
-/// Returns the median of the steps forward, in µs, and the number of samples for each step forward. This number is 1
-/// unless times repeat.
+/// Returns the median of the steps forward, in µs, and the mean number of samples for each step forward. A mean
+/// below 2 is returned as 1.
 ///
-/// Returns `None` if no step goes forward, or if times repeat and fewer than three steps go forward.
+/// Returns `None` if no step goes forward. Also returns `None` if the mean is 2 or more and fewer than three steps go
+/// forward.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));

@@ -80,11 +80,11 @@ pub struct Figures {
     /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in double precision
     /// as on the chip.
     pub windows_agreeing: usize,
-    /// Mean number of clock cycles that the chip takes for a step. For the flight controller: mean number of weights
-    /// that a step adds.
+    /// Mean number of clock cycles that the chip takes for a step. On the flight controller, the mean number of weights
+    /// that are added in a step.
     pub mean_clocks: f64,
-    /// Largest number of clock cycles that the chip takes for a step. For the flight controller: largest number of
-    /// weights that a step adds.
+    /// Largest number of clock cycles that the chip takes for a step. On the flight controller, the largest number of
+    /// weights that are added in a step.
     pub most_clocks: u64,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,

@@ -66,7 +66,7 @@ pub trait OnChip {
     }
 
     /// Returns, for each layer, the number of its weights that exceeded the chip's range and were clipped. If the
-    /// outputs are potentials, one more entry counts the outputs' weights.
+    /// outputs are potentials instead of spikes, one more entry counts the clipped weights of the outputs.
     fn clipped(&self) -> Vec<usize>;
 
     /// Returns Rust source that defines the network. The source compiles without `std` if `spikewire-chips` has its

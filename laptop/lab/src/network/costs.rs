@@ -9,7 +9,7 @@ use std::fmt::{self, Display};
 /// A part of a chip's arithmetic that differs from double precision and changes a network's spikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
-    /// Comparing potentials with thresholds after each spike, instead of once in each step.
+    /// Comparison of potentials with thresholds after each spike that arrives, instead of once in each step.
     Order,
     /// Leaks that subtract a fixed amount, instead of a share of the potential.
     Leak,

@@ -145,7 +145,7 @@ fn bits(part: f64) -> f64 {
     if part > 0.0 { -part * part.log2() } else { 0.0 }
 }
 
-/// Counts how often each code of a sample occurs. Samples without events have an empty code.
+/// Counts how often each code occurs. The code of a sample is the list of its events, which may be empty.
 fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>, usize>) {
     let groups = events.chunk_by(|a, b| a.sample == b.sample);
     let mut silent = samples;
@@ -179,7 +179,8 @@ pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     kept.map(|(_, power)| power).sum()
 }
 
-/// Returns the power spectrum: the part of the sum of squares at each frequency from 0 to half the sample rate.
+/// Returns the power spectrum, from frequency 0 to half the sample rate. Its entries add up to the sum of the squares
+/// of `values`.
 pub fn power(values: &[f64]) -> Vec<f64> {
     let count = values.len();
     if count < 2 {

@@ -69,8 +69,8 @@ impl Run<'_> {
         true
     }
 
-    /// Lists the outcomes worth scoring, for all combinations of integer parameters. Returns `None` if the scheme
-    /// cannot list its outcomes.
+    /// Lists the outcomes (thresholds with their spikes and errors) that are worth scoring, for all combinations of
+    /// integer parameters. Returns `None` if the scheme cannot list its outcomes.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
         let rounded = self.rounded;

@@ -37,7 +37,7 @@ pub struct Found {
     /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
     /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether every possible outcome of a threshold was listed.
+    /// Whether the listed outcomes are all outcomes that thresholds can have.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
@@ -64,7 +64,8 @@ const PARENTS: (usize, usize) = (10, 100);
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
-/// Value of settings that cannot be built. It is worse than the value of any other settings.
+/// Value of the searched function for invalid settings, for which no codec can be built. The search seeks small
+/// values, and all other settings have smaller ones.
 const NONE: f64 = 1e30;
 
 /// Searches for the best settings for a problem within a budget.

@@ -182,7 +182,7 @@ impl Space {
         points
     }
 
-    /// Returns every combination of values of the parameters that are integers or words, as options.
+    /// Returns every combination of the values of integer parameters and of parameters that are one of several words.
     pub(crate) fn combinations(&self) -> Vec<Asked> {
         let mut all = vec![Asked::default()];
         for axis in

@@ -14,7 +14,7 @@ pub enum Choice {
     Reset,
     /// Whether a neuron fires at its threshold or only above it.
     Fires,
-    /// How a time constant becomes the factor by which a step multiplies a potential.
+    /// The formula that turns a time constant into the factor by which a step multiplies a potential.
     Decay,
     /// Whether a step adds its own current to the potential, or the current of the step before.
     Current,

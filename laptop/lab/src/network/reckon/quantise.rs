@@ -33,8 +33,8 @@ const SHIFTS: u8 = 8;
 /// Weight, left shift and decay factor of an output that reports the spikes of one neuron. Each step halves the
 /// output's potential, so that the potential's bits say in which of the last steps the neuron fired.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// For an output that reports the spikes of one neuron: the bit of its potential that is 1 if the neuron fired in the
-/// latest step.
+/// Number of a bit in the potential of an output that reports the spikes of one neuron. The bit is 1 if the neuron
+/// fired in the latest step.
 pub(super) const FIRED: u32 = 12;
 
 /// A network in the integers of `ReckOn`.
@@ -54,8 +54,8 @@ pub(super) struct Quantised {
     pub(super) ticks: Vec<Tick>,
     /// Name and number of neurons of each layer.
     pub(super) layers: Vec<(String, usize)>,
-    /// Value of an output's potential of 1 on the chip, in the units of the trained network; `None` if the outputs
-    /// report the spikes of neurons.
+    /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
+    /// outputs report the spikes of neurons.
     pub(super) unit: Option<f64>,
     /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
     /// these weights.
@@ -392,7 +392,7 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
 struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
-    /// Neurons of the layer before that fire, each as layer and index.
+    /// Neurons of the layer before that fire, each as the index of its layer and its index in the layer.
     before: Vec<(usize, usize)>,
     /// Neurons of the layer itself that fire in the step. Their spikes act at the tick after.
     own: Vec<(usize, usize)>,

@@ -191,9 +191,9 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, these
-/// leaks bring the potential back to 0 after other events of the step have moved it. If spikes subtract the threshold,
-/// these leaks make up for the difference between the chip's reset and the subtraction.
+/// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, other
+/// events of the step then move the potential, and these leaks bring it back to 0. If spikes subtract the threshold,
+/// these leaks correct the potential, because the chip's reset differs from a subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {
