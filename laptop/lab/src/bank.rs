@@ -85,7 +85,7 @@ impl Bank {
     /// Decodes the next samples of all channels from their events.
     ///
     /// # Errors
-    /// Returns the first event of a sample whose events no encoder could emit together.
+    /// Returns the first event of a sample if no encoder could emit the sample's events together.
     pub fn decode(
         &mut self,
         samples: usize,
@@ -112,7 +112,7 @@ mod tests {
     use super::{Bank, Scheme};
     use catalogue::run::{Asked, Known, SampleType};
 
-    /// Stochastic codes of channels that have the same values and settings do not fire together.
+    /// With a stochastic code, two channels fire at different times even if their values and settings are the same.
     #[test]
     fn channels_draw_apart() {
         for name in ["bernoulli", "grf-prob"] {

@@ -1,5 +1,5 @@
-//! The library's errors, as values. A program matches on an error's kind. Each front end (command line, Python, web
-//! page) formats errors with its own spelling of the settings.
+//! The library's errors, as values. A program matches on an error's kind. The text of an error names settings as the
+//! front end (command line, Python, web page) spells them.
 
 use crate::events::EventsKind;
 #[cfg(feature = "frames")]

@@ -24,7 +24,7 @@ impl From<FlightError> for crate::Error {
 }
 
 impl Coding {
-    /// Makes the coding of a `flight.toml`, with the parameters of all its channels.
+    /// Returns the scheme and sample type of a `flight.toml`, with the parameters of all its channels.
     pub fn of_flight(flight: &Flight) -> Self {
         let scheme = Scheme::from(flight.run_time());
         Self { scheme, sample: flight.sample, asked: flight.asked_of_all() }

@@ -171,7 +171,8 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// For columns of all sizes and steps, the suggested sample types hold the steps that the given sample type loses.
+    /// If a sample type loses a column's steps, all sample types that are suggested instead hold the steps. This is
+    /// true whatever the size of the column's values and steps.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {

@@ -13,7 +13,7 @@ pub struct Slope {
     /// Name of the scheme.
     #[serde(skip)]
     scheme: &'static str,
-    /// Whether no change from one sample to the next exceeds the threshold.
+    /// Whether the code can follow the signal: no change from one sample to the next exceeds the threshold.
     follows: bool,
     /// Number of changes from one sample to the next that exceed the threshold.
     steps_above_threshold: usize,
@@ -22,7 +22,7 @@ pub struct Slope {
     /// Largest slope that the code can follow: the threshold times the sample rate, or the threshold if the rate is
     /// unknown.
     fastest: f64,
-    /// Largest slope of the signal, in the unit of `fastest`.
+    /// Largest slope of the signal, per second or, if the sample rate is unknown, per sample.
     steepest: f64,
     /// Unit of time of `fastest` and `steepest`: `second` or `sample`.
     per: &'static str,

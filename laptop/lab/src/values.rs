@@ -244,7 +244,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     slot_ticks: u32,
     /// Fingerprint of the sender, if the caller gave it.
     known: Option<Fingerprint>,
-    /// Fingerprint of each channel's scheme, or a single fingerprint if one scheme stands for any number of channels.
+    /// Fingerprint of each channel's scheme. A single fingerprint if all channels have the same scheme and their number
+    /// is unknown.
     schemes: Vec<Fingerprint>,
     /// Whether any value so far was exact.
     has_exact: bool,
@@ -252,9 +253,9 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels the keyframes of the sender's sample type as keyframes of the decoders' type, because the decoders have
-    /// one type for all fixed-point types of a width. If the two types differ, keyframes that already have the
-    /// decoders' type are relabelled as the sender's, so that the receiver counts them as misfits.
+    /// Relabels a frame's keyframes for the decoders, which use one type for all fixed-point types of a width.
+    /// Keyframes of the sender's sample type get the decoders' type. If the two types differ, a keyframe that arrives
+    /// with the decoders' type is wrong: it gets the sender's type, and the receiver counts it as a misfit.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -267,7 +268,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         Received { frame, ..*received }
     }
 
-    /// Returns whether each channel's value is exact.
+    /// Returns for each channel whether its decoded value is exact: known to equal the encoder's value.
     fn exact(&self) -> [bool; N] {
         let is_exact = |channel| self.receiver.exact(channel as u16).is_some();
         std::array::from_fn(|channel| channel < self.channels && is_exact(channel))

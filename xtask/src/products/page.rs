@@ -36,7 +36,7 @@ pub fn page(args: &[String]) -> Result<()> {
 }
 
 /// Builds the page; returns its path.
-fn build() -> Result<PathBuf> {
+pub fn build() -> Result<PathBuf> {
     let site = installed()?;
     run(&mut library()?)?;
     let module = target().join(TARGET).join("release/page.wasm");

@@ -6,8 +6,8 @@ use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
 use spikewire::{Calibration, Code, ConfigError, Output, Spike, Start};
 
-/// Number of columns: one for each scheme of the paper's tables, one for GRF, and one for GRF with slots. The paper
-/// gives no figures for the last two.
+/// Number of columns: one for each scheme of the paper's tables, and two for Gaussian receptive fields (GRF), without
+/// and with slots (sub-timesteps). The paper gives no figures for the last two columns.
 pub(super) const COLUMNS: usize = 8;
 
 /// The efficiency and error of a scheme on a signal.

@@ -260,7 +260,8 @@ impl Manifest {
         Ok(Self { directory: directory.to_owned(), file, rows })
     }
 
-    /// Returns whether the manifest has a valid row for a log in its present state `file`.
+    /// Returns whether the manifest has a valid row for a log. `file` is the present length and modification time of
+    /// the log. A row is invalid if the log has changed, or if the log was refused for a reason that may be gone.
     pub(super) fn has(&self, log: &Path, file: &File) -> bool {
         let File { bytes, modified_us } = *file;
         self.rows.get(&log.display().to_string()).is_some_and(|row| {

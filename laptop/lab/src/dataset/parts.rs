@@ -21,8 +21,9 @@ use std::sync::Arc;
 
 /// Name of the column that holds the times.
 pub(super) const TIME: &str = "time_us";
-/// Keys of a Parquet file's metadata. `HEADER` has the header of the spikes. The others have the arguments of
-/// [`Clock::new`](crate::input::Clock::new), except that `FIRST` has only the number of `first_times`.
+/// Keys of a Parquet file's metadata. The value of `HEADER` is the header of the spikes: the scheme and its settings.
+/// The values of `GAP` and `RATE` are arguments of [`Clock::new`](crate::input::Clock::new). The value of `FIRST` is
+/// the number of times in the argument `first_times`.
 pub(super) const HEADER: &str = "spikewire";
 pub(super) const FIRST: &str = "spikewire.first";
 pub(super) const GAP: &str = "spikewire.gap";

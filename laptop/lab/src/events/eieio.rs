@@ -92,7 +92,7 @@ impl Reader {
     }
 }
 
-/// Returns whether a datagram of a kind that [`eieio`] decodes could begin with `bytes`.
+/// Returns whether `bytes` could be the beginning of an EIEIO datagram that the decoder [`eieio`] supports.
 fn begins(bytes: &[u8]) -> bool {
     let padded: Vec<u8> = bytes.iter().copied().chain([0; LONGEST]).collect();
     bytes.len() < 2 || eieio::decode(&padded).is_some()

@@ -46,7 +46,8 @@ pub struct LinkTally {
     pub unused_keyframes: u64,
     /// Comparison of the keyframes with the values decoded just before each keyframe.
     pub held: Held,
-    /// The reason that no decoded value is exact. `None` if a value is exact, or if no values are decoded.
+    /// The reason that no decoded value is exact (known to equal the sender's value). `None` if a value is exact, or
+    /// if no values are decoded.
     pub withheld: Option<Withheld>,
 }
 

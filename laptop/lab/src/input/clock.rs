@@ -287,7 +287,8 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Returns true if more than two steps go back, and if these are more than a tenth of the steps that are not 0.
+/// Returns whether the times are out of order: more than two steps from one time to the next go back, and the steps
+/// back are more than a tenth of all steps that are not 0.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();

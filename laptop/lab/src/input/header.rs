@@ -84,8 +84,8 @@ impl Start {
     }
 }
 
-/// Returns whether the first row holds samples rather than names. Such a row contains numbers, and no text in it stands
-/// above a number in the second row.
+/// Returns whether the first row holds samples rather than names. A row of samples contains a number. Where a row of
+/// samples contains text, the field below, in the second row, is not a number.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);

@@ -17,7 +17,7 @@ const STEPS: i64 = 4;
 #[derive(Debug, Default)]
 pub struct Rollover {
     previous: Option<i64>,
-    /// The latest step forward, in µs.
+    /// The latest step forward from one time to the next, in µs.
     step: i64,
     samples: u64,
     /// Number of times that the clock wrapped around.

@@ -289,8 +289,8 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// A column is taken for a time if its name ends in a unit and the name without the unit means a time. The tests of
-    /// the command-line program cover the names in common exports.
+    /// A column is read as times if its name consists of a word for a time and a unit. The tests of the command-line
+    /// program cover the names in common exports.
     #[test]
     fn names_that_are_no_times() {
         let is = |unit| Some(Named::In(unit));
@@ -337,8 +337,8 @@ mod tests {
         assert_eq!(microseconds(duration), 86_400_005_000);
     }
 
-    /// All digits of a time stamp are used. As a float, 1520530308199447453 ns would become 48 ns later, and would be
-    /// rounded to the next µs.
+    /// All digits of a time stamp are used. As a float, 1520530308199447453 ns would become 1520530308199447.5 µs, and
+    /// would be rounded up to the next µs.
     #[test]
     fn all_digits_of_a_stamp_count() {
         for (text, unit, commas, time) in [

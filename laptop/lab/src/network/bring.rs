@@ -8,7 +8,8 @@ use crate::network::NetworkKind;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Number of time steps in a window. For each window, comparisons check whether the same outputs have the most spikes.
+/// Number of time steps in a window. A comparison of two runs checks for each window whether the same outputs have the
+/// most spikes in both runs.
 pub const WINDOW: usize = 20;
 
 /// A network to bring onto a chip, and the recordings on which it is tuned and tested.
@@ -55,9 +56,9 @@ pub struct Brought {
     /// precision fire the same outputs. A step is active if an output fires in either run. The recording is the
     /// held-out one. If there is none, it is the recording on which the parameters were tuned.
     pub costs: Vec<(Cost, f64)>,
-    /// Share of active steps in which the same outputs fire in double precision and in the training framework. A low
-    /// share suggests that the network's file, or the rule of its neurons, was understood wrongly. `None` if the
-    /// framework's spikes are not given, or if no output fires.
+    /// Share of active steps in which the same outputs fire in double precision and in the training framework. A step
+    /// is active if an output fires in either run. A low share suggests that the network's file, or the rule of its
+    /// neurons, was understood wrongly. `None` if the framework's spikes are not given, or if no output fires.
     pub reading: Option<f64>,
 }
 

@@ -88,8 +88,9 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
     layer
 }
 
-/// Returns the leak, as a fixed amount for each step, with which the spikes of neuron `at` are nearest to those in
-/// `fired`. `drive` contains the input spikes of the layer.
+/// Chooses a fixed leak for neuron `at`, by which each step moves the potential towards 0. Tries several leaks, and
+/// returns the one that makes the neuron's spikes nearest to those in `fired`. `drive` contains the input spikes of the
+/// layer.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
     let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {

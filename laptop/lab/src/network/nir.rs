@@ -239,8 +239,8 @@ impl Graph {
         after
     }
 
-    /// Follows the chain of nodes from `first` to `last`. Returns the name of each node on the chain, with the node's
-    /// connections back to itself.
+    /// Follows the chain of nodes from `first` to `last`. Returns, for each node, its name and the connections that
+    /// lead from the node back to itself.
     ///
     /// # Errors
     /// Returns an error if the graph is not a chain.

@@ -45,9 +45,9 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front. Its item for a step along the efficiency axis is the scheme with the least error at
-    /// that efficiency or above, with the efficiency and the error that it reaches; `None` if no scheme reaches that
-    /// efficiency.
+    /// Returns the common front, as one item for each step along the efficiency axis. Among the points of all schemes
+    /// at the step's efficiency or above, the item is the point with the least error: its scheme, efficiency and error.
+    /// The item is `None` if no scheme reaches the step's efficiency.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);
@@ -65,7 +65,7 @@ impl Panel {
 /// shares of all channels' common fronts, the largest share first. At most as many schemes are returned as there are
 /// colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// A scheme gets a name and a colour only if it forms more than this share of the common fronts.
+    /// A scheme gets a name and a colour only if it forms more than this share of the common fronts of all panels.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {

@@ -29,7 +29,8 @@ pub struct Messages {
 }
 
 impl Messages {
-    /// Opens a log, and returns the header of its spikes. If the log has no header, makes a header from all messages.
+    /// Opens a log, and returns a header with the scheme and settings of its spikes. If the log contains no header,
+    /// makes one from the parameters in the messages.
     ///
     /// # Errors
     /// Returns an error if the log has no spikes, or if its messages lack a parameter that decoding needs.
@@ -121,8 +122,9 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike from a message. A message of a single neuron has the spike in the field `spike`. A message of
-/// several neurons has it in element `place` of the array `spike`. Returns `None` beyond the array's end.
+/// Reads a neuron's spike from a message. `of` is the number of spikes in the message, or `usize::MAX` if unknown. A
+/// message of one spike has a number in its field `spike`. A message of several spikes has an array there, whose
+/// element `place` is read. Returns `None` beyond the array's end.
 ///
 /// # Errors
 /// Returns an error if the message has no field `spike`.
@@ -147,7 +149,7 @@ struct Found {
     range: (f64, f64),
     neurons: usize,
     first: i64,
-    /// Sum of the thresholds in all messages. The toolbox decodes with their mean.
+    /// Sum of the thresholds in all messages. As in the paper's toolbox, decoding uses the mean threshold.
     thresholds: f64,
     samples: u64,
     last: i64,

@@ -27,9 +27,9 @@ pub enum Item {
     },
     /// A run of samples that were not finite.
     Rejected {
-        /// Index of the first sample of the run.
+        /// Index of the first sample that was not finite.
         first: u64,
-        /// Number of samples in the run.
+        /// Number of consecutive samples that were not finite.
         count: u64,
     },
     /// The end of the file.

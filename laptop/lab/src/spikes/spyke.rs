@@ -7,8 +7,8 @@ use std::time::Duration;
 /// A message of the paper's toolbox: the spikes of one sample, and parameters for decoding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
-    /// Number of spikes of each neuron, negative for spikes down. The numbers of all neurons in one sub-timestep
-    /// precede the numbers in the next sub-timestep.
+    /// Number of spikes of each neuron in each sub-timestep (part of a sample), negative for spikes down. The numbers
+    /// are in the order of the sub-timesteps, and within each sub-timestep in the order of the neurons.
     pub spikes: Vec<i8>,
     /// Value from which decoding starts.
     pub start: f32,

@@ -25,7 +25,7 @@ pub(super) struct Evolution {
     factors: [f64; MEMORY],
     rates: [f64; MEMORY],
     remembered: usize,
-    /// Scale factor and crossover rate of each point that `ask` returned last.
+    /// Scale factor and crossover rate of each point that the latest call of `ask` returned.
     asked: Vec<(f64, f64)>,
 }
 

@@ -75,7 +75,7 @@ pub enum Limit {
     Latency,
     /// Number of events a second.
     Rate,
-    /// Efficiency in percent.
+    /// Efficiency in percent: 100 less the number of spikes for every 100 samples.
     Efficiency,
     /// Root mean square error, in the signal's unit.
     Rmse,
@@ -138,7 +138,7 @@ pub struct Problem<'a> {
     pub fixed: Asked,
     /// The stretches to tune on.
     pub train: &'a [Stretch],
-    /// The goal.
+    /// The goal of the search.
     pub goal: Goal,
     /// Upper limits on what settings may cost.
     pub limits: &'a Limits,

@@ -16,7 +16,7 @@ use std::fmt::Write;
 pub(crate) const DRIFTS: &str = "drifts: the errors of all its steps add up until a keyframe comes, and each flight's add up \
      otherwise: not to be relied on in another flight";
 
-/// One channel of all recordings, cut into stretches.
+/// One channel of all recordings, cut into stretches: consecutive samples that are coded in one piece.
 pub struct Cut {
     /// The channel's name.
     pub name: String,

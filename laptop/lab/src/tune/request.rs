@@ -16,8 +16,8 @@ use std::time::{Duration, Instant};
 
 /// The logs, schemes and goal of a search, for [`tune`].
 pub struct TuneRequest {
-    /// Logs that are tuned on together. Each log has one recording for each channel, and all logs have the same
-    /// channels.
+    /// Logs from which one result is found for each channel. Each log has one recording for each channel, and all logs
+    /// have the same channels.
     pub logs: Vec<Vec<Recording>>,
     /// The schemes whose parameters are searched, each scheme by itself.
     pub schemes: Vec<Scheme>,
@@ -265,7 +265,8 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
     Ok(Outcome::Row(Box::new(Row::new(&problem, channel, &found, best, request.below)?)))
 }
 
-/// Returns the curve of a Pareto front, scored on held-out blocks or, if there are none, on the blocks tuned on.
+/// Scores the settings of a Pareto front, and returns the curve of their efficiencies and errors. The settings are
+/// scored on the held-out blocks or, if no block is held out, on the blocks used for tuning.
 fn curve(problem: &Problem, cut: &Cut, found: &Found, paper: Option<&Scored>) -> Curve {
     let stretches = if cut.held_out.is_empty() { &cut.train } else { &cut.held_out };
     let scored = |one: &Scored| {

@@ -1,8 +1,8 @@
-//! Searches for settings. If the scheme can list the outcomes of all thresholds, the search is exact; otherwise, the
-//! search is an evolution.
+//! Searches for the settings of a scheme. The search is exact if the scheme can list the number of spikes and the error
+//! for all thresholds. Otherwise, the search is an evolution.
 //!
-//! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
-//! every machine.
+//! The length of a search is counted in settings scored with the codec, not in seconds. Therefore the result is the
+//! same on every machine.
 
 use super::Bound;
 use super::bounds::bounds;
@@ -45,7 +45,7 @@ pub struct Found {
     pub bounds: Vec<Bound>,
 }
 
-/// Options of a search that do not belong to its problem.
+/// Options of a search that its `Problem` does not contain.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
     /// Seed of the random generator.
@@ -172,8 +172,8 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Searches for settings that meet a goal by evolution, until `until` settings have been scored in the whole
-    /// search.
+    /// Runs an evolution that searches for settings for `goal`. The evolution ends when the whole search has scored
+    /// `until` settings, or when the budget is spent.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
         let own = until.saturating_sub(self.found.evaluated);
         let before = self.found.evaluated;

@@ -36,7 +36,7 @@ pub(super) struct Axis {
 pub(super) enum Role {
     /// The natural logarithm of a quotient: the parameter divided by the given unit.
     Log(f64),
-    /// The difference between the parameter and the first given value, divided by the second given value.
+    /// The difference between the parameter and the first value, as a multiple of the second value.
     Around(f64, f64),
     /// The quotient of the parameter and the sum of the absolute values of the filter's taps.
     OfFilter,
@@ -133,9 +133,9 @@ impl Space {
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns the axis along which a scheme can compare many values in one pass. This is the axis of the threshold, as
-    /// a share of the sum of the taps' absolute values. If the scheme has no threshold, it is the axis of the sum of
-    /// the taps.
+    /// Returns the axis on which a scheme can try many values in one pass over the signal; `None` if the space has no
+    /// such axis. For a scheme with a threshold, it is the axis of the quotient of the threshold and the sum of the
+    /// taps' absolute values. For a scheme without a threshold, it is the axis of the sum of the taps.
     pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
         let has_threshold =
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");

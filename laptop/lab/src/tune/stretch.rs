@@ -71,11 +71,11 @@ const SHORTEST: usize = 20;
 /// last block is among them.
 const OFFSET: f64 = 0.35;
 
-/// Cuts a recording into blocks. Returns the stretches to tune on, and the stretches in which only the held-out blocks
-/// are scored.
+/// Cuts a recording into blocks. Returns two lists of stretches: those to tune on, and those in which only the held-out
+/// blocks are scored.
 ///
-/// Adjacent blocks that are tuned on form one stretch. Held-out blocks are coded as in flight: each segment is coded in
-/// one piece, including the blocks to tune on, and only the held-out blocks are scored. If each block were coded alone,
+/// Adjacent blocks for tuning form one stretch. Held-out blocks are coded as in flight: each segment is coded in one
+/// piece, including its blocks for tuning, and only the held-out blocks are scored. If each block were coded alone,
 /// a code that drifts would start each block from the right value, and its drift would not show.
 ///
 /// # Errors

@@ -186,7 +186,7 @@ fn read(
     })
 }
 
-/// Lists the names of the numbers that a field consists of.
+/// Returns the names of all numbers in a field that contains several, separated by commas.
 fn within(definition: &Definition, field: &str) -> String {
     let (numbers, _) = definition.names();
     let own: Vec<&str> =

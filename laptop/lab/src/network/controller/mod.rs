@@ -195,8 +195,8 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
-/// Chooses the steps of the self-test. Returns the inputs of [`CHECKED`] consecutive steps in which the network,
-/// started from rest, fires the most spikes; steps in which an output fires are preferred.
+/// Chooses the steps of the self-test, and returns their inputs: [`CHECKED`] consecutive steps during which the network
+/// fires the most spikes if it starts from rest. Prefers steps in which an output fires.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
     /// Maximum number of sequences of [`CHECKED`] steps whose spikes are counted to find the best sequence.
     const TRIED: usize = 200;

@@ -184,7 +184,7 @@ pub(super) struct Done<K> {
     pub fired: Vec<Trains>,
     /// The potentials of the last layer, by step.
     pub potentials: Vec<Vec<K>>,
-    /// Number of weights that were added, for each step.
+    /// Number of weight additions, by step.
     pub operations: Vec<u64>,
     /// Number of times that a neuron's potential or current left its range and was limited.
     pub saturated: u32,

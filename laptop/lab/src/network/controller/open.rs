@@ -16,7 +16,7 @@ pub enum Choice {
     Fires,
     /// How a time constant becomes the factor by which a step multiplies a potential.
     Decay,
-    /// Whether the potential takes the current of this step or of the step before.
+    /// Whether a step adds its own current to the potential, or the current of the step before.
     Current,
     /// The duration of a step, in seconds.
     Step,

@@ -213,8 +213,9 @@ impl Asked {
         }
     }
 
-    /// Fills in, for a chip, parts that neither the user nor the framework gives: neurons fire above the threshold,
-    /// decay by [`Decay::Euler`] and add [`Current::New`], and a step lasts `seconds`. Leaves the reset open.
+    /// Fills in the parts of the rule that neither the user nor the framework gives, for a network on a chip. Neurons
+    /// then fire above the threshold, decay by [`Decay::Euler`] and add [`Current::New`], and a step lasts `seconds`.
+    /// Leaves the reset open.
     pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Self {

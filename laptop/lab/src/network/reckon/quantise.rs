@@ -1,4 +1,4 @@
-//! Quantises a network from double precision to the integers of `ReckOn`.
+//! Quantises a network from double precision to the integers of the chip `ReckOn`.
 
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
@@ -10,9 +10,10 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The integer that stands for a factor of 1, by which a step multiplies a neuron's potential.
+/// The integer that stands for a decay factor of 1. Each step multiplies a neuron's potential by its decay factor.
 const KEEP: f64 = 32_768.0;
-/// The integer that stands for a factor of 1, by which a step multiplies an output's potential.
+/// The integer that stands for a decay factor of 1 of an output. Each step multiplies the output's potential by this
+/// factor.
 const OUTPUT_KEEP: f64 = 128.0;
 /// Smallest factor by which a tick can multiply the potential of the chip's neurons.
 const LEAST_KEEP: f64 = 0.875;

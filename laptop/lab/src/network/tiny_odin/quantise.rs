@@ -68,7 +68,7 @@ pub(super) struct ChipNeuron {
     /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
     /// neuron of the layer follows.
     pub weights: Vec<i8>,
-    /// Weight that acts in every step.
+    /// Weight that the neuron receives in every step.
     pub bias: i8,
     /// Potential at which the neuron fires.
     pub threshold: u16,
@@ -470,7 +470,7 @@ mod tests {
     use crate::network::{Fires, Reset};
 
     /// Makes random inputs with at most one spike in a step. If a step had several spikes, the chip's neuron might fire
-    /// at the first one, and the weights of the others would remain in its potential.
+    /// at the first spike. The weights of the other spikes would then remain in the neuron's potential.
     fn some(inputs: u16, steps: u32) -> Trains {
         let fires = |step: u32, input: u16| {
             let mixed = (step * 257 + u32::from(input) * 7919).wrapping_mul(0x9E37_79B9);

@@ -33,7 +33,7 @@ use spikewire_chips::{{Inputs, Steps, StepsLayer, TinyOdinNetwork, TinyOdinNeuro
 #[rustfmt::skip]
 pub static STEPS: Steps = {steps};
 
-/// Neurons in each layer: {layers}. The inputs of the network are the rows that `STEPS` uses.
+/// Neurons in each layer: {layers}. The field `inputs` contains the rows of synapses that `STEPS` uses.
 #[rustfmt::skip]
 pub static NETWORK: TinyOdinNetwork<{rows}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [

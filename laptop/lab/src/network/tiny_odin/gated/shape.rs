@@ -32,7 +32,7 @@ pub(super) struct Shape {
     /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
     /// They follow the rungs that [`below`](Self::below) counts.
     pub above: u16,
-    /// Number of rungs that raise a neuron at rest from the offset to 0.
+    /// Number of rungs (events that raise the neurons) that raise a neuron at rest from the downward offset to 0.
     pub below: u16,
     /// The leaks that all neurons receive: one list for each step. After the last list, the next step uses the first
     /// list again. A list has one entry for each leak: the number of events that lower the neurons before this leak.
