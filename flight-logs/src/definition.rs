@@ -40,7 +40,7 @@ pub enum Kind {
     Hidden(Number),
     /// A text of UTF-8, preceded by its length.
     Text,
-    /// A character of a text of fixed length: an array of this type is a text.
+    /// A character in a text of fixed length. The text is an array of this type.
     Character,
     /// A text of 2 or 4 bytes for each character; the definition does not tell which, so fields after it cannot be
     /// read.
@@ -256,8 +256,8 @@ impl Definition {
         self.find(asked).ok().filter(|(_, kind)| *kind == Kind::Text).map(|(path, _)| path)
     }
 
-    /// Returns the paths to a time stamp, selected by a name such as `header.stamp`; `None` if the name does not select
-    /// a time stamp.
+    /// Finds a time stamp by a name such as `header.stamp`; returns the paths to its seconds and nanoseconds. Returns
+    /// `None` if the name does not select a time stamp.
     pub fn stamp(&self, asked: &str) -> Option<Stamp> {
         let Ok((path, Kind::Nested(index))) = self.find(asked) else { return None };
         let [seconds, nanoseconds] = &self.nested(index).fields[..] else { return None };
@@ -300,8 +300,8 @@ impl Definition {
         Err(NoNumber::Missing)
     }
 
-    /// Returns the names of all numbers, and the names of all texts. The name of an array is `name[0..9]` if it has 9
-    /// items, or `name[]` if its number of items varies.
+    /// Returns the names of all numbers, and the names of all texts. An array of 9 items is named `name[0..9]`; an
+    /// array of variable length is named `name[]`.
     pub fn names(&self) -> (Vec<String>, Vec<String>) {
         let (mut numbers, mut texts) = (Vec::new(), Vec::new());
         self.add_names(self.root(), "", &mut numbers, &mut texts);

@@ -1,5 +1,5 @@
-//! Reads MCAP files: a sequence of records, each with a kind and a length. Messages are records, or lie in chunk
-//! records, which may be compressed.
+//! Reads MCAP files. A file is a sequence of records, each with a kind and a length. Each message is a record. Chunk
+//! records contain further records, and may be compressed.
 //!
 //! The index is not used, so files that were never closed can be read too.
 
@@ -39,7 +39,8 @@ pub(crate) struct Mcap {
     walk: Walk,
     /// Name, encoding and text of each schema. The key is the schema's number.
     schemas: HashMap<u16, (String, String, String)>,
-    /// Index in `walk.topics` of each channel's topic. The key is the channel's number.
+    /// Topic of each channel, as an index in `walk.topics`. The key is the number by which messages refer to the
+    /// channel.
     channels: HashMap<u16, usize>,
     data: Vec<u8>,
 }

@@ -143,7 +143,10 @@ pub(crate) struct Directory {
 }
 
 impl Directory {
-    /// Opens a bag, given by the path of its directory or of the file `metadata.yaml` in it.
+    /// Opens a bag. `path` is the directory of the bag, or the file `metadata.yaml` in the directory.
+    ///
+    /// # Errors
+    /// Returns an error if `metadata.yaml` cannot be read, or lists no files.
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
         let metadata = if files::is_dir(path) { path.join(METADATA) } else { path.to_owned() };
         let text = files::read_to_string(&metadata)

@@ -106,8 +106,8 @@ impl Format {
         Self { name, length, columns, instance: None, time, topics: HashMap::new() }
     }
 
-    /// Returns the definition of this format's messages after conversion. Set `is_text` for a text log, whose numbers
-    /// become `f64`.
+    /// Returns the definition of this format's messages, as the reader converts them. In a binary log, fixed-point
+    /// numbers and half-precision floats become `f64`. Set `is_text` for a text log, in which all numbers become `f64`.
     fn definition(&self, is_text: bool) -> Result<Definition, String> {
         let columns = self.columns.as_ref().map_err(Clone::clone)?;
         let field = |column: &Column| {
@@ -129,10 +129,11 @@ impl Format {
     }
 }
 
-/// Parses the columns of a format.
+/// Parses the columns of a message format. `letters` has a letter for the type of each column; `names` has the names,
+/// separated by commas.
 ///
 /// # Errors
-/// Returns the reason if a letter is unknown, or if header and columns do not add up to `length` bytes.
+/// Returns the reason if a letter is unknown, or if `length` is not the total size of header and columns in bytes.
 fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, String> {
     const HEAD: usize = 3;
     let mut names = names.split(',').map(str::trim);
@@ -168,7 +169,7 @@ fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
 }
 
 impl Formats {
-    /// Returns the formats that every log has from the start: `FMT` itself.
+    /// Returns the formats that are known before any message is read: only that of `FMT` messages.
     pub(crate) fn new() -> Self {
         let mut formats = Self::default();
         let columns = "Type,Length,Name,Format,Columns";
@@ -180,7 +181,7 @@ impl Formats {
         self.of_type.get(&kind)
     }
 
-    /// Returns the type of messages called `name`, if one is defined.
+    /// Returns the number of the message type called `name`, if such a type is defined.
     pub(crate) fn named(&self, name: &str) -> Option<u8> {
         self.by_name.get(name).copied()
     }

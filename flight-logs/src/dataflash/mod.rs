@@ -1,8 +1,8 @@
 //! Reads `ArduPilot`'s `DataFlash` logs: the binary form `.bin`, and the text form `.log`.
 //!
-//! Every type of message is a topic; further instances of a sensor have topics such as `IMU:1`. Columns that are logged
-//! as fixed-point integers are divided by their factor, as pymavlink does. The multipliers of the message `MULT` refer
-//! to units, and are not applied to numbers.
+//! Every type of message is a topic. Further instances of a sensor have topics such as `IMU:1`. Columns that are logged
+//! as fixed-point integers are divided by their factor, as in the Python library pymavlink. Messages of type `MULT`
+//! define multipliers for units; the numbers of a log are not multiplied by them.
 
 mod binary;
 mod format;

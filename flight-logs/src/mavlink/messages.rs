@@ -86,7 +86,7 @@ impl Message {
     }
 }
 
-/// Parses `type name name; type name`; returns type and name of each field.
+/// Parses a list of fields, such as `float roll pitch; uint8_t mode`; returns the type and the name of each field.
 fn fields(text: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
     text.split(';').flat_map(|group| {
         let mut words = group.split_whitespace();
