@@ -141,7 +141,7 @@ fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
 }
 
 impl Chunked for Bag {
-    /// A record, given by its offset in the file. The record's content is in `header` and `data`.
+    /// Offset of a record in the file. The record's content is in `header` and `data`.
     type Record = u64;
 
     fn walk(&self) -> &Walk {

@@ -15,7 +15,7 @@ pub(crate) struct Chunk {
     taken: usize,
     /// Offset of the chunk in the file.
     at: u64,
-    /// Whether the chunk is known to be incomplete. The fault has then been counted already.
+    /// Whether the chunk is known to be incomplete. If so, its fault has already been counted.
     is_cut: bool,
 }
 
@@ -120,7 +120,7 @@ pub(crate) trait Chunked {
     /// Returns the state of reading: file, faults, topics, current chunk and last message.
     fn walk(&self) -> &Walk;
 
-    /// Returns the state of reading, to change it.
+    /// Returns the state of reading, as a mutable reference.
     fn walk_mut(&mut self) -> &mut Walk;
 
     /// Reads the next record in the current chunk. If the record is a message, returns its entry and stores its content

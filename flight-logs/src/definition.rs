@@ -42,10 +42,10 @@ pub enum Kind {
     Text,
     /// A character in a text of fixed length. The text is an array of this type.
     Character,
-    /// A text of 2 or 4 bytes for each character; the definition does not tell which, so fields after it cannot be
-    /// read.
+    /// A text with 2 or 4 bytes for each character. The definition does not tell the number of bytes, so the fields
+    /// after the text cannot be read.
     WideText,
-    /// A nested message. Pass its index to [`Definition::nested`].
+    /// A nested message. [`Definition::nested`] returns its layout for this index.
     Nested(usize),
 }
 
@@ -117,9 +117,9 @@ pub struct Path(pub Vec<Step>);
 /// One step of a [`Path`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// To the field with this index in the message.
+    /// Step from a message to its field with this index.
     Field(usize),
-    /// To the item with this index in the array.
+    /// Step from an array to its item with this index.
     Item(usize),
 }
 

@@ -172,9 +172,9 @@ impl Kind {
         }
     }
 
-    /// Recognises the format of a log by its first bytes, which must be decompressed; 8 KiB are enough. Returns `None`
-    /// if the bytes are not the start of a log. A ROS 2 bag that is a directory has no first bytes; use [`Kind::of`]
-    /// for it.
+    /// Recognises the format of a log by its first bytes; 8 KiB are enough. If the log is compressed, decompress it
+    /// first. Returns `None` if the bytes are not the start of a log. For a ROS 2 bag that is a directory, use
+    /// [`Kind::of`] instead.
     pub fn of_start(start: &[u8]) -> Option<Self> {
         of_start(start)
     }

@@ -19,7 +19,7 @@ pub(crate) const START: &[u8] = b"\x89MCAP";
 /// First bytes of an MCAP file of version 0, the only one supported.
 const VERSION: &[u8] = b"\x89MCAP0\r\n";
 
-/// Kinds of records: the opcodes.
+/// Opcodes: the bytes that tell the kind of a record.
 mod op {
     pub(crate) const HEADER: u8 = 1;
     pub(crate) const FOOTER: u8 = 2;
@@ -139,7 +139,7 @@ impl Mcap {
 }
 
 impl Chunked for Mcap {
-    /// A record, given by its kind and its offset in the file. The record's content is in `data`.
+    /// Kind of a record, and its offset in the file. The record's content is in `data`.
     type Record = (u8, u64);
 
     fn walk(&self) -> &Walk {

@@ -50,14 +50,14 @@ pub(crate) fn number(
     }
 }
 
-/// Returns whether a message has bytes after the fields of its definition, apart from up to three bytes of padding in
-/// CDR.
+/// Returns whether a message has more bytes than the fields of its definition. In CDR, the encoding of ROS 2, up to
+/// three bytes of padding are allowed after the fields.
 pub(crate) fn is_longer(wire: Wire, definition: &Definition, message: &[u8]) -> bool {
     let filling = if wire == Wire::Cdr { 3 } else { 0 };
     length(wire, definition, message).is_ok_and(|length| length + filling < message.len())
 }
 
-/// Returns the length of a message's fields by its definition, in bytes.
+/// Returns the number of bytes that the fields of `definition` take in a message.
 pub(crate) fn length(wire: Wire, definition: &Definition, message: &[u8]) -> Result<usize, Fault> {
     let mut input = Input::new(wire, message)?;
     input.skip_struct(definition, definition.root())?;

@@ -53,10 +53,10 @@ struct Session {
     /// Values of the last two frames of the main loop, the latest first.
     previous: Option<[Vec<i32>; 2]>,
     home: Vec<i32>,
-    /// Iteration and time in µs of the last good frame.
+    /// Number of the loop iteration, and time in µs, of the last good frame.
     last: Option<(i64, i64)>,
-    /// Iteration and time in µs of a full frame that is too far from the last good frame. The next full frame confirms
-    /// or refutes these values.
+    /// Number of the loop iteration, and time in µs, of a full frame that is too far from the last good frame. The next
+    /// full frame confirms or refutes this iteration and time.
     doubted: Option<(i64, i64)>,
     /// Index of the field `loopIteration` in a frame of the main loop, if the log has this field.
     iteration: Option<usize>,

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 /// Layout of a `MAVLink` message.
 pub(crate) struct Message {
     pub name: &'static str,
-    /// The byte `CRC_EXTRA`. The checksum covers this byte after the bytes of the packet. The byte depends on the
-    /// layout, so that the checksum fails if the sender has a different layout.
+    /// The byte `CRC_EXTRA`, which is not sent. The checksum is computed over the bytes of the packet, then over this
+    /// byte. The byte is computed from the layout, so that the checksum fails if the sender uses a different layout.
     pub extra: u8,
     /// Length of all fields together, in bytes.
     pub length: usize,

@@ -88,8 +88,8 @@ fn look(left: &[u8]) -> Ahead<'_> {
 }
 
 impl Packet<'_> {
-    /// Returns whether the packet at the start of `left` is valid. The packet of a known message needs the right
-    /// checksum. The packet of an unknown message must be followed by another packet.
+    /// Returns whether the packet at the start of `left` is valid. If its message is known, the checksum must
+    /// be right. If not, another packet must follow.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
             Some(message) => {

@@ -22,7 +22,7 @@ pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` a
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
     topics: Vec<Topic>,
-    /// Layouts of messages, one for each topic, in the order of `topics`.
+    /// Layouts of the topics' messages, in the same order as `topics`.
     series: Vec<Series>,
     /// Valid data messages that are still to be read: index of the topic, and offset in the file.
     messages: std::vec::IntoIter<(usize, usize)>,

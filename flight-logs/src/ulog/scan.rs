@@ -103,8 +103,8 @@ pub(crate) struct Scan<'a> {
 pub(crate) struct Series {
     /// Path to the field with the time at which a message was logged.
     pub time: Path,
-    /// Lengths of a message in bytes: first without the padding at its end, then with it. The logger usually leaves the
-    /// padding out.
+    /// Two lengths of a message in bytes: without the padding at its end, and with the padding. The logger usually
+    /// leaves the padding out.
     pub lengths: (usize, usize),
 }
 
@@ -181,7 +181,7 @@ impl<'a> Scan<'a> {
         (is_one && is_led).then_some(message)
     }
 
-    /// Returns whether the bytes from offset `at` on are three valid messages in a row.
+    /// Returns whether three valid messages follow each other, the first at offset `at`.
     fn goes_on(&self, at: usize, end: usize) -> bool {
         const ENOUGH: usize = 3;
         let mut next = at;
@@ -286,7 +286,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// Returns whether `ULog` has messages of this kind with this length.
+/// Returns whether `ULog` defines the kind of a message, and allows the message's length for this kind.
 fn is_known(message: &Message) -> bool {
     let length = message.content.len();
     match message.kind {
