@@ -34,12 +34,11 @@ export function fitted(setting, given, ranges) {
   const { field, min, max } = state.recording, { parameters } = schemeOf(setting), share = shareOf(field);
   const scaled = (own) => {
     const [low, high] = ranges[own], factor = (high - low) / (max - min || 1), isOther = shareOf(own) !== share;
-    return Object.fromEntries(Object.entries(given).flatMap(([name, value]) => {
-      const { slider, unit } = parameters.find((each) => each.name === name) ?? {};
-      if (slider?.of === "around") return [[name, text(low + (Number(value) - min) * factor)]];
-      if (unit !== "signal" || !isOther) return [[name, value]];
-      // What is no single number is left to the signal.
-      return Number.isFinite(Number(value)) && factor > 0 ? [[name, text(value * factor)]] : [];
+    return Object.fromEntries(Object.entries(given).map(([name, value]) => {
+      const { slider, unit } = parameters.find((each) => each.name === name) ?? {}, numbers = value.split(",").map(Number);
+      if (unit !== "signal" || !numbers.every(Number.isFinite)) return [name, value];
+      if (slider?.of === "around" || numbers.length > 1) return [name, numbers.map((each) => text(low + (each - min) * factor)).join()];
+      return [name, isOther ? text(value * factor) : value];
     }));
   };
   const others = ranges[field] ? Object.keys(ranges).filter((own) => own !== field) : [];

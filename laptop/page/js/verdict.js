@@ -19,13 +19,13 @@ function flownOn({ flown, parameters }, field) {
 const SLOWEST = 250;
 const isNear = (own, flown) => (typeof flown === "number" ? Math.abs(Number(own) - flown) <= 0.02 * Math.abs(flown) : own === String(flown));
 
-/** A code does not follow a signal that is less than this many dB above the error. */
-const LEAST_SNR = 6;
+/** An error is told that is more than a quarter of the signal. */
+const LEAST_SNR = 12;
 
 /** How badly a code serves the very log that is looked at; nothing if it does not. */
 function here({ spikes, snr }) {
   if (!spikes) return "on this log it sends no spike";
-  return snr !== null && snr < LEAST_SNR ? `on this log it does not follow: the error is ${fixed(100 * 10 ** (-snr / 20), 0)} % of the signal` : "";
+  return snr !== null && snr < LEAST_SNR ? `on this log the error is ${fixed(100 * 10 ** (-snr / 20), 0)} % of the signal` : "";
 }
 
 /** The words for the figures, and the reason. */
