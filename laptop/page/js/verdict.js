@@ -19,12 +19,13 @@ function flownOn({ flown, parameters }, field) {
 const SLOWEST = 250;
 const isNear = (own, flown) => (typeof flown === "number" ? Math.abs(Number(own) - flown) <= 0.02 * Math.abs(flown) : own === String(flown));
 
-/** An error is told that is more than a quarter of the signal. */
-const LEAST_SNR = 12;
+/** An error is told that is more than so many thresholds, as of a signal that is too steep for the code, or half of the signal. */
+const THRESHOLDS = 5, LEAST_SNR = 6;
 
 /** How badly a code serves the very log that is looked at; nothing if it does not. */
-function here({ spikes, snr }) {
+function here({ spikes, snr, rmse }, { threshold }) {
   if (!spikes) return "on this log it sends no spike";
+  if (rmse > THRESHOLDS * threshold) return `on this log it does not follow: the error is ${fixed(rmse / threshold, 0)} times the threshold`;
   return snr !== null && snr < LEAST_SNR ? `on this log the error is ${fixed(100 * 10 ** (-snr / 20), 0)} % of the signal` : "";
 }
 
@@ -43,7 +44,7 @@ export function verdict(setting, { settings, figures }) {
   if (state.recording.rate < 0.99 * SLOWEST) differ.push(`${SLOWEST} samples a second or more`);
   const far = `${fine(flown.beside)} times the error without a code`;
   if (differ.length) return ["not known", `${name} flew, with ${far}, but with ${differ.join(", ")}.`];
-  const fault = here(figures);
+  const fault = here(figures, group);
   return [fault ? "in simulation; here see below" : "in simulation", `No simulated flight with just these settings was lost, with ${far}${fault ? `; but ${fault}` : ""}.`];
 }
 

@@ -49,7 +49,7 @@ export const steps = {
   async "says of what flew whether it serves this log"() {
     const page = await opened();
     for (const [factor, cell, words] of [[1, /^in simulation$/, /No simulated flight with just these settings was lost, with [\d.]+ times the error without a code\.$/],
-      [100, /^in simulation; here see below$/, /; but on this log the error is \d+ % of the signal\.$/], [1e-3, /^in simulation; here see below$/, /on this log it sends no spike/]]) {
+      [100, /^in simulation; here see below$/, /; but on this log it does not follow: the error is \d+ times the threshold\.$/], [1e-3, /^in simulation; here see below$/, /on this log it sends no spike/]]) {
       await drop(page, { name: "own.csv", bytes: flight((value) => factor * value) });
       await page.selectOption("#scheme", "sod");
       await settled(page);
