@@ -14,8 +14,8 @@ const SMALLEST: f64 = 1e-3;
 /// Maximum number of samples that are processed to list outcomes. An outcome is a threshold with its spikes and its
 /// error. The limit bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Factor of a second limit on the number of samples that are processed to list outcomes: this factor times the number
-/// of settings that the search may score. The second limit keeps a search with a small budget short.
+/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. It keeps
+/// a search with a small budget short; [`PASSES`] limits the others.
 const PASSES_A_SETTING: usize = 200_000;
 /// Maximum number of ranges around good thresholds in which the outcomes of further thresholds are listed.
 const NEIGHBOURHOODS: usize = 24;

@@ -80,7 +80,7 @@ pub(crate) struct Inner {
 }
 
 impl Space {
-    /// Makes the space of those of the scheme's parameters that are searched and have no value in `fixed`. `extent`
+    /// Makes the space of the scheme's searched parameters. A parameter with a value in `fixed` is not searched. `extent`
     /// holds the range and mean of the samples.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();

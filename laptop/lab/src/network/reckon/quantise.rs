@@ -394,7 +394,7 @@ struct Drive {
     inputs: Vec<u16>,
     /// Neurons of the layer before that fire, each as the index of its layer and its index in the layer.
     before: Vec<(usize, usize)>,
-    /// Neurons of the layer itself that fire in the step. Their spikes act at the tick after.
+    /// Neurons of the layer itself that fire in the step. Their spikes act one tick later.
     own: Vec<(usize, usize)>,
 }
 

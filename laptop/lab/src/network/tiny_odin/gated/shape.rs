@@ -93,8 +93,8 @@ impl Share {
         (1.0 - keep) / (1.0 + keep) * self.spacing * f64::from(rung)
     }
 
-    /// Returns the amount that the leaks of a step add to a potential of 0, for a neuron with rungs of `rung` and leaks
-    /// of `leak`.
+    /// Returns where a potential of 0 lies after the leaks of a step. Each leak moves the neuron's potential by `leak`;
+    /// each event that raises the neuron (a rung) moves it by `rung`.
     pub(super) fn drift(self, leak: u8, rung: u8) -> f64 {
         let (leak, rung) = (f64::from(leak), f64::from(rung));
         2.0 * leak / (self.spacing * rung + leak) * (self.levels * leak + self.middle * rung)
