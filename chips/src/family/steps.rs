@@ -13,9 +13,9 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// Then events on an extra row of weights raise the first layer. Each of these events raises the layer by one *rung*.
 /// After the last of these events the offset is gone, and the neurons above their thresholds have fired. Their spikes
 /// go to the next layer, which is raised in turn. Finally, events on a second extra row lower all neurons again. Leaks
-/// are sent between the lowering events. A leak moves the sum of a potential and its offset at that moment towards 0.
-/// Leaks at several offsets together reduce a potential by a share of its value, as in training. A neuron that fired
-/// may end above its reset value; leaks that only this neuron receives remove the excess.
+/// are sent between the lowering events. A leak moves the lowered potential towards 0, by a fixed amount. Leaks while
+/// the potentials are lowered by different amounts together reduce a potential by a share of its value, as in training.
+/// A neuron that fired may end above its reset value; leaks that only this neuron receives remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};

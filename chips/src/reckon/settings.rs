@@ -50,9 +50,8 @@ pub enum ReckOnTask {
 pub struct ReckOnLearning {
     /// Whether the weights from inputs, between neurons and to outputs learn, in this order.
     pub learns: [bool; 3],
-    /// Number of extra fractional bits of the traces, 0 to 7 each. (A trace is a measure of recent spikes.) The three
-    /// numbers are for the traces from which the weights from inputs, between neurons and to outputs learn, in this
-    /// order.
+    /// Number of extra fractional bits of the traces, 0 to 7 each. A trace is a measure of recent spikes, from which
+    /// weights learn. In this order: traces for the weights of inputs, of connections between neurons, of outputs.
     pub traces: [u8; 3],
     /// Left shift of the learning signal, 0 to 15. (After this shift, the chip divides the signal by 4096.)
     pub signal: u8,
@@ -68,7 +67,7 @@ pub struct ReckOnLearning {
     pub is_linear: bool,
 }
 
-/// The registers that set the chip's answers and its learning.
+/// The values of the registers that choose what the chip's outputs report, and how its weights learn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

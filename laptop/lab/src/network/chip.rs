@@ -32,9 +32,9 @@ pub trait Chip: Sync {
 /// that support both variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// Comparison after each spike that arrives: the chip's default.
+    /// After each spike that arrives at the neuron: the chip's default.
     Spike,
-    /// Comparison once in each time step, as in training. The driver sends extra events to the chip for this purpose.
+    /// Once in each time step, as in training. The driver sends extra events to the chip for this purpose.
     Step,
 }
 
