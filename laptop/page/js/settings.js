@@ -78,12 +78,14 @@ export function take(scheme, given) {
   return replace(given ? fitted(setting, given, axes.ranges) : setting);
 }
 
-/** Takes a flight's file: each channel has its parameters there, any other those of the first. */
+/** Takes a flight's file: each channel has its parameters there, other turn rates those of the first. */
 export const takeFlight = (file) => whileBusy(async () => {
   state.fileError = undefined;
   try {
     const { channels, scheme, sample, filter, keyframeMs } = await state.library.ask({ ask: "read-flight", text: await file.text() });
-    const own = Object.fromEntries(channels.map(({ source, parameters }) => [source, parameters]));
+    // The program names a log's channels with their topic.
+    const { topic } = state.channel, field = (source) => (topic && source.startsWith(`${topic}.`) ? source.slice(topic.length + 1) : source);
+    const own = Object.fromEntries(channels.map(({ source, parameters }) => [field(source), parameters]));
     await replace({ scheme, sample, parameters: channels[0].parameters, own, filter, keyframe_ms: keyframeMs });
   } catch (error) {
     state.fileError = Object.assign(error, { message: `${file.name}: ${error.message}` });

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { DATA, drop, enter, figure, opened, settled, text } from "./harness.mjs";
-import { euroc } from "./made.mjs";
+import { euroc, px4 } from "./made.mjs";
 
 const [head, ...rows] = readFileSync(join(DATA, "hexarotor.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
 const own = head.slice(1);
@@ -97,6 +97,23 @@ export const steps = {
     await settled(page);
     const ranges = channels(await text(page, "flight"));
     assert.equal(new Set(ranges.map(({ min, max }) => `${min} ${max}`)).size, 6, JSON.stringify(ranges));
+    await page.context().close();
+  },
+
+  async "takes a flight's file whose channels are named with their topic"() {
+    const page = await opened();
+    await drop(page, { name: "px4.ulg", bytes: px4() });
+    await page.selectOption("#scheme", "sod");
+    await settled(page);
+    const toml = await text(page, "flight"), all = await thresholds(page);
+    assert.equal(new Set(all).size > 1 && all.length, 6, all.join());
+    await page.selectOption("#scheme", "hsa");
+    await settled(page);
+    const named = toml.replace(/^name = "(.*)"$/gm, (line, name) => `${line}\nsource = "sensor_combined.${name}"`).replaceAll(/threshold = ([\d.]+)/g, (_, value) => `threshold = ${2 * value}`);
+    await drop(page, { name: "flight.toml", bytes: Buffer.from(named) });
+    assert.equal(await page.textContent("#file-error"), "");
+    const taken = await thresholds(page);
+    assert(taken.every((value, place) => Math.abs(value / all[place] - 2) < 0.01), `${all}; ${taken}`);
     await page.context().close();
   },
 
