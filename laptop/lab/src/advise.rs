@@ -114,7 +114,7 @@ pub struct Advice {
     unflown: Vec<String>,
     /// Whether a search stopped before it had scored all its settings.
     is_cut_short: bool,
-    /// Largest latency in samples that the control loop tolerates, if its bandwidth is known.
+    /// Largest latency that the control loop tolerates, in samples. `None` if the bandwidth of the loop is unknown.
     loop_latency: Option<f64>,
     /// Bytes a second that the raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,

@@ -124,7 +124,8 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
 }
 
-/// Returns the lines that declare a codec with the given name and constant in `spikewire_c::codecs!`.
+/// Returns the lines that declare a codec in the macro `spikewire_c::codecs!`. `name` is the codec's name, and
+/// `constant` gives its type and value.
 fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
     let Constant { scheme: kind, value } = constant;
     let text = Coding::of_settings(scheme, settings).to_toml(&[]);

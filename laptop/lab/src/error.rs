@@ -78,7 +78,7 @@ pub enum ErrorKind {
     /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
-    /// A trained network is refused, or a setting or spikes for the network are refused.
+    /// A trained network cannot be used, or a setting or spikes do not fit the network.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
     /// A NIR file cannot be read, or its graph is not supported.

@@ -49,12 +49,12 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
     of_settings(*scheme, sample, rate, rows.iter().map(asked))
 }
 
-/// Makes a [`Flight`] of channels, each with its name and the parameters that are set. The flight sends 20 keyframes a
-/// second.
+/// Makes a [`Flight`] that sends 20 keyframes a second. `channels` gives the name of each channel, and the parameters
+/// that are set for it.
 ///
 /// # Errors
-/// Returns an error if there are no channels, or if a parameter that must be equal in all channels, such as a filter or
-/// a count, differs. Returns an error if the sample period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, or if the sample period cannot be expressed in whole µs. Returns an error
+/// if the channels differ in a parameter that must be equal, such as a filter or a count.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,

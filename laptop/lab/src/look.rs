@@ -33,13 +33,15 @@ pub struct ChannelSummary {
     pub noise: f64,
     /// Frequency in Hz below which 99 % of the power around the mean lies.
     pub bandwidth: Option<f64>,
-    /// Percentage of samples that have the lowest or the highest value and stand in runs of three or more.
+    /// Percentage of samples that are clipped. A sample is clipped if it has the lowest or the highest value and
+    /// belongs to a run of three or more equal samples.
     pub clipped: f64,
     /// Lowest and highest sample while the channel is quiet. `None` if the channel is always or never quiet.
     pub rest: Option<[f64; 2]>,
     /// Lowest and highest sample while the channel is not quiet. `None` if the channel is always or never quiet.
     pub flight: Option<[f64; 2]>,
-    /// Percentage of samples during which the channel is quiet.
+    /// Percentage of windows of 64 samples in which the channel is quiet. A window is quiet if its standard deviation
+    /// is at most four times the fifth percentile of all windows' standard deviations.
     pub resting: f64,
     /// Fitness for tuning.
     pub verdict: Verdict,

@@ -9,7 +9,8 @@ use catalogue::run::SampleType;
 /// said to lose the steps.
 const PART: f64 = 0.1;
 
-/// The steps of a column from sample to sample, and the errors that rounding to a sample type causes in them.
+/// Statistics of the steps from sample to sample in a column, and of the errors that rounding to a sample type causes
+/// in these steps.
 pub struct Resolution {
     sample: SampleType,
     previous: Option<f64>,
@@ -89,8 +90,8 @@ impl Resolution {
         })
     }
 
-    /// Returns a text that names the other sample types in which the steps from sample to sample survive rounding. If
-    /// there are none, the text says so.
+    /// Returns a text that names other sample types, in which rounding causes little error in the steps from sample to
+    /// sample. If there are no such types, the text says so.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()
@@ -134,9 +135,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column keeps its steps from sample to sample if its values are rounded to multiples of
-    /// `step`. Rounding changes each of these steps by a third of `step` on average. To be safe, half of `step` is
-    /// assumed.
+    /// Returns whether rounding to multiples of `step` leaves the column's changes from sample to sample nearly as they
+    /// are. On average, rounding alters a change by a third of `step`. To be safe, the check assumes half of `step`.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }

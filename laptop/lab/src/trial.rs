@@ -234,8 +234,8 @@ impl Trial {
     }
 }
 
-/// Returns a note if the decoded values are too low or too high, on average by more than the signal's standard
-/// deviation.
+/// Compares the mean of the decoded values with the mean of the signal. Returns a note if the two means differ by more
+/// than the signal's standard deviation.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

@@ -242,20 +242,21 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
-    /// Fingerprint of the sender, if the caller gave it.
+    /// Fingerprint (hash of the parameters) of the sender, if the caller gave it.
     known: Option<Fingerprint>,
-    /// Fingerprint of each channel's scheme. A single fingerprint if all channels have the same scheme and their number
-    /// is unknown.
+    /// Fingerprint (hash of the parameters) of each channel's scheme. The list has a single fingerprint if all channels
+    /// have the same scheme and the number of channels is unknown.
     schemes: Vec<Fingerprint>,
-    /// Whether any value so far was exact.
+    /// Whether any decoded value so far was known to equal the encoder's value.
     has_exact: bool,
     decoded: Vec<(u16, Tick, P::Sample)>,
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels a frame's keyframes for the decoders, which use one type for all fixed-point types of a width.
-    /// Keyframes of the sender's sample type get the decoders' type. If the two types differ, a keyframe that arrives
-    /// with the decoders' type is wrong: it gets the sender's type, and the receiver counts it as a misfit.
+    /// Returns the frame with its keyframes in the decoders' sample type. The decoders use one type for all fixed-point
+    /// types of a width, so this type may differ from the sender's. If it does, keyframes of the sender's type get the
+    /// decoders' type. A keyframe that arrives in the decoders' type is then wrong: it gets the sender's type, so that
+    /// the receiver counts it as a misfit (a thing that does not fit the scheme).
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -274,7 +275,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         std::array::from_fn(|channel| channel < self.channels && is_exact(channel))
     }
 
-    /// Records which channels fire in a frame, and the tick at which the frame's last sample is over.
+    /// Records the channels that have an event in the frame. Also records the tick, in µs, at which the sample of the
+    /// frame's last event ends.
     fn observe(&mut self, received: &Received<'_>) {
         for event in received.frame.events() {
             if let Some(has_fired) =

@@ -315,8 +315,8 @@ impl Manifest {
     }
 }
 
-/// Puts each flight on a side of the split. The flights with the smallest hashes are for testing. Copies of one log
-/// count as one flight.
+/// Assigns each flight to training or testing, by a hash of the content of a log. The flights with the smallest hashes
+/// are for testing. Copies of one log count as one flight.
 fn split(rows: &mut [Row], test: f64, flights: Flights) {
     let flight = |row: &Row| match flights {
         Flights::Logs => row.sha256.clone(),

@@ -55,7 +55,8 @@ pub struct LinkTally {
 /// should already hold the keyframe's value are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
-    /// Number of keyframes that were compared with an exact value, which the decoder held before the keyframe.
+    /// Number of keyframes that were compared. A keyframe is compared if the decoder's value before the keyframe was
+    /// exact (known to equal the sender's value).
     pub compared: u64,
     /// Number of compared keyframes that differed from the exact value.
     pub contradicted: u64,

@@ -511,8 +511,10 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// Returns the only column that holds neither times nor counts. Returns an error if there is no such column, or if
-/// there are several.
+/// Returns the only column of signals: the column that holds neither times nor row numbers.
+///
+/// # Errors
+/// Returns an error if there is no such column, or if there are several.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {

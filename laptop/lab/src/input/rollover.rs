@@ -10,7 +10,7 @@ const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 /// Limit in µs on the time between the last sample before a wrap of the clock and the first sample after it. A wrap
 /// within the limit is recognised. [`STEPS`] may raise the limit.
 const SECOND: i64 = 1_000_000;
-/// Factor that may raise the limit [`SECOND`]. The limit is at least this multiple of the latest step forward.
+/// Smallest ratio of the limit to the latest step forward. After a long step, the limit is therefore above [`SECOND`].
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.

@@ -32,8 +32,8 @@ const OTHERS: [(&[u8], &str); 12] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8. Text in
-/// other encodings that extend ASCII passes unchanged. `name` is the file's name in errors.
+/// Returns a reader of a file as text. Unpacks files that are packed with gzip or zstd, and converts UTF-16 to UTF-8.
+/// Does not change text in any other encoding that extends ASCII. `name` is the file's name in errors.
 ///
 /// # Errors
 /// Returns an error if the file is not text.

@@ -115,8 +115,8 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
-/// Interprets the name of a column that the user chose as the time. If the name has no unit, the unit is seconds unless
-/// the values suggest a different one.
+/// Interprets the name of the column that the user chose for the times. If the name contains no unit, the unit is
+/// guessed from the values. The guess is seconds unless the values or the name suggest another unit.
 pub(super) fn of_given(name: &str) -> Named {
     match of_name(name) {
         Some(named @ (Named::In(_) | Named::Whole(_))) => named,
@@ -168,8 +168,8 @@ pub(super) enum Reading {
 }
 
 impl Reading {
-    /// Finds the format of a column's times by the information in its name and by its first fields. Returns `None` if
-    /// the fields are not times.
+    /// Finds the format of a column's times. `named` tells what the column's name says about the times, and `first`
+    /// holds the first fields of the column. Returns `None` if the fields are not times.
     pub(super) fn new(named: Named, first: &[&[u8]], has_commas: bool) -> Option<Self> {
         let numbers: Option<Vec<f64>> =
             first.iter().map(|field| number(field, has_commas)).collect();

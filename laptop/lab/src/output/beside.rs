@@ -103,7 +103,8 @@ impl Write for Beside {
     }
 }
 
-/// Returns whether both paths lead to the same file, if necessary through links. The input `-` is standard input.
+/// Returns whether both paths lead to the same file, directly or through links. The path `-` for `input` stands for
+/// standard input.
 pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
         return false;

@@ -32,7 +32,8 @@ pub(super) fn title<B: DrawingBackend>(
     Ok(())
 }
 
-/// Draws the legend of signal and decoded values at the right of the title, above the curves.
+/// Draws the legend, which shows the colours of the signal and of the decoded values. The legend stands above the
+/// curves, to the right of the title.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>) -> Drawn<B> {
     let width = area.dim_in_pixel().0 as i32;
     let small = (FONT, 13).into_font().color(&INK);

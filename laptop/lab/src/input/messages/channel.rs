@@ -121,7 +121,7 @@ impl Channel {
         })
     }
 
-    /// Appends the values and the time of a message, if it is of the chosen topic.
+    /// Appends the values and the time of a message, if the message belongs to the chosen topic.
     fn take(&mut self, entry: Entry, chunk: &mut Chunk) -> Result<()> {
         let Some(plan) = self.plans[entry.topic].as_ref() else { return Ok(()) };
         let topic = &self.log.topics()[entry.topic];
@@ -164,8 +164,8 @@ impl Channel {
     }
 }
 
-/// Appends the values of a message's fields, and returns the message's time in µs. A field beyond the end of a short
-/// array has the value NaN.
+/// Appends the values of a message's fields to `values`, and returns the message's time in µs. A field in an array may
+/// be missing because the array is too short. The value of such a field is NaN.
 fn read(
     topic: &Topic,
     plan: &Plan,

@@ -7,7 +7,8 @@ use serde_json::value::RawValue;
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, BufRead, BufReader, Read};
 
-/// Number of first lines whose names become columns. A name that first appears on a later line is not read.
+/// Number of lines at the start of the file from which the names of the columns are taken. A name that first appears on
+/// a later line is not read.
 const AHEAD: usize = 64;
 
 /// Reads JSON lines as a CSV table.
