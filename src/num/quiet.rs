@@ -6,7 +6,7 @@ use super::arithmetic::{Arithmetic, for_each_integer};
 /// no FPU, whose registers an interrupt would have to save.
 pub(crate) trait Quiet: Copy {
     /// Two words are a band: where it begins, and how wide it is.
-    type Word: Copy;
+    type Word: Copy + Send + Sync;
 
     /// Two of these are a band that no sample lies within.
     const NONE: Self::Word;

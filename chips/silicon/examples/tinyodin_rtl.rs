@@ -2,8 +2,9 @@
 //! of the chip's model. Usage: `tinyodin_rtl SIMULATION NETWORK.rs NETWORK.bytes < STEPS`.
 //!
 //! SIMULATION is the program that Verilator makes of the register-transfer code, driven by `rtl/tinyodin.cpp`. The
-//! network's two files are those that `spikewire network --compare step` writes. Pins and clocks follow the driver's
-//! calls as on the model's board, so that the numbers of clocks must be equal too.
+//! network's two files are those that `spikewire network --compare step` writes. Each call of the driver changes pins
+//! and runs the clock as it does for the model. Thus both must answer with the same spikes after the same number of
+//! clock cycles.
 
 use std::cell::RefCell;
 use std::fs;
@@ -107,7 +108,7 @@ impl SpiDevice for Rtl {
 }
 
 impl Rtl {
-    /// Runs the chip for the clock cycle of a call, and then changes pins.
+    /// Runs the chip for one clock cycle, and then changes pins.
     fn change(&mut self, change: impl FnOnce(&mut Simulation)) -> io::Result<()> {
         let mut chip = self.0.borrow_mut();
         chip.send(1, false)?;

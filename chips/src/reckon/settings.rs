@@ -68,7 +68,7 @@ pub struct ReckOnLearning {
     pub is_linear: bool,
 }
 
-/// The registers that set the chip's answers and its learning.
+/// The values of the registers that choose what the chip's outputs report, and how its weights learn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

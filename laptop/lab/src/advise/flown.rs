@@ -1,5 +1,5 @@
-//! Results of simulated flights with each code in the control loop. The rotors of the simulated drones shake the
-//! sensor. `cargo xtask write loop` measures the results, which `docs/loop.md` shows.
+//! Results of simulated flights with each code in the control loop. In the simulation, the rotors shake the sensor.
+//! `cargo xtask write loop` measures the results, and `docs/loop.md` shows them.
 
 use crate::flight::Filter;
 use serde::{Deserialize, Serialize};
@@ -64,18 +64,20 @@ static BANKS: LazyLock<BTreeMap<String, Flown>> = LazyLock::new(|| {
     serde_json::from_str::<Figures>(FIGURES).map(|figures| figures.banks).unwrap_or_default()
 });
 
-/// What the simulated flights show of a scheme, and the settings that they had.
+/// The verdict of the simulated flights on a scheme, and the settings of these flights.
 #[derive(Debug, Serialize)]
 pub struct Verdict {
-    /// The reason not to fly the scheme with 1 % of its frames lost; `None` if it flies.
+    /// The reason not to fly the scheme on a link that loses 1 % of the frames. `None` if the scheme is fit to fly.
     pub objection: Option<String>,
-    /// Mean ratio of the attitude error to that without a code; `None` if no flight came to its end.
+    /// Attitude error with the code divided by the attitude error without a code, averaged over several drones and
+    /// controllers. `None` if no such pair of errors is known.
     pub beside: Option<f64>,
     /// Corner frequency of the low-pass before the code, in Hz; `None` without a low-pass.
     pub low_pass: Option<f32>,
     /// Time between keyframes, in ms; `None` if the code needs none.
     pub keyframe_ms: Option<f64>,
-    /// Parameters for turn rates, for sideways forces and for the force along the thrust, in rad/s and m/s².
+    /// Parameters of the scheme for three groups of channels: turn rates (rad/s), sideways forces (m/s²), and the force
+    /// along the thrust (m/s²).
     pub groups: Vec<serde_json::Value>,
 }
 

@@ -51,10 +51,10 @@ pub struct Brought {
     pub tuned: Figures,
     /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
-    /// The effect of each part of the chip's arithmetic. To find the effect, the network runs with this part alone, and
-    /// otherwise in double precision. The number is the share of active steps in which this run and full double
-    /// precision fire the same outputs. A step is active if an output fires in either run. The recording is the
-    /// held-out one. If there is none, it is the recording on which the parameters were tuned.
+    /// The effect of each part of the chip's arithmetic on the spikes. Two runs of the network are compared for each
+    /// part: one in double precision except for this part, and one entirely in double precision. The number is the
+    /// share of active steps in which the same outputs fire in both runs. A step is active if an output fires in either
+    /// run. The runs use the held-out recording or, without one, the recording on which the parameters were tuned.
     pub costs: Vec<(Cost, f64)>,
     /// Share of active steps in which the same outputs fire in double precision and in the training framework. A step
     /// is active if an output fires in either run. A low share suggests that the network's file, or the rule of its
@@ -299,7 +299,8 @@ fn root_mean_square(numbers: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(count.max(1))).sqrt()
 }
 
-/// Returns for each step the output with the highest potential; no output for steps in which all potentials are 0.
+/// Returns, for each step, the output with the highest potential. The list for a step is empty if all its potentials
+/// are 0.
 fn highest(potentials: &[Vec<f64>]) -> Trains {
     let of_step = |step: &Vec<f64>| {
         if step.iter().all(|potential| *potential == 0.0) {

@@ -38,10 +38,10 @@ impl Display for Cost {
 const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
 
 impl Cost {
-    /// Runs the network on `inputs` in double precision, with one exception: the part of the chip's arithmetic that
-    /// this cost stands for. Returns the spikes of the last layer. Parameters of this part, such as fixed leaks, are
-    /// fitted beforehand. The fit makes each layer fire the spikes in `fired` when the inputs `tuned` arrive, as far as
-    /// possible.
+    /// Runs the network on `inputs`, and returns the spikes of the last layer. The arithmetic is double precision,
+    /// except for the part of the chip's arithmetic that this cost stands for. This part may have parameters, such as
+    /// fixed leaks. They are chosen beforehand, on a recording with the inputs `tuned`: each layer should then fire the
+    /// spikes in `fired` as nearly as possible.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -88,9 +88,9 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
     layer
 }
 
-/// Chooses a fixed leak for neuron `at`, by which each step moves the potential towards 0. Tries several leaks, and
-/// returns the one that makes the neuron's spikes nearest to those in `fired`. `drive` contains the input spikes of the
-/// layer.
+/// Chooses a fixed leak for neuron `at`: an amount by which each step moves the potential towards 0. Tries several
+/// leaks, and returns the one that makes the neuron's spikes nearest to those in `fired`. `drive` contains the input
+/// spikes of the layer.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
     let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {

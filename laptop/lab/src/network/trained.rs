@@ -293,10 +293,10 @@ impl Trained {
         Ok(self)
     }
 
-    /// Converts layers for chips on which a spike subtracts the threshold one step later. Only layers that subtract the
-    /// threshold in the same step are changed. In these layers, the next leak also reduces the subtracted amount. On
-    /// the chip, it does not, so the chip would subtract too much. A positive weight from each neuron to itself makes
-    /// up for the difference.
+    /// Converts layers for chips on which a spike subtracts the threshold one step later. Changes only layers in which
+    /// a spike subtracts the threshold in the same step. In such a layer, the next leak also reduces the subtracted
+    /// amount. Because the chip subtracts only after this leak, it would subtract too much. A positive weight from each
+    /// neuron to itself makes up for the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {

@@ -27,7 +27,7 @@ static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
 /// The costs of one channel on a flight controller: latency, RAM and instructions.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Costs {
-    /// Latency of the code: how many samples after a sample the encoder emits its code.
+    /// Latency of the code, in samples: the time from a sample until the encoder emits the code of this sample.
     pub latency: usize,
     /// Size of the encoder's state in bytes, if known.
     pub ram: Option<usize>,
@@ -64,8 +64,8 @@ impl Costs {
     }
 }
 
-/// Returns the name of the sample type whose measured instruction counts stand for `sample`. Both types have the same
-/// width.
+/// Returns the name of a sample type for which instructions were counted. This type has the same width as `sample`, and
+/// its counts are used for `sample`.
 fn measured_as(sample: SampleType) -> &'static str {
     match sample {
         SampleType::F32 => "f32",

@@ -1,6 +1,6 @@
-//! Tunes step codes, whose spikes each move the decoded value up or down by a step. Computes the number of spikes and
-//! the error at each threshold, in exact arithmetic and without the codec. Then scores only the best thresholds with
-//! the codec.
+//! Tunes step codes. In a step code, each spike moves the decoded value up or down by a step. The number of spikes and
+//! the error at each threshold are first computed in exact arithmetic, without the codec. Then the codec scores only
+//! the best thresholds.
 
 use super::Scored;
 use super::problem::{Goal, most_spikes};
@@ -14,8 +14,8 @@ const SMALLEST: f64 = 1e-3;
 /// Maximum number of samples that are processed to list outcomes. An outcome is a threshold with its spikes and its
 /// error. The limit bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. It keeps
-/// a search with a small budget short; [`PASSES`] limits the others.
+/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
+/// limit keeps a search with a small budget short. In a search with a large budget, [`PASSES`] is the smaller limit.
 const PASSES_A_SETTING: usize = 200_000;
 /// Maximum number of ranges around good thresholds in which the outcomes of further thresholds are listed.
 const NEIGHBOURHOODS: usize = 24;
@@ -30,8 +30,8 @@ type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
     /// Lists the number of spikes and the error at all thresholds, for every combination of integer parameters. Scores
-    /// the best of these outcomes with the codec. Returns false if the scheme cannot list outcomes, or if the user
-    /// fixed a parameter that the list would choose.
+    /// the best of these outcomes with the codec. Returns false if the scheme cannot list outcomes. Also returns false
+    /// if the user fixed the threshold, the step, the factor or the start value.
     pub(super) fn exactly(&mut self, space: &Space) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];

@@ -28,8 +28,8 @@ pub struct TuneRequest {
     /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
     /// and sum.
     pub free_taps: bool,
-    /// Goal of the search. `None` stands for the least error at an efficiency at least as high as that of the paper's
-    /// settings.
+    /// Goal of the search. `None` stands for the goal [`Goal::LeastError`] with the efficiency that the paper's
+    /// settings reach.
     pub goal: Option<Goal>,
     /// Upper limits on what settings may cost.
     pub limits: Limits,
@@ -123,7 +123,8 @@ impl TuneRequest {
         }
     }
 
-    /// Cuts the channels of all logs into stretches; also returns notes for the user.
+    /// Cuts the channels of all logs into stretches. Also returns notes for the user: reasons not to trust the
+    /// recordings. There are notes only if `anyway` is set.
     fn channels(&self) -> Result<(Vec<Cut>, Vec<String>)> {
         let (mut cuts, mut notes): (Vec<Cut>, _) = (Vec::new(), Vec::new());
         for log in &self.logs {
@@ -166,7 +167,7 @@ pub struct Tuned {
     pub curves: Vec<Curve>,
     /// For each scheme that misses the goal, the reason and how near the scheme comes.
     pub missed: Vec<Words>,
-    /// Reasons not to trust the recordings, if the request was to search anyway.
+    /// Reasons not to trust the recordings. Empty unless [`TuneRequest::anyway`] is set.
     pub notes: Vec<String>,
 }
 
@@ -174,7 +175,7 @@ pub struct Tuned {
 pub struct Curve {
     /// The scheme.
     pub scheme: Scheme,
-    /// Efficiency in percent and RMSE at each point of the front.
+    /// Efficiency in percent and RMSE of each of the settings on the Pareto front.
     pub points: Vec<(f64, f64)>,
     /// Efficiency in percent and RMSE of the paper's settings, if the scheme has any.
     pub paper: Option<(f64, f64)>,

@@ -37,7 +37,7 @@ pub struct Found {
     /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
     /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether the listed outcomes are all outcomes that thresholds can have.
+    /// Whether `listed` counts every outcome that some threshold can have.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
@@ -45,7 +45,7 @@ pub struct Found {
     pub bounds: Vec<Bound>,
 }
 
-/// Options of a search that its `Problem` does not contain.
+/// Options of a search that are not part of the [`Problem`].
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
     /// Seed of the random generator.
@@ -64,8 +64,8 @@ const PARENTS: (usize, usize) = (10, 100);
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
-/// Value of the searched function for invalid settings, for which no codec can be built. The search seeks small
-/// values, and all other settings have smaller ones.
+/// Rating of invalid settings, for which no codec can be built. The search seeks small ratings, and the ratings of all
+/// valid settings are smaller than this one.
 const NONE: f64 = 1e30;
 
 /// Searches for the best settings for a problem within a budget.
@@ -165,7 +165,8 @@ impl Run<'_> {
         scored
     }
 
-    /// Scores points of a space until the budget is spent. Returns each scored point with its value for `goal`.
+    /// Scores points of a space until the budget is spent. Returns each point with its rating for `goal`. The rating of
+    /// a point with invalid settings is [`NONE`].
     fn tried(&mut self, space: &Space, goal: Goal, points: Vec<Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
         let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
         let scored = self.try_all(&options);
@@ -205,9 +206,9 @@ impl Run<'_> {
     }
 
     /// Moves each point along one axis to the best of several positions. The scheme encodes the signal for all
-    /// positions in a single pass. If `width` is given, the positions lie around the point, within this share of the
-    /// axis. Otherwise, the positions span the whole axis. Leaves the points as they are if the scheme cannot process
-    /// several values in one pass.
+    /// positions in a single pass. `width` is the length of the searched interval around the point, as a share of the
+    /// axis. Without a `width`, the positions span the whole axis. Leaves the points as they are if the scheme cannot
+    /// process several values in one pass.
     fn swept(
         &self,
         space: &Space,
@@ -279,7 +280,8 @@ impl Run<'_> {
         Some(())
     }
 
-    /// Runs an evolution strategy on the taps of the best filter so far, again and again until the budget is spent.
+    /// Improves the taps of the best filter with an evolution strategy. Restarts the strategy from the best filter so
+    /// far until the budget is spent.
     fn free(&mut self, space: &Space, seed: u64) {
         /// Number of generations without progress after which the strategy restarts.
         const PATIENCE: usize = 60;

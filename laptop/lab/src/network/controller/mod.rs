@@ -195,8 +195,8 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
-/// Chooses the steps of the self-test, and returns their inputs: [`CHECKED`] consecutive steps during which the network
-/// fires the most spikes if it starts from rest. Prefers steps in which an output fires.
+/// Chooses [`CHECKED`] consecutive steps for the self-test, and returns their inputs. The network starts from rest, and
+/// fires more spikes in these steps than in other steps that were tried. Steps in which an output fires are preferred.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
     /// Maximum number of sequences of [`CHECKED`] steps whose spikes are counted to find the best sequence.
     const TRIED: usize = 200;

@@ -42,7 +42,7 @@ impl Model {
 
 /// Adds a neuron that fires in every step, through which outputs that never fire get their bias.
 fn add_clock(layer: &mut trained::Layer) {
-    /// What a step adds to the neuron's potential, in units of its threshold.
+    /// Amount that each step adds to the potential of the new neuron, in units of its threshold.
     const BIAS: f64 = 1.1;
     let keep = layer.neurons.first().map_or(1.0, |neuron| neuron.keep);
     layer.weights.push(vec![0.0; layer.inputs()]);
@@ -101,7 +101,8 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     Ok(layer)
 }
 
-/// Returns the outputs that never fire, and the bias of each.
+/// Converts a layer of neurons that never fire to the outputs of a network. Returns the outputs, and the bias of each
+/// output.
 fn readout(layer: Layer<f64>) -> Result<(Readout, Vec<f64>)> {
     let Layer { name, weights, neurons, .. } = layer;
     neurons.iter().try_for_each(check_current)?;

@@ -22,8 +22,9 @@ pub enum Choice {
     Step,
 }
 
-/// Returns a text that asks the user to make the choices in `open`, with the possible values of each in a line of its
-/// own. `spell` converts the name of a setting to the spelling that the user knows.
+/// Returns a text that asks the user to make the choices in `open`. The text describes each choice on a new line, with
+/// the name of its setting and the possible values. The function `spell` converts the name of a setting to the spelling
+/// that the user knows.
 pub(in super::super) fn words(
     spell: Spell,
     framework: Option<Framework>,

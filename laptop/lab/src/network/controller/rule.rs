@@ -70,11 +70,11 @@ pub enum Current {
     Whole,
 }
 
-/// The parts of the rule for decay, firing and reset that the user gave. The other parts are `None` or empty. The
-/// framework may imply some of these.
+/// The parts of the rule for decay, firing and reset that the user gave. Parts that the user did not give are `None` or
+/// empty; the framework may imply some of them.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
-    /// The training framework, which implies some of the other parts.
+    /// The training framework. It may imply parts of the rule that the user did not give.
     pub framework: Option<Framework>,
     /// The ways in which a spike resets its neuron. A single entry applies to all layers. Otherwise, there is
     /// one entry for each layer that fires. Empty if the user gave none.
@@ -118,7 +118,7 @@ pub(super) const PLAIN: Rule = Rule {
     dt: 1.0,
 };
 
-/// Duration of a step, in seconds, that snnTorch and `SpikingJelly` assume by default when they write a file.
+/// Default duration of a step, in seconds, with which snnTorch and `SpikingJelly` write files.
 const WRITTEN: f64 = 1e-4;
 
 /// Properties of a network that decide which parts of a rule must be known.

@@ -39,8 +39,9 @@ impl Places {
         if apart.is_ok() { apart } else { Self::placed(trained, has_bias, f64::INFINITY) }
     }
 
-    /// Assigns all neurons of a network to the chip. Two neurons of a layer form a pair if the shares of the potential
-    /// that they keep in a step differ by at most `most`.
+    /// Assigns all neurons of a network to the chip. `most` limits which neurons of a layer form a pair: both keep a
+    /// share of their potential in a step, and these shares differ by at most `most`. `has_bias` says whether the bias
+    /// needs an input.
     fn placed(trained: &Trained, has_bias: bool, most: f64) -> Result<Self> {
         let mut neurons = Vec::new();
         let mut by_layer = Vec::new();

@@ -10,16 +10,19 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The integer that stands for a decay factor of 1. Each step multiplies a neuron's potential by its decay factor.
-const KEEP: f64 = 32_768.0;
-/// The integer that stands for a decay factor of 1 of an output. Each step multiplies the output's potential by this
+/// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
 /// factor.
+const KEEP: f64 = 32_768.0;
+/// The integer that stands for a decay factor of 1 of an output. Each tick of the chip multiplies the output's
+/// potential by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
-/// Smallest factor by which a tick can multiply the potential of the chip's neurons.
+/// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
+/// more ticks of the chip.
 const LEAST_KEEP: f64 = 0.875;
-/// Maximum number of ticks in a step.
+/// Maximum number of the chip's ticks that one step of the network takes.
 const MOST_TICKS: u32 = 16;
-/// Factor by which gates lower a neuron more than the recording needs.
+/// Factor by which gates lower a neuron more than this recording needs. Gates are inputs that keep neurons from firing
+/// before their layer compares again.
 const SPARE: f64 = 1.5;
 const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
@@ -30,8 +33,9 @@ const ROOM: f64 = 0.8 * 32_767.0;
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
 /// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
-/// Weight, left shift and decay factor of an output that reports the spikes of one neuron. Each step halves the
-/// output's potential, so that the potential's bits say in which of the last steps the neuron fired.
+/// Weight, left shift and decay factor of an output that shows the spikes of one neuron. A decay factor of 64 stands
+/// for 1/2: each tick of the chip halves the output's potential. The bits of the potential therefore show in which of
+/// the last ticks the neuron fired.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
 /// Number of a bit in the potential of an output that reports the spikes of one neuron. The bit is 1 if the neuron
 /// fired in the latest step.
@@ -50,9 +54,9 @@ pub(super) struct Quantised {
     /// The weights of outputs: one row for each neuron, with one weight for each output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
-    /// The ticks of a step, and the inputs that fire before each of them.
+    /// The ticks of a step. Each lists the inputs that fire before the tick in addition to the network's own inputs.
     pub(super) ticks: Vec<Tick>,
-    /// Name and number of neurons of each layer.
+    /// For each layer, its name and its number of neurons.
     pub(super) layers: Vec<(String, usize)>,
     /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
     /// outputs report the spikes of neurons.
@@ -60,9 +64,10 @@ pub(super) struct Quantised {
     /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
     /// these weights.
     pub(super) changes: Vec<Change>,
-    /// Differences between the leaks on the chip and the trained leaks. The leaks differ because two neurons of a pair
-    /// share one, and all outputs share one. The first figure is the number of neurons and outputs whose leak differs.
-    /// The second figure is the largest difference between a decay factor on the chip and the trained factor.
+    /// Two figures about the differences between the leaks on the chip and the trained leaks. The first is the number
+    /// of neurons and outputs whose leak differs. The second is the largest difference between a decay factor on the
+    /// chip and the trained factor. Leaks differ because the two neurons of a pair have a common leak on the chip, and
+    /// all outputs have a common leak.
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -100,7 +105,8 @@ impl Change {
         if weights > 0.0 { (changes / weights).sqrt() } else { 0.0 }
     }
 
-    /// Rounds `weight * scale` to a weight of the chip, and adds the change of the weight to these statistics.
+    /// Rounds `weight * scale` to an integer, clips it to the range of the chip's weights, and returns it. Adds the
+    /// weight and its change to the statistics in `self`.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let rounded = (weight * scale).round();
         let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
@@ -123,7 +129,8 @@ struct Source {
     /// The weight of each input.
     inputs: Vec<f64>,
     bias: f64,
-    /// Amount by which gates lower the neuron, 0 if it needs none.
+    /// Amount by which gates lower the neuron, in units of its threshold. Gates are inputs that keep the neuron from
+    /// firing before its layer compares again. 0 if the neuron needs no gate.
     gate: f64,
     /// For each neuron that sends spikes to this one: the number of the chip's neuron that holds the sender, and the
     /// weight.
@@ -291,7 +298,8 @@ fn ticks(trained: &Trained) -> usize {
     (least.max(most).ln() / LEAST_KEEP.ln() - 1e-9).ceil().max(1.0) as usize
 }
 
-/// Returns the share of its potential that a neuron keeps in each of `ticks` ticks, if it keeps `keep` in a step.
+/// Returns the share of its potential that a neuron keeps in one tick, at least [`LEAST_KEEP`]. `keep` is the share
+/// that the neuron keeps in a step, and `ticks` is the number of ticks in a step.
 fn keep_of(keep: f64, ticks: usize) -> f64 {
     keep.powf(1.0 / ticks as f64).max(LEAST_KEEP)
 }
@@ -359,9 +367,12 @@ impl Recorded<'_> {
     }
 }
 
-/// Returns the amount by which gates lower a neuron, and the amount by which they raise it again. By then the first
-/// amount has leaked in all of `ticks` ticks but one. Both are multiples of `1 << shift`, the first at least `gate`. Of
-/// such amounts, chooses one of which almost a multiple remains.
+/// Returns two amounts: the amount by which gates lower a neuron, and the amount by which they raise the neuron again.
+/// Gates are inputs that keep the neuron from firing before its layer compares again. Between the lowering and the
+/// raising, the neuron leaks in `ticks - 1` ticks. Only the remainder of the first amount must therefore be raised.
+///
+/// Both amounts are multiples of `1 << shift`. The first is at least `gate`, and is chosen so that its remainder is as
+/// near as possible to such a multiple.
 fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
     if gate == 0.0 {
         return (0, 0);
@@ -392,7 +403,7 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
 struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
-    /// Neurons of the layer before that fire, each as the index of its layer and its index in the layer.
+    /// Spikes of the preceding layer. Each gives a neuron by the index of its layer and by its index in the layer.
     before: Vec<(usize, usize)>,
     /// Neurons of the layer itself that fire in the step. Their spikes act one tick later.
     own: Vec<(usize, usize)>,
@@ -437,7 +448,8 @@ struct Held<'a> {
     inputs: Vec<i32>,
     recurrent: Vec<i32>,
     bias: i32,
-    /// Amounts by which gates lower and raise the neuron.
+    /// Amounts by which gates lower and raise the neuron. Gates are inputs that keep the neuron from firing before its
+    /// layer compares again.
     gates: (i32, i32),
     rule: Rule,
     places: &'a Places,
@@ -537,7 +549,8 @@ impl Quantised {
         self.inputs.len() - 1
     }
 
-    /// Adds the inputs for biases: one for all layers that compare at the same tick of a step.
+    /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of all
+    /// layers that compare at this tick, unless these layers have no bias.
     fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
         for tick in 0..self.ticks.len() {
             let mut weights = Vec::new();
@@ -556,7 +569,8 @@ impl Quantised {
         }
     }
 
-    /// Adds the inputs that keep neurons from firing at ticks at which they must not.
+    /// Adds the gates of each layer: inputs that lower the layer's neurons after they have compared their potentials
+    /// with their thresholds, and raise them when they compare again. The layer then cannot fire at other ticks.
     fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
         let ticks = self.ticks.len();
         for layer in 0..self.layers.len() {

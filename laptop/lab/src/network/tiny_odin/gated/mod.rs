@@ -25,9 +25,11 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Number of [shapes](Shape) with which the network is quantised with care: the best of all in a rough search.
+/// Number of [shapes](Shape) for which the search for parameters is thorough. A rough search with all shapes selects
+/// them.
 const CHOSEN: usize = 2;
-/// Share of the active steps that a network must agree better with the original, for each event that it adds to a step.
+/// Increase in agreement with the original that makes one more event in each step worthwhile. Agreement is the share of
+/// active steps in which the same outputs fire. A step is active if an output fires in either network.
 const PRICE: f64 = 1e-4;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
@@ -48,10 +50,13 @@ struct GatedLayer {
     neurons: Vec<GatedNeuron>,
 }
 
-/// Quantises the network roughly with each [shape](Shape), and with care with those of them that agree best with the
-/// original. Returns the best of the rough networks, whose parameters follow from the trained ones almost alone, and
-/// the careful ones, which are nearer to the original in this recording. Calls `progress` with the number of finished
-/// parts of this work and the total number of parts. Returns an empty list if the chip has no room for any shape.
+/// Quantises the network: first with a rough search for each [shape](Shape), then with a thorough search for the
+/// [`CHOSEN`] shapes that were rated best. The rating is the agreement with the original, minus [`PRICE`] for each
+/// event in a step. Returns the best network of the rough search, then the networks of the thorough search. In the
+/// rough search, the parameters follow almost directly from the trained ones. In the thorough search, the spikes come
+/// nearer to those of the original in this recording. Returns an empty list if the chip has no room for any shape.
+///
+/// Calls `progress` with the number of finished parts of this work and the total number of parts.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -197,8 +202,8 @@ impl Gated {
         None
     }
 
-    /// Returns two numbers of rows of synapses. The first number counts the rows for inputs, bias and neurons. The
-    /// second number also counts the rows that raise or lower the potentials of whole layers.
+    /// Returns two counts of rows of synapses. The first count includes the rows for inputs, bias and neurons. The
+    /// second count also includes the rows that raise or lower the potentials of whole layers.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }

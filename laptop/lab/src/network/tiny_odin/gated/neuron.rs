@@ -7,7 +7,7 @@ use super::shape::Shape;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
     /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
-    /// neuron of the layer follows. On the chip, a weight is the sum over several rows of synapses.
+    /// neuron of the layer follows. The chip splits each weight over one or more rows of synapses.
     pub weights: Vec<i16>,
     /// Weight that acts in every step.
     pub bias: i16,
@@ -64,8 +64,9 @@ fn leaked(potential: i32, turn: &[u16], leak: i32, height: impl Fn(u16) -> i32) 
 }
 
 impl GatedNeuron {
-    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` has one entry for each leak
-    /// that all neurons receive in the step. The entry is the number of events that lower the neurons before this leak.
+    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that act on
+    /// all neurons in the step. The entry for a leak is the number of events in the step that lower the neurons before
+    /// the leak comes.
     #[inline]
     pub(super) fn step(
         &self,

@@ -17,11 +17,12 @@ const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
-/// Number of initial choices by which a [shape](Shape) is rated on a neuron: those that change the neuron least.
+/// Number of initial choices of a neuron's parameters with which a [shape](Shape) is rated. These are the choices that
+/// differ least from the trained parameters.
 const RATED: usize = 6;
 
 /// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
-/// the layer's own neurons that fired one step earlier follow. They are numbered after the inputs.
+/// the layer's own neurons that fired one step earlier follow: neuron 0 has the first number after those of the inputs.
 pub(super) struct Drive {
     ends: Vec<usize>,
     spikes: Vec<u16>,
@@ -60,14 +61,14 @@ struct Choice {
     rung: u8,
     /// Number of leaks after a spike, in addition to the number that [`own_leaks`] returns. Negative for fewer leaks.
     more: i16,
-    /// Amount that every step adds to the potential, in addition to the trained bias and to what makes up for the
-    /// drift of the leaks.
+    /// Amount that every step adds to the potential. This amount comes in addition to the trained bias, and to a
+    /// correction for leaks that would otherwise move a potential of 0.
     bias: i16,
 }
 
 /// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
-/// distance between the spikes and the target, and the neuron. The search climbs from the `climbs` best initial
-/// choices.
+/// distance between the spikes and the target, and the neuron. `climbs` is the number of initial choices of parameters
+/// that the search improves; with 0, it only selects the best initial choice.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
@@ -79,9 +80,9 @@ pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64
     (least, made(layer, at, aim.shape, best))
 }
 
-/// Returns the initial choices of parameters for neuron `at`, beginning with those that change the neuron least. If
-/// several choices give the same spikes, the search takes the first one, because the smallest change is the most likely
-/// to suit other recordings.
+/// Returns the initial choices of parameters for neuron `at`. The first choices are those that differ least from the
+/// trained parameters. If several choices give the same spikes, the search takes the first of them, because the
+/// smallest difference is the most likely to suit other recordings.
 fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);

@@ -4,18 +4,20 @@
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, MAX_POTENTIAL, NEURONS, ROWS};
 
-/// Rows of synapses to try for each weight: for each row, the number of events that a spike sends on it. All numbers
-/// between the smallest and the largest sum of a choice are weights that it can hold.
+/// Ways of splitting each weight into rows of synapses, to be tried in turn. A way has one number for each row: the
+/// number of events that a spike sends on this row. Each way can represent all integers from its smallest to its
+/// largest possible weight.
 const ROWS_TRIED: [&[u16]; 5] = [&[1], &[4, 1], &[8, 1], &[8, 8, 1], &[24, 8, 1]];
-/// Factor by which the number of rungs (events that raise the neurons) exceeds the number that the recording needs. The
-/// excess is for other recordings, in which a step may add more to a potential.
+/// Factor by which the number of rungs is larger than this recording needs. A rung is an event that raises the neurons.
+/// The additional rungs are for other recordings, in which a step may add more to a potential.
 const SPARE: f64 = 1.5;
-/// Distances between two leaks to try, in rungs (events that raise the neurons).
+/// Differences in height to try between neighbouring leaks, in units of the amount by which one rung (an event) raises
+/// a neuron.
 const DISTANCES: [f64; 3] = [3.0, 6.0, 12.0];
-/// Largest absolute potentials to try that leaks reduce by a share, in units of the median threshold. Beyond them leaks
-/// reduce a potential by an amount.
+/// Limits to try for the absolute potential, in units of the median threshold. Up to the limit, leaks reduce a
+/// potential by a share of its value. Beyond the limit, they reduce it by a fixed amount.
 const REACHES: [f64; 2] = [1.0, 2.0];
-/// Number of steps in which leaks come at different heights, before the heights repeat.
+/// Number of steps after which the heights of the leaks repeat. Until then, each step has leaks at other heights.
 const TURNS: i32 = 3;
 /// Maximum number of leaks that all neurons receive in a step.
 const MAX_LEAKS: f64 = 99.0;
@@ -29,42 +31,48 @@ pub(super) struct Shape {
     pub rows: &'static [u16],
     /// Whether the network has a bias, as an input that fires in every step.
     pub has_bias: bool,
-    /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
-    /// They follow the rungs that [`below`](Self::below) counts.
+    /// Number of rungs (events that raise the neurons) that follow those of [`below`](Self::below). They raise a neuron
+    /// at rest from 0 to a positive potential. On the chip, the neuron's threshold is higher by the same amount.
     pub above: u16,
     /// Number of rungs (events that raise the neurons) that raise a neuron at rest from the downward offset to 0.
     pub below: u16,
-    /// The leaks that all neurons receive: one list for each step. After the last list, the next step uses the first
-    /// list again. A list has one entry for each leak: the number of events that lower the neurons before this leak.
+    /// The leaks that all neurons receive: one list for each step of a cycle, which then repeats. A list has one entry
+    /// for each leak: the number of events in the step that lower the neurons before the leak comes.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of rungs that raise all neurons again at the end of a step. Each neuron that fired in the step then
-    /// receives leaks of its own. 0 if spikes subtract the threshold.
+    /// Number of rungs (events that raise the neurons) that raise all neurons again at the end of a step. Additional
+    /// leaks then act on each neuron that fired in the step. 0 if spikes subtract the threshold.
     pub lift: u16,
-    /// The leaks that reduce a potential by a share of its value; `None` if all neurons receive fewer than two leaks in
-    /// a step.
+    /// The leaks that reduce a potential by a share of its value. `None` if no step has more than one leak that acts on
+    /// all neurons.
     pub share: Option<Share>,
 }
 
-/// Leaks at several heights of a step, which together reduce a potential by a share of its value.
+/// Leaks at several heights, which together reduce a potential by a share of its value in each step. The height of a
+/// leak is the potential towards which the leak moves a neuron.
 ///
-/// The leaks come from the lowest height to the highest. Leaks below a potential move it down, and only then do those
-/// above move it up. Thus a leak meets the potential lower, by one leak for each leak before. If leaks of `a` are `s`
-/// apart, a potential that is higher by `s + a` meets one more leak from above and one less from below. Therefore a
-/// step takes the share `2 a / (s + a)`. So that a potential of 0 stays, the middle leak is below 0, by `a` for each
-/// leak before.
+/// The lowest leak acts first. The leaks below a potential move it down, each by an amount `a`. Then the leaks above
+/// the potential move it up, each by `a`. Neighbouring leaks are `s` apart. From one leak to the next, the height rises
+/// by `s` and the potential falls by `a`. A potential that is higher by `s + a` therefore meets one more leak that
+/// moves it down, and one fewer that moves it up. In sum, a step takes the share `2 a / (s + a)` of the potential.
+///
+/// A potential of 0 must stay 0. For this purpose, the height of the middle leak is below 0, by `a` for each leak that
+/// acts before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Share {
-    /// Distance between two leaks, in rungs.
+    /// Difference in height between neighbouring leaks, in units of the amount by which one rung (an event) raises a
+    /// neuron.
     pub spacing: f64,
     /// Number of leaks below the middle one. As many are above.
     pub levels: f64,
-    /// Height of the middle leak, in rungs.
+    /// Potential towards which the middle leak moves a neuron, in units of the amount by which one rung (an event)
+    /// raises a neuron.
     pub middle: f64,
 }
 
 impl Share {
-    /// Returns the leaks for neurons that keep `keep` of their potential in a step and reach potentials of up to
-    /// `reach` rungs, if two leaks are about `distance` rungs apart. `None` if that takes too many leaks.
+    /// Returns the leaks for neurons that keep the share `keep` of their potential in a step, and reach potentials of
+    /// up to `reach`. Neighbouring leaks are about `distance` apart. The unit of `reach` and `distance` is the amount
+    /// by which one rung (an event) raises a neuron. Returns `None` if more than [`MAX_LEAKS`] leaks are necessary.
     fn new(keep: f64, reach: f64, distance: f64) -> Option<Self> {
         let lost = (1.0 - keep).max(0.01);
         let leak = (lost * distance * LARGEST_RUNG / 2.0).round().max(1.0) / LARGEST_RUNG;
@@ -88,7 +96,8 @@ impl Share {
         [0, 1, -1].map(of_turn).into()
     }
 
-    /// Returns the leak at which a neuron with rungs of `rung` keeps `keep` of its potential in a step.
+    /// Returns the amount by which each leak must move a neuron so that the neuron keeps the share `keep` of its
+    /// potential in a step. `rung` is the amount by which each rung (an event) raises the neuron.
     pub(super) fn leak(self, keep: f64, rung: u8) -> f64 {
         (1.0 - keep) / (1.0 + keep) * self.spacing * f64::from(rung)
     }
@@ -115,14 +124,14 @@ impl Shape {
         self.rows.iter().sum()
     }
 
-    /// Returns the weight nearest to `weight` that the rows can hold.
+    /// Rounds `weight` to an integer, and clips it to the range of weights that the rows of synapses can represent.
     pub(super) fn held(&self, weight: f64) -> i16 {
         let most = f64::from(self.events_a_spike());
         weight.round().clamp(-8.0 * most, 7.0 * most) as i16
     }
 
-    /// Returns the number of events in a step of a network with `layers` layers. The number includes neither spikes nor
-    /// the leaks that only the neurons that fired receive.
+    /// Returns the number of events in a step of a network with `layers` layers. Two kinds of events are not counted:
+    /// spikes, and the leaks that a neuron receives only after it has fired.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         let bias = usize::from(self.has_bias) * usize::from(self.events_a_spike());
@@ -207,7 +216,7 @@ pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f
 mod tests {
     use super::*;
 
-    /// Leaks at several heights leave the share of a potential that they are made for, also of one below 0.
+    /// Leaks at several heights reduce a potential to the share `keep` of its value, also if the potential is below 0.
     #[test]
     fn leaks_leave_a_share_of_a_potential() {
         for (keep, distance) in [(0.5, 3.0), (0.8, 6.0), (0.9, 3.0), (0.9, 6.0), (0.95, 12.0)] {
