@@ -41,7 +41,7 @@ impl Bank {
         self.neurons.into()
     }
 
-    /// Returns the latency: the number of samples from a sample to its code.
+    /// Returns the latency of the code: the number of samples by which the encoder's output lags behind its input.
     pub fn latency(&self) -> usize {
         self.codecs.first().map_or(0, Codec::latency)
     }

@@ -36,9 +36,10 @@ pub struct ChannelSummary {
     /// Percentage of samples that are clipped. A sample is clipped if it has the lowest or the highest value and
     /// belongs to a run of three or more equal samples.
     pub clipped: f64,
-    /// Lowest and highest sample while the channel is quiet. `None` if the channel is always or never quiet.
+    /// Lowest and highest sample in the quiet windows, which [`resting`](Self::resting) defines. `None` if all windows
+    /// are quiet, or if none is.
     pub rest: Option<[f64; 2]>,
-    /// Lowest and highest sample while the channel is not quiet. `None` if the channel is always or never quiet.
+    /// Lowest and highest sample in the windows that are not quiet. `None` if all windows are quiet, or if none is.
     pub flight: Option<[f64; 2]>,
     /// Percentage of windows of 64 samples in which the channel is quiet. A window is quiet if its standard deviation
     /// is at most four times the fifth percentile of all windows' standard deviations.
@@ -267,8 +268,8 @@ mod tests {
         (0..count).map(next).collect()
     }
 
-    /// The estimated standard deviation of uniform noise of width 1 is within 25 % of the true one, √(1/12). The
-    /// estimate is as good if the noise lies on a slow wave of amplitude 40.
+    /// The estimated standard deviation of uniform noise of width 1 is within 25 % of the true one, √(1/12). The same
+    /// holds if a slow wave of amplitude 40 is added to the noise.
     #[test]
     fn noise_is_found_under_a_wave() {
         let noisy = white(6400);

@@ -1,4 +1,5 @@
-//! Decodes link frames to values in any sample type, with the receiver that also runs on boards.
+//! Decodes link frames (packets of events from a sender) to values in any sample type. The receiver is the one that
+//! also runs on boards.
 
 use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
@@ -237,8 +238,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of decoded values that were dropped because their channel does not exist. Events beyond the receiver's
-    /// `N` channels are not included; the receiver counts these itself.
+    /// Number of decoded values that were dropped because their channel does not exist. This number does not include
+    /// events beyond the receiver's `N` channels, which the receiver counts itself.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
@@ -318,10 +319,11 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Returns the fingerprint that a sender has if it uses the schemes of this receiver, in the sender's sample type.
-    /// If one scheme stands for all channels, the number of channels is unknown. The numbers from 1 to `N` are then
-    /// tried until the result equals `sender`. If no number gives `sender`, the result is the fingerprint for one
-    /// channel.
+    /// Returns the fingerprint (hash of the parameters) that the sender must have if its schemes equal those of this
+    /// receiver. The fingerprint is computed for the sender's sample type.
+    ///
+    /// If one scheme stands for all channels, the number of channels is unknown. In this case, all numbers from 1 to
+    /// `N` are tried, until a fingerprint equals `sender`. If none does, the result is the fingerprint for one channel.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {

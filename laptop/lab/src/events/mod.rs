@@ -48,7 +48,7 @@ pub enum Item {
     },
     /// A loss of this number of frames on the link.
     LostFrames(u32),
-    /// A loss of events in the sender, which never sent them.
+    /// A loss of events in the sender. These events were never sent.
     LostEvents,
     /// A restart of the sender.
     Restart,
@@ -74,7 +74,7 @@ pub trait EventReader {
     /// Returns an error if the bytes belong to a different format.
     fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()>;
 
-    /// Ends the input, and appends items that were held back.
+    /// Ends the input, and appends the items that the reader has not appended yet.
     ///
     /// # Errors
     /// See [`read`](Self::read).

@@ -17,7 +17,7 @@ pub struct Tally {
     pub link: Option<LinkTally>,
 }
 
-/// Counts that a reader of link frames keeps.
+/// Counts of a reader of link frames (packets from a sender): received frames, losses, faults and contents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkTally {
     /// Number of frames that arrived whole.

@@ -79,7 +79,8 @@ pub fn shown(bytes: &[u8]) -> String {
     }
 }
 
-/// Decodes an input of text. `head` holds its first bytes.
+/// Converts text in UTF-16 to UTF-8, and removes the byte order mark of UTF-8. Other text stays as it is. `head` holds
+/// the first bytes of the input.
 ///
 /// # Errors
 /// Returns an error if the input is not text.
@@ -139,9 +140,8 @@ mod encoding {
     }
 }
 
-/// Replacements of the text decoders, for the web page. They decode only Latin-1, because the conversion tables of all
-/// encodings would make up a tenth of the page. The browser decodes files in other encodings before this library reads
-/// them.
+/// Text decoders for the web page. They decode only Latin-1, because the conversion tables of all encodings would make
+/// up a tenth of the page. The browser decodes files in other encodings before this library reads them.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

@@ -11,7 +11,7 @@ use crate::tune::Curve;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// The Pareto fronts of all schemes on one channel.
+/// The Pareto fronts of all schemes on one channel. A front holds the best trade-offs of spikes against error.
 pub struct Panel {
     /// Name of the channel.
     pub title: String,
@@ -35,8 +35,8 @@ const LOWEST: f64 = -100.0;
 /// Number of steps into which the efficiency axis is divided to compare schemes.
 const STEPS: usize = 400;
 
-/// A scheme that forms a part of the common front (the least error of all schemes at each efficiency), and the colour
-/// of the scheme's line.
+/// A scheme that forms part of the common front, and the colour of its line. The common front gives the least error of
+/// all schemes at each efficiency.
 pub(super) type Named = (Scheme, RGBColor);
 
 /// Returns the efficiency, in percent, at the given step along the axis, from 0 to [`STEPS`].
@@ -81,7 +81,7 @@ pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
     large.map(|(scheme, _)| scheme).zip(DISTINCT).collect()
 }
 
-/// Returns the height in pixels of a legend that is `width` pixels wide and names these schemes.
+/// Returns the height in pixels of a legend that is `width` pixels wide. The legend lists the schemes in `named`.
 pub(super) fn legend_height(named: &[Named], width: u32) -> u32 {
     let columns = (width as i32 / ENTRY).max(1);
     (((named.len() as i32 + 2 + columns - 1) / columns) * LINE + 12) as u32

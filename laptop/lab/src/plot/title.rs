@@ -10,7 +10,8 @@ pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>
 /// Height of a panel's title with its details, in pixels.
 pub(super) const TITLE: u32 = 52;
 
-/// Draws a panel's letter and title and, below them in small print, up to two lines of details.
+/// Draws the title of a panel, with the panel's letter in front. Below the title, draws up to two lines of details in
+/// small print.
 pub(super) fn title<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     letter: Option<char>,

@@ -8,7 +8,7 @@ use catalogue::run::Words;
 use flight_logs::definition::{Definition, NoNumber, Path, Stamp};
 use flight_logs::{Entry, Fault, Kind, Log, Topic, microseconds, open};
 
-/// Fields of one topic of a log, read as channels.
+/// A source of samples from one topic of a log. Each chosen field of the topic is a channel.
 pub struct Channel {
     log: Box<dyn Log>,
     file: String,
@@ -152,7 +152,7 @@ impl Channel {
         Ok(())
     }
 
-    /// Makes the error for a recording without samples, because its topic is unknown or has no messages.
+    /// Returns the error for a recording without samples. The topic is unknown, or it has no messages.
     fn nothing(&self) -> Error {
         let topic = self.topic.clone();
         if self.plans.iter().any(Option::is_some) {

@@ -40,7 +40,7 @@ pub(super) fn lines(input: impl Read + 'static) -> Result<Box<dyn Read>> {
 
 struct Objects<R> {
     input: BufReader<R>,
-    /// The index of each name's column.
+    /// For each name, the index of its column.
     names: BTreeMap<String, usize>,
     /// The first lines, which were read in advance for their names.
     ahead: VecDeque<String>,
