@@ -57,7 +57,7 @@ impl Messages {
         Ok((messages, header))
     }
 
-    /// Converts the current message, which belongs to channel number `channel`, to items.
+    /// Converts the current message to items. The message belongs to the channel with the number `channel`.
     fn take(&mut self, channel: usize) -> Result<()> {
         let (neurons, slots) = (self.neurons, self.slots);
         let sample = self.channels[channel].1;
@@ -122,9 +122,9 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike from a message. `of` is the number of spikes in the message, or `usize::MAX` if unknown. A
-/// message of one spike has a number in its field `spike`. A message of several spikes has an array there, whose
-/// element `place` is read. Returns `None` beyond the array's end.
+/// Reads one spike of a message, at the index `place` from 0. `of` is the number of spikes in the message, or
+/// `usize::MAX` if unknown. If the message has one spike, the field `spike` is a number. If the message has several
+/// spikes, the field `spike` is an array. Returns `None` if `place` is beyond the last spike.
 ///
 /// # Errors
 /// Returns an error if the message has no field `spike`.
