@@ -198,7 +198,7 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
 /// Chooses the steps of the self-test, and returns their inputs: [`CHECKED`] consecutive steps during which the network
 /// fires the most spikes if it starts from rest. Prefers steps in which an output fires.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
-    /// Maximum number of sequences of [`CHECKED`] steps whose spikes are counted to find the best sequence.
+    /// Maximum number of sequences of [`CHECKED`] steps to compare by their number of spikes.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
     let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);
