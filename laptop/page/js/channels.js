@@ -43,3 +43,10 @@ export function wanted(topics) {
 
 /** The inertial fields of this topic, to be drawn beside each other. */
 export const siblings = (topics, name) => inertial(topics.find((topic) => topic.name === name) ?? topics[0]);
+
+/** Banks have parameters for turn rates (0), for sideways forces (1), and for the force along the thrust (2). */
+export function groupOf({ opened, topic }, field) {
+  const fields = siblings(opened.topics, topic), place = fields.indexOf(field), name = `${topic}.${field}`.toLowerCase();
+  if (fields.length === 6 && place >= 0) return place < 3 ? 0 : place < 5 ? 1 : 2;
+  return ACCEL.test(name) && !GYRO.test(name) ? (place < 2 ? 1 : 2) : 0;
+}

@@ -13,7 +13,7 @@ const instructions = ({ instructions: count, is_bound: isBound }) => (count === 
 export function showFigures(good, { unit: given, rate }) {
   const unit = given ? `, ${given}` : "";
   const rows = [
-    ["Samples without a spike, %", ({ figures }) => fixed(figures.efficiency, 2)],
+    ["Samples without a spike, %", ({ figures: { efficiency, spikes, samples } }) => (efficiency < 0 ? `${fixed(spikes / samples, 2)} spikes a sample` : fixed(efficiency, 2))],
     [`RMSE${unit}`, ({ figures }) => fine(figures.rmse)],
     ["Signal to noise, dB", ({ figures }) => fixed(figures.snr, 2)],
     ["Spikes", ({ figures }) => fixed(figures.spikes, 0)],

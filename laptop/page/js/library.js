@@ -7,10 +7,13 @@ const compiled = WebAssembly.compile(decompress(Uint8Array.from(atob(WASM), (let
 
 const source = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
 
+const stopped = () => Object.assign(new Error("stopped"), { isStopped: true });
+
 export class Library {
   #worker = new Worker(source);
   #waiting = new Map();
   #next = 0;
+  #isStopped = false;
   #ready = compiled.then((wasm) => this.#worker.postMessage({ wasm }));
 
   constructor() {
@@ -36,6 +39,7 @@ export class Library {
   /** Asks; `onProgress` is told how far long work is. */
   async ask(request, { files, onProgress } = {}) {
     await this.#ready;
+    if (this.#isStopped) throw stopped();
     return new Promise((resolve, reject) => {
       const id = this.#next++;
       this.#waiting.set(id, { resolve, reject, onProgress });
@@ -45,8 +49,9 @@ export class Library {
 
   /** Ends the thread; what it was asked fails as stopped. */
   stop() {
+    this.#isStopped = true;
     this.#worker.terminate();
-    for (const own of this.#waiting.values()) own.reject(Object.assign(new Error("stopped"), { isStopped: true }));
+    for (const own of this.#waiting.values()) own.reject(stopped());
     this.#waiting.clear();
   }
 }

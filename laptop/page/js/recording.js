@@ -81,7 +81,7 @@ async function loadNow() {
     const recording = await library.ask(loadRequest(asked), { onProgress });
     const { values } = recording.arrays, [min, max] = new Pyramid(values).range(0, values.length);
     const { topic, field } = asked;
-    change({ reading: undefined, recording: Object.assign(recording, { min, max, topic, field, opened, runs: [] }) });
+    change({ reading: undefined, recording: Object.assign(recording, { min, max, topic, field, opened, asked, runs: [] }) });
   } catch (error) {
     if (!error.isStopped) change({ reading: undefined, recording: undefined, fileError: error });
     return;

@@ -3,7 +3,7 @@
 import { at, fail } from "./dom.js";
 import { draw as drawFront } from "./front.js";
 import { letter } from "./render-settings.js";
-import { state } from "./state.js";
+import { settingsKey, state } from "./state.js";
 
 let drawn;
 
@@ -32,10 +32,10 @@ export function showSearch(onChoice) {
 }
 
 export function showTaken() {
-  const { text, takeError } = state.recording ?? {};
+  const { text: made, takeError } = state.recording ?? {}, text = made?.key === settingsKey() ? made : undefined;
   at("text").hidden = !text;
   at("out").value = text?.words ?? "";
   at("save").dataset.name = text?.file ?? "";
-  at("copied").textContent = text?.copied ?? "";
+  at("copied").textContent = [text?.left, text?.copied].filter(Boolean).join("; ");
   fail("take-error", takeError);
 }

@@ -72,7 +72,8 @@ export function showSettings() {
   showBoxes(setting, scheme);
   showBank(setting);
   fail("error", error);
-  render((answer?.notes ?? []).map((words) => html`<li>${words}</li>`), at("notes"));
+  const { basis } = setting, scaled = basis ? [`Found on ${basis}; ranges, and thresholds of another quantity, are scaled to each axis's own signal: look at each.`] : [];
+  render([...scaled, ...(answer?.notes ?? [])].map((words) => html`<li>${words}</li>`), at("notes"));
   at("verdict").textContent = answer && recording.preview?.of !== answer ? verdict(setting, answer)[1] : "";
   const good = coded();
   render([entry("signal", "--signal"), ...good.map(({ name, variable, isPart }) => entry(`${name}, decoded${isPart ? " in part" : ""}`, variable))], at("legend"));

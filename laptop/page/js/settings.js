@@ -2,21 +2,27 @@
 
 import { listenToBank } from "./bank.js";
 import { at, whileBusy } from "./dom.js";
-import { plots, spectrum } from "./drawings.js";
+import { axes, plots, spectrum } from "./drawings.js";
 import { History } from "./history.js";
 import * as link from "./link.js";
 import { isPreviewed, preview } from "./preview.js";
 import { reopened } from "./recording.js";
 import { whenActed } from "./render-settings.js";
-import { changed, choiceOf, current, parametersOf, state } from "./state.js";
+import { fitted, give as giveTo, suited } from "./shares.js";
+import { changed, choiceOf, current, state } from "./state.js";
 import { asFlown } from "./verdict.js";
 
 const history = new History();
 
 /** Takes a change, of which `what` names the box, and runs the settings that changed. */
 export function update(what) {
+  suit();
   history.note(what, { settings: state.settings, current: state.current });
   return follow(what);
+}
+
+function suit() {
+  if (state.recording) state.settings = state.settings.map(suited);
 }
 
 /** Shows the settings as they are now, in the page and in its link, and runs them. */
@@ -66,9 +72,10 @@ export function replace(setting) {
   return update();
 }
 
+/** Takes a scheme with the parameters that a search found on the channel that is open, for all axes, or with none. */
 export function take(scheme, given) {
-  const { sample, filter, keyframe_ms: keyframes } = current();
-  return replace({ scheme, sample, parameters: { ...given }, filter, keyframe_ms: keyframes });
+  const { sample, filter, keyframe_ms: keyframes } = current(), setting = { scheme, sample, parameters: {}, filter, keyframe_ms: keyframes };
+  return replace(given ? fitted(setting, given, axes.ranges) : setting);
 }
 
 /** Takes a flight's file: each channel has its parameters there, any other those of the first. */
@@ -92,9 +99,7 @@ function choose(place) {
 
 /** A parameter as a user gives it, or undefined where it is taken back. */
 function give(name, text) {
-  const given = parametersOf(current(), state.recording.field);
-  if (text === undefined) delete given[name];
-  else given[name] = text;
+  giveTo(current(), state.recording.field, name, text);
   update(`${state.current} ${name}`);
 }
 
@@ -107,6 +112,7 @@ function step(by) {
   const before = history.step(by);
   if (!before) return;
   Object.assign(state, before);
+  suit();
   if (state.recording) state.recording.runs = [];
   follow();
 }
@@ -126,12 +132,13 @@ function listenToView() {
 
 export function listenToSettings() {
   whenActed({ choose, give, hide });
-  at("scheme").addEventListener("change", ({ target }) => take(target.value, {}));
+  at("scheme").addEventListener("change", ({ target }) => take(target.value));
   at("sample").addEventListener("change", ({ target }) => replace({ ...current(), sample: target.value }));
-  at("reset").addEventListener("click", () => take(current().scheme, {}));
+  at("reset").addEventListener("click", () => take(current().scheme));
   at("as-flown").addEventListener("click", () => replace(asFlown(current())));
   listenToBank((what, part) => {
     Object.assign(current(), part);
+    delete current().isFlown;
     update(`${state.current} ${what}`);
   });
   at("bandwidth").addEventListener("input", ({ target }) => {

@@ -1,8 +1,12 @@
 // What the page shows: one state. Parts change it and call `changed`, upon which all of it is rendered.
 
+import { groupOf } from "./channels.js";
 import { Library } from "./library.js";
 
-/** The setting that the page opens with. Channels that differ have their parameters in `own`, by name. */
+/**
+ * The setting that the page opens with. Its parameters are those of all channels but accelerations, which have `forces`:
+ * they are of another unit and size. Channels that differ have their parameters in `own`, by name.
+ */
 export const FIRST = { scheme: "sf", sample: "f32", parameters: {} };
 
 export const state = {
@@ -41,8 +45,14 @@ export const current = () => state.settings[state.current];
 /** What came of the current setting: { key, answer } or { key, error }. */
 export const outcome = () => state.recording?.runs[state.current] ?? {};
 
-/** The parameters of a channel: its own, or those of all. */
-export const parametersOf = (setting, field) => setting.own?.[field] ?? setting.parameters;
+/** Which parameters of a setting are for a channel that has none of its own. */
+export const shareOf = (field) => (state.recording && groupOf(state.recording, field) > 0 ? "forces" : "parameters");
+
+/** The parameters of a channel: its own, or those of all of its quantity. */
+export const parametersOf = (setting, field) => setting.own?.[field] ?? setting[shareOf(field)] ?? {};
+
+/** What the settings are now: what was made of others is stale. */
+export const settingsKey = () => JSON.stringify([state.settings, state.current]);
 
 /** A setting on a channel, as the library takes it. */
 export const choiceOf = (setting, field) => ({

@@ -2,7 +2,7 @@
 
 import { at, css, element } from "./dom.js";
 import { axes, plots } from "./drawings.js";
-import { changed, choiceOf, current, outcome, state } from "./state.js";
+import { changed, choiceOf, current, outcome, settingsKey, state } from "./state.js";
 import { picture } from "./svg.js";
 
 export function save(name, content, type) {
@@ -24,11 +24,13 @@ const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
 /* sw_roll_codec is the constant; bindings/c/README.md in the repository has the loop around it. */
 `;
 
-/** The settings of all axes that are drawn, or of the one channel, in one file for both ends. */
+/** The settings of all axes that are drawn, or of the one channel, in one file for both ends, which says what is left out. */
 async function flight() {
-  const { recording } = state, shown = { name: recording.name, parameters: outcome().answer?.asked ?? choice().parameters };
-  const channels = axes.channels.length ? axes.channels : [shown];
-  return (await state.library.ask({ ask: "flight", choice: choice(), rate: recording.rate, channels })).text;
+  const { recording } = state, own = choice(), { key, answer } = outcome();
+  const shown = { name: recording.name, parameters: key === JSON.stringify(own) && answer ? answer.asked : own.parameters };
+  const { channels, left } = await axes.outcome();
+  const { text } = await state.library.ask({ ask: "flight", choice: own, rate: recording.rate, channels: channels.length ? channels : [shown] });
+  return { words: left.map((words) => `# ${words}\n`).join("") + text, left: left.join("; ") };
 }
 
 const texts = {
@@ -51,11 +53,14 @@ const files = {
 
 /** What is taken away hangs on the recording that it is of. */
 async function takeAway({ text, save: kind }) {
-  const { recording } = state;
+  const { recording } = state, key = settingsKey();
   recording.takeError = undefined;
   try {
     if (kind) save(...(await files[kind]()));
-    else recording.text = { file: texts[text].file, words: await texts[text].make() };
+    else {
+      const made = await texts[text].make();
+      recording.text = { file: texts[text].file, key, ...(made.words ? made : { words: made }) };
+    }
   } catch (error) {
     recording.takeError = error;
   }

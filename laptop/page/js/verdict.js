@@ -1,15 +1,8 @@
 // Does it fly? What the simulated flights of docs/loop.md show of just these settings.
 
-import { siblings } from "./channels.js";
-import { fine } from "./dom.js";
+import { groupOf, siblings } from "./channels.js";
+import { fine, fixed } from "./dom.js";
 import { schemeOf, state } from "./state.js";
-
-/** Banks have parameters for turn rates, for sideways forces, and for the force along the thrust. */
-function groupOf(field) {
-  const { opened, topic } = state.recording, fields = siblings(opened.topics, topic), place = fields.indexOf(field);
-  if (fields.length === 6) return place < 3 ? 0 : place < 5 ? 1 : 2;
-  return /acc/i.test(`${topic}.${field}`) ? (place < 2 ? 1 : 2) : 0;
-}
 
 /** In which units some logs are, by the names of their fields: how many of them are 1 rad/s or 1 m/s²; undefined where nobody knows. */
 const UNITS = [[/gyroADC|gyroUnfilt|deg/, 180 / Math.PI], [/^[xyz]gyro$/, 1000], [/^[xyz]acc$/, 1000 / 9.80665], [/accSmooth/, undefined]];
@@ -19,15 +12,25 @@ function flownOn({ flown, parameters }, field) {
   const [, scale] = UNITS.find(([name]) => name.test(field)) ?? [undefined, 1];
   if (scale === undefined) return {};
   const inUnit = (name) => parameters.find((own) => own.name === name)?.unit === "signal";
-  return Object.fromEntries(Object.entries(flown.groups[groupOf(field)]).map(([name, value]) => [name, inUnit(name) ? value * scale : value]));
+  return Object.fromEntries(Object.entries(flown.groups[groupOf(state.recording, field)]).map(([name, value]) => [name, inUnit(name) ? value * scale : value]));
 }
 
 /** Samples a second of the slowest loop that flew. */
 const SLOWEST = 250;
 const isNear = (own, flown) => (typeof flown === "number" ? Math.abs(Number(own) - flown) <= 0.02 * Math.abs(flown) : own === String(flown));
 
+/** An error is told that is more than so many thresholds, as of a signal that is too steep for the code, or half of the signal. */
+const THRESHOLDS = 5, LEAST_SNR = 6;
+
+/** How badly a code serves the very log that is looked at; nothing if it does not. */
+function here({ spikes, snr, rmse }, { threshold }) {
+  if (!spikes) return "on this log it sends no spike";
+  if (rmse > THRESHOLDS * threshold) return `on this log it does not follow: the error is ${fixed(rmse / threshold, 0)} times the threshold`;
+  return snr !== null && snr < LEAST_SNR ? `on this log the error is ${fixed(100 * 10 ** (-snr / 20), 0)} % of the signal` : "";
+}
+
 /** The words for the figures, and the reason. */
-export function verdict(setting, { settings }) {
+export function verdict(setting, { settings, figures }) {
   const { flown, name, parameters } = schemeOf(setting);
   if (!flown) return ["not flown", `${name} was not flown on a drone whose rotors shake it.`];
   if (flown.objection) return ["no", `${name} ${flown.objection}.`];
@@ -40,7 +43,9 @@ export function verdict(setting, { settings }) {
   if (!isNear(keyframes, flown.keyframe_ms)) differ.push(`keyframes every ${flown.keyframe_ms} ms`);
   if (state.recording.rate < 0.99 * SLOWEST) differ.push(`${SLOWEST} samples a second or more`);
   const far = `${fine(flown.beside)} times the error without a code`;
-  return differ.length ? ["not known", `${name} flew, with ${far}, but with ${differ.join(", ")}.`] : ["yes", `Flown just so: no flight was lost, with ${far}.`];
+  if (differ.length) return ["not known", `${name} flew, with ${far}, but with ${differ.join(", ")}.`];
+  const fault = here(figures, group);
+  return [fault ? "in simulation; here see below" : "in simulation", `No simulated flight with just these settings was lost, with ${far}${fault ? `; but ${fault}` : ""}.`];
 }
 
 /** The setting with which its scheme flew, on all axes of the sensor. */
@@ -49,7 +54,7 @@ export function asFlown(setting) {
   const texts = (own) => Object.fromEntries(Object.entries(flownOn(scheme, own)).map(([name, value]) => [name, typeof value === "number" ? String(Number(value.toPrecision(6))) : value]));
   const fields = [...new Set([field, ...siblings(opened.topics, topic)])];
   return {
-    scheme: setting.scheme, sample: setting.sample, parameters: texts(field), own: Object.fromEntries(fields.map((own) => [own, texts(own)])),
+    scheme: setting.scheme, sample: setting.sample, parameters: {}, isFlown: true, own: Object.fromEntries(fields.map((own) => [own, texts(own)])),
     filter: flown.low_pass === null ? null : { kind: "low-pass", corner: flown.low_pass }, keyframe_ms: flown.keyframe_ms,
   };
 }

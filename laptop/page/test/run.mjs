@@ -1,6 +1,7 @@
 // Runs all tests in every browser that is there, or those whose name has the words of the argument.
 
 import assert from "node:assert/strict";
+import { steps as banks } from "./banks.mjs";
 import { end, said, use } from "./harness.mjs";
 import { steps as live } from "./live.mjs";
 import { steps as long } from "./long.mjs";
@@ -13,7 +14,7 @@ const only = process.argv[2] ?? "";
 let failed = 0;
 for (const engine of (process.env.ENGINES ?? "chromium firefox").split(" ")) {
   await use(engine);
-  for (const [name, step] of Object.entries({ ...looks, ...opening, ...settings, ...search, ...live, ...long })) {
+  for (const [name, step] of Object.entries({ ...looks, ...opening, ...settings, ...banks, ...search, ...live, ...long })) {
     if (!name.includes(only)) continue;
     const start = Date.now();
     try {

@@ -1,7 +1,7 @@
 // Searches in another thread.
 
 import assert from "node:assert/strict";
-import { accessible, enter, figure, opened, settled } from "./harness.mjs";
+import { accessible, enter, figure, opened, settled, text } from "./harness.mjs";
 
 export const steps = {
   async "searches in another thread, and stops"() {
@@ -31,6 +31,12 @@ export const steps = {
     await page.click("#advise");
     await page.waitForSelector("#advice:visible", { timeout: 300_000 });
     assert.match(await page.textContent("#advice"), /take \w+ in f32/);
+    // Each axis has settings of its own.
+    await settled(page);
+    assert.match(await page.textContent("#notes"), /^Found on gyro_x; /);
+    const parameters = (await text(page, "flight")).split("[[channel]]").slice(1).map((channel) => /parameters = (.*)/.exec(channel)?.[1]);
+    assert.equal(parameters.length, 6);
+    assert.notEqual(parameters[0], parameters[3]);
     await page.context().close();
   },
 };

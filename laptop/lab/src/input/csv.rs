@@ -140,7 +140,16 @@ impl Table {
                 });
                 (1..=last).map(|number| number.to_string()).collect()
             }
-            _ => ahead.pop_front().iter().flatten().map(name).collect(),
+            _ => {
+                let mut names: Vec<_> = ahead.pop_front().iter().flatten().map(name).collect();
+                // A quoted `#` before the first name, as in EuRoC's header, begins no comment.
+                let bare =
+                    names.first().and_then(|first| first.strip_prefix('#')).map(str::trim_start);
+                if let Some(bare) = bare.filter(|bare| !bare.is_empty()).map(str::to_owned) {
+                    names[0] = bare;
+                }
+                names
+            }
         };
         let mut table = Self {
             ahead,
