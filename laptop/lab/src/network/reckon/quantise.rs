@@ -10,9 +10,10 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The integer that stands for a decay factor of 1. Each step multiplies a neuron's potential by its decay factor.
+/// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
+/// factor.
 const KEEP: f64 = 32_768.0;
-/// The integer that stands for a decay factor of 1 where the neuron is an output. Each step multiplies an output's
+/// The integer that stands for a decay factor of 1 of an output. Each tick of the chip multiplies the output's
 /// potential by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
