@@ -264,9 +264,9 @@ const MOST: usize = 1 << 16;
 mod tests {
     use super::Found;
 
-    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The range moves down by
-    /// the distance between two neighbouring fields, because neuron 7 of the toolbox has the same centre as neuron 6 of
-    /// this crate. For a log with the scheme `grf`, the range stays.
+    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The toolbox counts its
+    /// neurons from 0 in the formula of the centres, and this crate from 1. Thus each centre of the toolbox is lower, by
+    /// the distance between two neighbouring fields. For a log with the scheme `grf`, the range stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

@@ -25,7 +25,7 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
 pub const TICKS: usize = {ticks};
 
 /// For each tick of a step, additional inputs that fire before this tick: biases, and gates. A gate is an input that
-/// lowers neurons, so that they do not fire at some ticks.
+/// lowers the potentials of neurons, so that they do not fire at some ticks.
 pub static ALWAYS: [&[u8]; TICKS] = [{}];
 
 /// For each tick of a step, additional inputs that fire before this tick: gates that raise neurons again. In the first

@@ -192,7 +192,7 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns the number of leaks that only neuron `at` receives after it has fired. If spikes reset the potential to 0,
+/// Returns how many leak events are sent to neuron `at` alone after it has fired. If spikes reset the potential to 0,
 /// later events of the step move the potential, and these leaks bring the potential back to 0. If spikes subtract the
 /// threshold, these leaks make up for the difference between the chip's reset and a subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
