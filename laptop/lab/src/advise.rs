@@ -59,8 +59,9 @@ pub struct AdviseRequest {
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
     /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
     pub loop_bandwidth: Option<f64>,
-    /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, the advice excludes each
-    /// code with which a simulated drone crashed or strayed far at such a loss.
+    /// Percentage of frames that the link loses, 0 to 10. If `loop_bandwidth` is given, some codes are excluded from
+    /// the advice. These are the codes with which a simulated drone crashed or strayed far when as many frames were
+    /// lost.
     pub frame_loss: f64,
     /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
     /// on it.
@@ -114,7 +115,7 @@ pub struct Advice {
     unflown: Vec<String>,
     /// Whether a search stopped before it had scored all its settings.
     is_cut_short: bool,
-    /// Largest latency in samples that the control loop tolerates, if its bandwidth is known.
+    /// Largest latency that the control loop tolerates, in samples. `None` if the bandwidth of the loop is unknown.
     loop_latency: Option<f64>,
     /// Bytes a second that the raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,

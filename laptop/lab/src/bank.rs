@@ -41,7 +41,7 @@ impl Bank {
         self.neurons.into()
     }
 
-    /// Returns the latency: the number of samples from a sample to its code.
+    /// Returns the latency of the code: the number of samples by which the encoder's output lags behind its input.
     pub fn latency(&self) -> usize {
         self.codecs.first().map_or(0, Codec::latency)
     }
@@ -85,7 +85,8 @@ impl Bank {
     /// Decodes the next samples of all channels from their events.
     ///
     /// # Errors
-    /// Returns the first event of a sample if no encoder could emit the sample's events together.
+    /// Returns an error if a sample has a combination of events that no encoder can emit. The error is the sample's
+    /// first event.
     pub fn decode(
         &mut self,
         samples: usize,

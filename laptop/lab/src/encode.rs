@@ -63,7 +63,7 @@ pub(crate) struct Start<'a> {
     pub is_timed: bool,
     /// Number of samples at the start of the recording from which the usual time between samples was measured.
     pub first: usize,
-    /// Reads the whole recording, and returns the smallest and largest sample of each channel.
+    /// Function that reads the whole recording, and returns the smallest and largest sample of each channel.
     pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,
 }
 

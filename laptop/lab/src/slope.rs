@@ -29,7 +29,8 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// Measures the slopes. Returns `None` for a code whose decoded value can move by more than one step a sample.
+    /// Compares the largest slope of the recording with the largest slope that the code can follow. Returns `None` if
+    /// the decoded value of the code can move by more than one step from sample to sample.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;
         let segments = recording.segments.iter().map(|own| &recording.values[own.clone()]);
@@ -47,7 +48,8 @@ impl Slope {
         })
     }
 
-    /// Returns the share of samples at which the signal changes by more than the code can follow.
+    /// Returns the share of samples at which the signal changes by more than the threshold. The code cannot follow such
+    /// a change.
     pub fn part(&self) -> f64 {
         self.part
     }

@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 /// because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
-/// The parameters with which the schemes flew, as JSON; a symbolic link like `verdicts.json`.
+/// The parameters with which the schemes flew, as JSON. The file is a symbolic link, as `verdicts.json` is.
 const FOUND: &str = include_str!("banks.json");
 
 /// Largest attitude error with which a scheme counts as fit to fly, as a multiple of the error without a code.

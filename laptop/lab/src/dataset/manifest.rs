@@ -113,8 +113,8 @@ impl Row {
         Ok(())
     }
 
-    /// Copies the rate, the duration and the counts of `clock` to the row. Rate and duration are rounded to 6 decimals,
-    /// so that they do not change when the row is written and read.
+    /// Copies the rate, the duration and the numbers of gaps, steps back and restarts from `clock` to the row. Rate and
+    /// duration are rounded to 6 decimals, so that they stay the same when the row is written and read again.
     pub(super) fn take(&mut self, clock: &Clock) {
         let rounded = |number: f64| (number * 1e6).round() / 1e6;
         self.rate = clock.rate().map(rounded);
@@ -213,7 +213,7 @@ impl Settings {
     }
 }
 
-/// A manifest that is being completed.
+/// The manifest of a data set, opened to append rows.
 pub(super) struct Manifest {
     directory: PathBuf,
     /// The open file of the manifest, locked for this run.
@@ -315,8 +315,8 @@ impl Manifest {
     }
 }
 
-/// Puts each flight on a side of the split. The flights with the smallest hashes are for testing. Copies of one log
-/// count as one flight.
+/// Assigns each flight to training or testing, by a hash of the content of a log. The flights with the smallest hashes
+/// are for testing. Copies of one log count as one flight.
 fn split(rows: &mut [Row], test: f64, flights: Flights) {
     let flight = |row: &Row| match flights {
         Flights::Logs => row.sha256.clone(),

@@ -48,7 +48,8 @@ impl<D: EventDecoder> EventReader for Reader<D> {
     }
 }
 
-/// Writes events with the encoder of one format, and reads them back to count the events whose time the format changes.
+/// A writer of events in one format. It decodes what it has encoded, and counts the events whose time the format
+/// changes.
 pub(super) struct Writer<E, D> {
     encoder: E,
     decoder: D,

@@ -6,7 +6,7 @@ use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Se
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// Decodes link frames to the values that the sender encoded.
+/// A decoder of link frames. It computes the values that the sender encoded.
 pub trait Values {
     /// Decodes a frame, and appends the decoded values to `items`. A temporal code gives a value for each keyframe and
     /// each event. Any other code gives a value for each sample, once the time of the sample is over.

@@ -5,12 +5,12 @@ use std::fmt;
 /// The kind of an unusual step from one sample's time to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A step forward that exceeds the limit, which is a multiple of the usual step.
+    /// A step forward in time that exceeds the allowed length. The allowed length is a multiple of the usual step.
     Gap,
-    /// A step back: samples are out of order.
+    /// A step back in time. The sample is earlier than the sample before it, so the samples are out of order.
     Backward,
-    /// A step so far back that the recorder's clock must have restarted, for example after a reboot. A new segment
-    /// begins.
+    /// A long step back in time. The recorder's clock must have restarted, for example after a reboot. A new segment of
+    /// the recording begins.
     Restart,
 }
 
@@ -66,7 +66,7 @@ pub struct Clock {
     span: Option<(i64, i64)>,
     /// Total length of the segments before the current one, in µs.
     before: i64,
-    /// The latest times in µs, with at most [`RUN`] steps between them.
+    /// The times of the latest samples in µs, at most [`RUN`] + 1 times.
     run: Vec<i64>,
     /// Time between samples in µs, measured when the sample rate last changed.
     run_step: f64,

@@ -78,7 +78,7 @@ pub struct Figures {
     /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
     pub windows: usize,
     /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in double precision
-    /// as on the chip.
+    /// and on the chip.
     pub windows_agreeing: usize,
     /// Mean number of clock cycles that the chip takes for a step. On the flight controller, the mean number of weights
     /// that are added in a step.

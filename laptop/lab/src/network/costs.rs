@@ -13,9 +13,9 @@ pub enum Cost {
     Order,
     /// Leaks that subtract a fixed amount, instead of a share of the potential.
     Leak,
-    /// Spikes reset a potential in one of the two ways of the chip: to 0, or by the threshold.
+    /// The chip's reset, which either sets the potential to 0 or subtracts the threshold.
     Reset,
-    /// A neuron's weights are rounded to whole numbers.
+    /// Rounding of each neuron's weights to whole numbers.
     Weights {
         /// Largest absolute value of a weight after rounding.
         largest: f64,

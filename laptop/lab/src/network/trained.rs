@@ -167,8 +167,8 @@ impl Layer {
         Ok(())
     }
 
-    /// Runs the layer on the inputs of all steps; returns the neurons that fire, by step. Calls `see` in each step with
-    /// the index of each neuron and its potential before a reset.
+    /// Runs the layer on the inputs of all steps; returns the neurons that fire, by step. For each step and neuron,
+    /// calls `see` with the neuron's index and the neuron's potential before a reset.
     pub(super) fn follow(&self, inputs: &Trains, mut see: impl FnMut(usize, f64)) -> Trains {
         let mut potentials = vec![0.0; self.neurons.len()];
         let mut before: Vec<u16> = Vec::new();
@@ -261,8 +261,8 @@ impl Trained {
         Ok(Self { layers, readout: None })
     }
 
-    /// Makes a network whose outputs are the potentials of `readout`, which follows the last of `layers`; without a
-    /// readout, the outputs are the spikes of the last layer.
+    /// Makes a network whose outputs are the potentials of `readout`, which follows the last of `layers`. If `readout`
+    /// is `None`, the outputs are the spikes of the last layer.
     ///
     /// # Errors
     /// Returns the errors of [`new`](Self::new). Also returns an error if the readout does not fit the last layer, or

@@ -57,7 +57,7 @@ impl Messages {
         Ok((messages, header))
     }
 
-    /// Converts the current message, which belongs to channel number `channel`, to items.
+    /// Converts the current message to items. The message belongs to the channel with the number `channel`.
     fn take(&mut self, channel: usize) -> Result<()> {
         let (neurons, slots) = (self.neurons, self.slots);
         let sample = self.channels[channel].1;
@@ -122,9 +122,9 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike from a message. `of` is the number of spikes in the message, or `usize::MAX` if unknown. A
-/// message of one spike has a number in its field `spike`. A message of several spikes has an array there, whose
-/// element `place` is read. Returns `None` beyond the array's end.
+/// Reads one spike of a message, at the index `place` from 0. `of` is the number of spikes in the message, or
+/// `usize::MAX` if unknown. If the message has one spike, the field `spike` is a number. If the message has several
+/// spikes, the field `spike` is an array. Returns `None` if `place` is beyond the last spike.
 ///
 /// # Errors
 /// Returns an error if the message has no field `spike`.
@@ -264,9 +264,9 @@ const MOST: usize = 1 << 16;
 mod tests {
     use super::Found;
 
-    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The range moves down by
-    /// the distance between two neighbouring fields, because neuron 7 of the toolbox has the same centre as neuron 6 of
-    /// this crate. For a log with the scheme `grf`, the range stays.
+    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The toolbox counts its
+    /// neurons from 0 in the formula of the centres, and this crate from 1. Thus each centre of the toolbox is lower, by
+    /// the distance between two neighbouring fields. For a log with the scheme `grf`, the range stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

@@ -60,7 +60,7 @@ pub struct Reader<R> {
 }
 
 impl<R: BufRead> Reader<R> {
-    /// Reads the header, and returns it with a reader of the spikes after it.
+    /// Reads the header. Returns a reader of the spikes, and the header.
     ///
     /// # Errors
     /// Returns an error if the header is incomplete or contradicts itself.

@@ -37,7 +37,7 @@ pub struct Found {
     /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
     /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether `listed` counts every outcome that some threshold can have.
+    /// Whether all thresholds were compared in this way: `listed` is then the number of all their outcomes.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,

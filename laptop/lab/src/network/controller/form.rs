@@ -270,8 +270,8 @@ impl Neurons {
 }
 
 impl Neuron<f64> {
-    /// Shifts the neuron's potentials by `-start`, including its threshold. A neuron whose initial potential was
-    /// `start` then starts at 0.
+    /// Lowers all potentials of the neuron by `start`: the potential at rest, the threshold, and the potential after a
+    /// reset. A neuron whose initial potential was `start` then starts at 0.
     fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
         self.inner -= (1.0 - self.decay) * start;
         if let Some(spike) = &mut self.spike {

@@ -198,7 +198,7 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
 /// Chooses [`CHECKED`] consecutive steps for the self-test, and returns their inputs. The network starts from rest, and
 /// fires more spikes in these steps than in other steps that were tried. Steps in which an output fires are preferred.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
-    /// Maximum number of sequences of [`CHECKED`] steps whose spikes are counted to find the best sequence.
+    /// Maximum number of sequences of [`CHECKED`] steps to compare by their number of spikes.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
     let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);

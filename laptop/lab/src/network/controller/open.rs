@@ -16,7 +16,7 @@ pub enum Choice {
     Fires,
     /// The formula that turns a time constant into the factor by which a step multiplies a potential.
     Decay,
-    /// Whether a step adds its own current to the potential, or the current of the step before.
+    /// The synaptic current that a step adds to the potential: the current of this step, or of the step before.
     Current,
     /// The duration of a step, in seconds.
     Step,

@@ -34,7 +34,8 @@ pub enum Reset {
     Subtract,
     /// Subtracts the threshold in the next step.
     SubtractLate,
-    /// Subtracts the threshold as snnTorch does with `reset_delay=False`.
+    /// Subtracts the threshold in the same step, as snnTorch does with `reset_delay=False`. If the last potential was
+    /// above the threshold, the neuron fires only if the new potential minus the threshold is above the threshold.
     SubtractNoDelay,
     /// Leaves the potential as it is.
     NoReset,
@@ -83,7 +84,7 @@ pub struct Asked {
     pub fires: Option<Fires>,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Option<Decay>,
-    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
+    /// The value of the synaptic current that a step adds to the potential: before or after the step changes it.
     pub current: Option<Current>,
     /// Duration of a step, in seconds.
     pub dt: Option<f64>,
@@ -100,7 +101,7 @@ pub struct Rule {
     pub fires: Fires,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Decay,
-    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
+    /// The value of the synaptic current that a step adds to the potential: before or after the step changes it.
     pub current: Current,
     /// Duration of a step, in seconds.
     pub dt: f64,

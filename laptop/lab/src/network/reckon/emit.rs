@@ -21,14 +21,15 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
         }),
         _ => format!(
             "
-/// Number of ticks in a step. A step's own inputs fire before the first.
+/// Number of ticks in a step. The network's own inputs fire before the first tick of a step.
 pub const TICKS: usize = {ticks};
 
-/// For each tick of a step, further inputs that fire before it: biases, and gates that lower neurons.
+/// For each tick of a step, additional inputs that fire before this tick: biases, and gates. A gate is an input that
+/// lowers the potentials of neurons, so that they do not fire at some ticks.
 pub static ALWAYS: [&[u8]; TICKS] = [{}];
 
-/// For each tick of a step, further inputs that fire before it: gates that raise neurons again. In the first step they
-/// fire only before its last tick.
+/// For each tick of a step, additional inputs that fire before this tick: gates that raise neurons again. In the first
+/// step, only the gates of the last tick fire.
 pub static RAISES: [&[u8]; TICKS] = [{}];
 ",
             gates(|tick| &tick.always),

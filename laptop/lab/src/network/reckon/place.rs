@@ -6,7 +6,8 @@ use crate::network::fault::{FitKind, Result, ensure};
 
 const NEURONS: usize = 256;
 const OUTPUTS: usize = 16;
-/// Largest difference between the shares of a potential that two neurons keep in a step, if one leak serves both.
+/// Largest difference between the decay factors of two neurons that may share a leak. A step multiplies a neuron's
+/// potential by its decay factor.
 const SAME: f64 = 1e-4;
 
 /// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which
@@ -15,7 +16,8 @@ const SAME: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
-    /// that stays free because the other neuron of its pair has a leak of its own, or a layer an odd number of neurons.
+    /// that stays free. One neuron of a pair stays free if a layer has an odd number of neurons, or if no other neuron
+    /// of the layer has a similar leak.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
     /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
     by_layer: Vec<Vec<usize>>,

@@ -21,8 +21,8 @@ const OUTPUT_KEEP: f64 = 128.0;
 const LEAST_KEEP: f64 = 0.875;
 /// Maximum number of the chip's ticks that one step of the network takes.
 const MOST_TICKS: u32 = 16;
-/// Factor by which gates lower a neuron more than this recording needs. Gates are inputs that keep neurons from firing
-/// before their layer compares again.
+/// Safety factor of gates: inputs that lower a neuron so that it does not fire. A gate lowers the neuron by this factor
+/// times the amount that the recording needs.
 const SPARE: f64 = 1.5;
 const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
@@ -37,8 +37,8 @@ const SHIFTS: u8 = 8;
 /// for 1/2: each tick of the chip halves the output's potential. The bits of the potential therefore show in which of
 /// the last ticks the neuron fired.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// Number of a bit in the potential of an output that reports the spikes of one neuron. The bit is 1 if the neuron
-/// fired in the latest step.
+/// Position of the bit that tells whether a neuron fired in the latest step. The bit belongs to the potential of the
+/// output that reports the neuron's spikes. Bit 0 is the lowest.
 pub(super) const FIRED: u32 = 12;
 
 /// A network in the integers of `ReckOn`.
@@ -61,8 +61,8 @@ pub(super) struct Quantised {
     /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
     /// outputs report the spikes of neurons.
     pub(super) unit: Option<f64>,
-    /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
-    /// these weights.
+    /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
+    /// weights of the outputs.
     pub(super) changes: Vec<Change>,
     /// Two figures about the differences between the leaks on the chip and the trained leaks. The first is the number
     /// of neurons and outputs whose leak differs. The second is the largest difference between a decay factor on the
@@ -71,16 +71,21 @@ pub(super) struct Quantised {
     pub(super) shared_keeps: (usize, f64),
 }
 
-/// A tick of a step. A step has several ticks if neurons keep less of their potential in a step than the chip can keep
-/// in a tick. The network's own inputs fire before the first tick. The neurons of layer `n` then compare at tick `n` of
-/// the step (in a cycle). If spikes subtract the threshold or act on their own layer, gates keep the layer from firing
-/// at other ticks: inputs that lower all its neurons after it has compared, and raise them when it compares again.
+/// A tick of a step. At each tick, the chip's neurons leak and compare their potentials with their thresholds.
+///
+/// A step has several ticks if the trained neurons leak more in a step than the chip's neurons can leak in a tick. The
+/// network's own inputs fire before the first tick of the step. Layer `n` is to fire only at tick `n`, modulo the
+/// number of ticks in a step.
+///
+/// If spikes subtract the threshold or act on their own layer, *gates* keep the layer from firing at other ticks. Gates
+/// are additional inputs. Some of them lower all neurons of the layer after the tick at which the layer may fire. The
+/// others raise the neurons again before the next tick at which the layer may fire.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tick {
-    /// Inputs that fire before the tick in every step: biases, and gates that lower neurons.
+    /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
     pub(super) always: Vec<usize>,
-    /// Inputs that fire before the tick unless no gate has lowered their neurons yet: in the first step they fire only
-    /// before its last tick.
+    /// Numbers of the gates that raise neurons before this tick. In the first step, they fire only if this is the last
+    /// tick of the step, because the neurons of the other ticks have not been lowered yet.
     pub(super) raises: Vec<usize>,
 }
 
@@ -129,13 +134,13 @@ struct Source {
     /// The weight of each input.
     inputs: Vec<f64>,
     bias: f64,
-    /// Amount by which gates lower the neuron, in units of its threshold. Gates are inputs that keep the neuron from
-    /// firing before its layer compares again. 0 if the neuron needs no gate.
+    /// Amount by which gates lower the neuron; 0 if the neuron needs no gates. Gates are inputs that keep the neuron
+    /// from firing at some ticks.
     gate: f64,
     /// For each neuron that sends spikes to this one: the number of the chip's neuron that holds the sender, and the
     /// weight.
     recurrent: Vec<(usize, f64)>,
-    /// Largest absolute potential that the neuron reaches in double precision, below the gate.
+    /// Largest absolute potential that the neuron reaches in double precision, plus the amount [`gate`](Self::gate).
     peak: f64,
 }
 
@@ -152,9 +157,9 @@ impl Source {
     }
 }
 
-/// Returns the scale of a pair of neurons: the largest factor by which the pair's weights and potentials can be
-/// multiplied so that all of them fit the chip. `shifts` are the chip's left shifts of input weights and of weights
-/// between neurons.
+/// Returns the largest factor by which the weights and potentials of a pair can be multiplied so that all of them fit
+/// the chip. A pair is two neurons of the chip that share a leak and a threshold. `shifts` has two entries: the chip's
+/// left shift of input weights, and its left shift of weights between neurons.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -165,8 +170,8 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
 }
 
 /// Returns a measure of how much rounding changes a pair: two neurons of the chip that share a leak and a threshold.
-/// The measure sums the squared changes of the weights and the squared losses of potential. A neuron loses potential
-/// because the chip rounds each leak.
+/// The measure is the sum of the squared changes of all weights, plus the squared loss of potential of each neuron. A
+/// neuron loses potential because the chip rounds each leak. `shifts` has the same meaning as for [`scale`].
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -289,8 +294,8 @@ pub(super) fn quantise(
     Ok(network)
 }
 
-/// Returns the number of ticks in a step: the smallest in which the chip's neurons can lose what the network's neurons
-/// lose in a step.
+/// Returns the number of ticks in a step: the smallest number of ticks, up to [`MOST_TICKS`], in which a neuron of the
+/// chip can leak as much as the network's neurons leak in a step.
 fn ticks(trained: &Trained) -> usize {
     let neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
     let least = neurons.map(|neuron| neuron.keep).fold(1.0, f64::min);
@@ -399,7 +404,7 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
     trained.layers.iter().zip(before).map(of_layer).collect()
 }
 
-/// The spikes that act on a layer in a step, and those of the layer itself.
+/// The spikes that act on a layer in a step, and the spikes that the layer fires in the step.
 struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
@@ -526,20 +531,22 @@ impl<'a> Held<'a> {
 }
 
 impl Quantised {
-    /// Returns the delay of the chip's outputs: the number of ticks from the inputs of a step to the answer that shows
-    /// their effect.
+    /// Returns the delay of the chip's outputs: the number of ticks between the inputs of a step and the output values
+    /// that show the effect of these inputs.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
     }
 
-    /// Returns the inputs that fire before tick `tick` of the recording, beside the network's own.
+    /// Returns the numbers of the additional inputs that fire before tick `tick` of the recording: biases and gates.
+    /// They fire in addition to the network's own inputs.
     pub(super) fn beside(&self, tick: usize) -> impl Iterator<Item = usize> {
         let Tick { always, raises } = &self.ticks[tick % self.ticks.len()];
         let raises = if tick + 1 >= self.ticks.len() { &raises[..] } else { &[] };
         always.iter().chain(raises).copied()
     }
 
-    /// Adds an input with the weights of `rows`, each for a neuron of the chip, and returns its number.
+    /// Adds an input, and returns the number of the input. Each entry of `weights` is the number of a neuron of the
+    /// chip, and the weight from the input to this neuron. All other weights of the input are 0.
     fn add_input(&mut self, weights: impl IntoIterator<Item = (usize, i8)>) -> usize {
         let mut row = vec![0; self.places.neurons.len()];
         for (at, weight) in weights {
@@ -625,8 +632,8 @@ impl Quantised {
     /// spikes.
     ///
     /// # Errors
-    /// Returns an error if the outputs' leak is too strong for the chip. The mean share of the potential that the
-    /// outputs keep in a step then rounds to 0.
+    /// Returns an error if the outputs' leak is too strong for the chip: the decay factor of a tick, averaged over all
+    /// outputs, rounds to 0 in the chip's integers.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
         let ticks = self.ticks.len();

@@ -13,11 +13,10 @@ type Chip = ReckOn<Spi, Port>;
 /// Number of the chip's clock cycles in one SPI clock cycle.
 const RATIO: u32 = 10;
 
-/// Loads the network into the chip's model, and runs it on all inputs as one sample. A step sends its inputs, the bias
-/// and a tick. Neurons of the first layer fire at the next tick, those of each further layer one tick later, and the
-/// outputs show the last layer's spikes one tick after that. If a step has several ticks, its inputs come before the
-/// first. The result does not contain these delays: as in double precision, a spike passes through all layers within
-/// one step.
+/// Loads the network into the chip's model, and runs the network on all inputs as one sample. Each step sends its
+/// inputs and the bias, and then one or several ticks. On the chip, a spike needs one tick from each layer to the next,
+/// and one more tick from the last layer to the outputs. The result does not contain these delays: as in double
+/// precision, a spike passes through all layers within one step.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.

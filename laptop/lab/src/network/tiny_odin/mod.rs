@@ -70,8 +70,8 @@ impl Chip for TinyOdin {
     }
 }
 
-/// Share of the recording, from its beginning, on which the search for parameters runs, as numerator and denominator.
-/// The remaining part of the recording is used to compare the networks that were found.
+/// Share of the recording on which the search for parameters runs, as numerator and denominator. This part is the
+/// beginning of the recording. The rest of the recording is used to compare the networks that were found.
 const FOUND: (usize, usize) = (3, 4);
 
 impl OnChip for Quantised {

@@ -23,8 +23,8 @@ const LARGEST: [f64; 20] = [
 ];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 const CLIMBS: usize = 2;
-/// Leaks to try for a neuron, as multiples of a reference. The reference is the amount that the trained neuron loses
-/// between two leaks of the chip, starting from half its threshold.
+/// Leaks to try for a neuron, as multiples of a reference amount. The reference is the amount that the trained neuron
+/// loses in the time between two leaks of the chip, if its potential starts at half its threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
 /// Maximum number of neurons in each layer on which the intervals between leaks are rated.
 const SURVEYED: usize = 32;
@@ -56,8 +56,8 @@ pub(super) struct Quantised {
 pub(super) struct ChipLayer {
     /// Name of the layer in the network's file.
     pub name: String,
-    /// Number of inputs of the layer: the network's inputs for the first layer, and the neurons of the layer before for
-    /// others.
+    /// Number of inputs of the layer. For the first layer, this is the number of the network's inputs; for any other
+    /// layer, the number of neurons of the layer before.
     inputs: usize,
     pub neurons: Vec<ChipNeuron>,
 }

@@ -45,8 +45,9 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
     centre + away.signum() * (away.abs() - by).max(0)
 }
 
-/// Returns the potential after all leaks of `turn`, which come from the lowest height to the highest. `height` converts
-/// a number of events that have lowered the neurons to the potential that the leak after them moves a neuron towards.
+/// Returns the potential after all leaks of `turn`. Each leak moves the potential by at most `leak` towards the leak's
+/// height; the leaks come from the lowest height to the highest. `turn` has one entry for each leak: the number of
+/// events that lower the neurons before the leak. `height` converts an entry to the height of its leak.
 fn leaked(potential: i32, turn: &[u16], leak: i32, height: impl Fn(u16) -> i32) -> i32 {
     // The leaks below the potential move it down, all but the last of them by the whole leak. When one comes, the leaks
     // before have moved the potential already.

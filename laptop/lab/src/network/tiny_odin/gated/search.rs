@@ -8,17 +8,16 @@ use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
-/// Values to try for a neuron's largest weight on the chip, divided by the number of rows of synapses over which each
-/// weight is split. A value above 7 clips the largest weights to the chip's range, but rounds the smaller weights more
-/// finely. The last value rounds all weights to 0 if a weight is split over at most 4 rows. The neuron then stays
-/// silent.
+/// Values to try for a neuron's largest weight on the chip, divided by the number of events that a spike sends. A value
+/// above 7 clips the largest weights to the chip's range, but rounds the smaller weights more finely. The last value
+/// rounds all weights to 0 if a spike sends fewer than 5 events. The neuron then stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
 /// Amounts to try first for a rung, an event that raises the neurons' potentials.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
-/// Number of initial choices of a neuron's parameters with which a [shape](Shape) is rated. These are the choices that
-/// differ least from the trained parameters.
+/// Number of initial choices of a neuron's parameters that a rough search tries, in which no choice is improved. The
+/// choices that change the neuron least are tried. Their result rates a [shape](Shape).
 const RATED: usize = 6;
 
 /// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
@@ -59,7 +58,8 @@ struct Choice {
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Number of leaks after a spike, in addition to the number that [`own_leaks`] returns. Negative for fewer leaks.
+    /// Change of the number of leaks that the neuron alone receives after a spike. The number of leaks is the result of
+    /// [`own_leaks`] plus this change.
     more: i16,
     /// Amount that every step adds to the potential. This amount comes in addition to the trained bias, and to a
     /// correction for leaks that would otherwise move a potential of 0.
@@ -192,9 +192,9 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, other
-/// events of the step then move the potential, and these leaks bring it back to 0. If spikes subtract the threshold,
-/// these leaks correct the potential, because the chip's reset differs from a subtraction.
+/// Returns how many leak events are sent to neuron `at` alone after it has fired. If spikes reset the potential to 0,
+/// later events of the step move the potential, and these leaks bring the potential back to 0. If spikes subtract the
+/// threshold, these leaks make up for the difference between the chip's reset and a subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {

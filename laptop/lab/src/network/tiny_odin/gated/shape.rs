@@ -22,19 +22,21 @@ const TURNS: i32 = 3;
 /// Maximum number of leaks that all neurons receive in a step.
 const MAX_LEAKS: f64 = 99.0;
 
-/// The sequence of events in each step, which is the same for all neurons. A *rung* is an event that raises the neurons
-/// by a fixed amount. An offset downwards keeps the neurons from firing until enough rungs have raised them.
+/// The sequence of events in each step, which is the same for all neurons. Each neuron begins a step with its potential
+/// lowered by an offset, so that spikes alone cannot make it fire. A *rung* is an event that raises the potentials of
+/// neurons by a fixed amount. After enough rungs, a neuron fires if its potential has reached its threshold.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shape {
-    /// The rows of synapses of each input or sending neuron: for each row, the number of events that a spike sends on
-    /// it. A weight is the sum over its rows.
+    /// For each row of synapses, the number of events that a spike sends on the row. Every input and every sending
+    /// neuron has these rows. A weight is the sum of its synapses, each multiplied by the number of events of its row.
     pub rows: &'static [u16],
     /// Whether the network has a bias, as an input that fires in every step.
     pub has_bias: bool,
     /// Number of rungs (events that raise the neurons) that follow those of [`below`](Self::below). They raise a neuron
     /// at rest from 0 to a positive potential. On the chip, the neuron's threshold is higher by the same amount.
     pub above: u16,
-    /// Number of rungs (events that raise the neurons) that raise a neuron at rest from the downward offset to 0.
+    /// Number of rungs (events that raise the neurons) that raise a neuron at rest to 0. A neuron at rest begins a step
+    /// below 0, at the downward offset.
     pub below: u16,
     /// The leaks that all neurons receive: one list for each step of a cycle, which then repeats. A list has one entry
     /// for each leak: the number of events in the step that lower the neurons before the leak comes.
@@ -62,7 +64,7 @@ pub(super) struct Share {
     /// Difference in height between neighbouring leaks, in units of the amount by which one rung (an event) raises a
     /// neuron.
     pub spacing: f64,
-    /// Number of leaks below the middle one. As many are above.
+    /// Number of leaks below the middle leak. The number of leaks above the middle leak is the same.
     pub levels: f64,
     /// Potential towards which the middle leak moves a neuron, in units of the amount by which one rung (an event)
     /// raises a neuron.
@@ -81,7 +83,8 @@ impl Share {
         (2.0 * levels < MAX_LEAKS).then_some(Self { spacing, levels, middle: -levels * leak })
     }
 
-    /// Returns the heights of the leaks of each step of a cycle, in rungs.
+    /// Returns the heights of the leaks, in rungs, by step and leak. The list covers [`TURNS`] steps, after which the
+    /// heights repeat.
     fn heights(self) -> Vec<Vec<i32>> {
         let levels = self.levels as i32;
         let leak = if levels > 0 { -self.middle / self.levels } else { 0.0 };
