@@ -76,9 +76,9 @@ pub enum ErrorKind {
 /// Part of a damaged log that can still be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
-    /// The messages before the damage, and the messages after it.
+    /// Messages before the damage and messages behind it can be read.
     Behind,
-    /// The messages before the damage, and the messages from this byte on.
+    /// Messages before the damage, and messages from this byte on, can be read.
     From(u64),
     /// Only the messages before the damage.
     Before,

@@ -70,7 +70,8 @@ impl Kind {
         }
     }
 
-    /// Returns a log whose only chunk, which is not compressed, holds the messages with the numbers `samples`.
+    /// Returns a log whose only chunk, which is not compressed, holds a message for each
+    /// value of `samples`.
     pub fn of(self, samples: impl Iterator<Item = u32>) -> Vec<u8> {
         let records: Vec<u8> = samples.flat_map(|sample| self.record(sample)).collect();
         [self.start(), self.chunk("none", &records), self.end()].concat()

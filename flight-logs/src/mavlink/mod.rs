@@ -103,8 +103,8 @@ impl Packet<'_> {
     }
 }
 
-/// Returns whether a packet with its time stamp can start at `next`: the byte after the time stamp is a packet's first
-/// byte, or `next` ends before this byte.
+/// Returns whether `next` can be a time stamp and then a packet: the byte after the time stamp is one with which packets
+/// start, or there is no such byte.
 fn is_followed(next: &[u8]) -> bool {
     next.get(TIME).is_none_or(|start| matches!(start, 0xfd | 0xfe))
 }
