@@ -9,7 +9,7 @@ const OTHER_TOPIC = /setpoint|bias|status|fifo|selection|debug|calib|health|allo
 /** How the three axes of a sensor end, or begin. */
 const AXES = [/[._/]x\b|x$|\[0\]|roll|[._]p$|^x(gyro|acc)/, /[._/]y\b|y$|\[1\]|pitch|[._]q$|^y(gyro|acc)/, /[._/]z\b|z$|\[2\]|yaw|[._]r$|^z(gyro|acc)/];
 
-/** The fields of one sensor, in the order of its axes; fewer than three where there are no three. */
+/** The fields of one sensor, in the order of its axes, as many as there are; one where no axis is named. */
 function axes(topic, sensor) {
   if (OTHER_TOPIC.test(topic.name.toLowerCase())) return [];
   const named = topic.fields.filter((field) => {
@@ -17,7 +17,8 @@ function axes(topic, sensor) {
     return sensor.test(name) && !OTHER.test(field.toLowerCase());
   });
   const found = AXES.map((axis) => named.find((field) => axis.test(field.toLowerCase())));
-  return found.every(Boolean) && new Set(found).size === 3 ? found : named.slice(0, 1);
+  const apart = [...new Set(found.filter(Boolean))];
+  return apart.length > 1 ? apart : named.slice(0, 1);
 }
 
 /** The inertial fields of a topic: turn rates first. */

@@ -35,7 +35,7 @@ export const steps = {
     for (const [name, topic, field, axes] of [
       ["hexarotor.csv", "", "gyro_x", 6], ["euroc.csv", "", "w_RS_S_x [rad s^-1]", 6], ["decoded.csv", "", "gyroADC[0] (deg/s)", 3],
       ["px4.ulg", "sensor_combined", "gyro_rad[0]", 6], ["newer.ulg", "sensor_gyro", "x", 3], ["one.ulg", "gyro", "rate", 0],
-      ["log.bin", "IMU", "GyrX", 0], ["log.tlog", "RAW_IMU", "xgyro", 6], ["imu.bag", "/imu/data", "angular_velocity.x", 6],
+      ["log.bin", "IMU", "GyrX", 2], ["log.tlog", "RAW_IMU", "xgyro", 6], ["imu.bag", "/imu/data", "angular_velocity.x", 6],
       ["imu.mcap", "/imu/data", "angular_velocity.x", 6], ["log.bbl", "main", "gyroADC[0]", 3],
     ]) {
       const bytes = made[name] ?? readFileSync(name === "hexarotor.csv" ? join(DATA, name) : join(LOGS, name));
