@@ -5,16 +5,16 @@ use super::arithmetic::{Arithmetic, for_each_integer};
 /// Samples that are compared with both bounds of a band by one subtraction and one comparison of unsigned words. It takes
 /// no FPU, whose registers an interrupt would have to save.
 pub(crate) trait Quiet: Copy {
-    /// Two words are a band: where it begins, and how wide it is.
+    /// A word of a band. A band is two words: its beginning and its width.
     type Word: Copy + Send + Sync;
 
-    /// Two of these are a band that no sample lies within.
+    /// Both words of the empty band.
     const NONE: Self::Word;
 
-    /// The samples at most a threshold from a baseline, or nearly all of them.
+    /// The band of samples at most a threshold from a baseline. It may leave out the outermost of them.
     fn band(base: Self, threshold: Self) -> [Self::Word; 2];
 
-    /// Whether the sample lies within the band; false for one that is not finite.
+    /// Whether the sample lies within the band; false for a NaN, and for an infinity unless a bound overflowed to it.
     fn is_within(self, band: [Self::Word; 2]) -> bool;
 
     /// Whether every sample lies within its band.
@@ -23,7 +23,7 @@ pub(crate) trait Quiet: Copy {
         samples.iter().zip(&bands.0).all(|(sample, &band)| sample.is_within(band))
     }
 
-    /// Where the two words of a channel's band are, of so many channels: a place and a word there.
+    /// Returns the indices of the two words of a channel's band in [`Bands`] of `channels` channels.
     #[inline]
     fn words_of(channel: usize, _channels: usize) -> [[usize; 2]; 2] {
         [[channel, 0], [channel, 1]]

@@ -17,7 +17,7 @@ pub(crate) struct Bank {
     clock: Clock,
     /// Headers of the samples whose spikes are still to come.
     headers: VecDeque<Header>,
-    /// How many samples were coded.
+    /// Number of samples coded.
     coded: u64,
 }
 

@@ -34,13 +34,13 @@ impl Taken {
     }
 }
 
-/// Where in messages of a type numbers are. Deserializes a message to what is wanted of it.
+/// Paths to the wanted numbers and texts in messages of one type, by which a message is deserialized.
 #[derive(Clone)]
 pub(crate) struct Fields {
     message: Rc<Definition>,
     /// The paths to the numbers, then to the seconds and nanoseconds of the stamp.
     paths: Rc<[Vec<Step>]>,
-    /// How many numbers there are.
+    /// Number of the paths that lead to numbers.
     count: usize,
     /// The path to the header's frame.
     frame: Rc<[Step]>,
@@ -122,7 +122,7 @@ impl<'de> DeserializeSeed<'de> for Fields {
     }
 }
 
-/// What was found of what is wanted: a number or a text.
+/// The number or text that was found for a path.
 #[derive(Clone, Default)]
 struct Found {
     number: Cell<Option<f64>>,

@@ -34,13 +34,7 @@ def run(weights, inputs):
 
 def gradients(weights, inputs, labels):
     (hidden, sent), (outs, told) = run(weights, inputs)
-    steps, count = labels.shape
-    counts = np.zeros_like(told)
-    for t in range(steps):
-        counts[t] = on_chip.FORGET * counts[t - 1] * (t > 0) + told[t]
-    p = np.exp(counts - counts.max(axis=2, keepdims=True))
-    p /= p.sum(axis=2, keepdims=True)
-    wrong = (p - np.eye(3)[labels]) / count / steps
+    (steps, count), wrong = labels.shape, on_chip.blame(told, labels)
     slope = [1 / (1 + 3 * abs(v - 1)) ** 2 for v in (hidden, outs)]
     grown = [np.zeros_like(own) for own in weights]
     dcount, dout, dhidden = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros((count, 16))

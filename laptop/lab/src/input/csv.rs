@@ -143,10 +143,11 @@ impl Table {
             _ => {
                 let mut names: Vec<_> = ahead.pop_front().iter().flatten().map(name).collect();
                 // A quoted `#` before the first name, as in EuRoC's header, begins no comment.
-                let bare =
-                    names.first().and_then(|first| first.strip_prefix('#')).map(str::trim_start);
-                if let Some(bare) = bare.filter(|bare| !bare.is_empty()).map(str::to_owned) {
-                    names[0] = bare;
+                if let Some(first) = names.first_mut()
+                    && let Some(bare) = first.strip_prefix('#').map(str::trim_start)
+                    && !bare.is_empty()
+                {
+                    *first = bare.to_owned();
                 }
                 names
             }
