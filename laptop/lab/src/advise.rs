@@ -31,9 +31,10 @@ use std::time::{Duration, Instant};
 /// that cause 80°.
 const PHASE: f64 = 20.0;
 
-/// Largest share of a log's samples at which the signal may change by more than a step code can follow: the decoded
-/// value moves by at most one threshold a sample. In the flights of `docs/loop.md`, the drone flies well at a share of
-/// 0.9 %. At a share of 3.9 %, the code loses steps, and the drone flips.
+/// Largest share of steep samples with which a step code is advised for a control loop. A sample is steep if the signal
+/// has changed by more than one threshold since the sample before. The decoded value cannot follow, because it moves by
+/// at most one threshold a sample. In the flights of `docs/loop.md`, the drone flies well if 0.9 % of the samples are
+/// steep. If 3.9 % are steep, the code loses steps, and the drone flips.
 const STEEP: f64 = 0.02;
 
 /// Smallest sample rate with which a control loop works, as a multiple of the loop's bandwidth. The Nyquist rate, twice
@@ -379,7 +380,7 @@ impl Advice {
         Filtered::new(filter, sample, self.look.rate?)
     }
 
-    /// Returns the tuned settings of a scheme, if they reach the allowed RMSE.
+    /// Returns the tuned settings of a scheme. Returns `None` if the scheme misses the allowed RMSE or breaks a limit.
     fn row(&self, scheme: Scheme) -> Option<&Row> {
         let own = self.reaching.iter().find(|own| own.scheme == Some(scheme));
         own.map(|own| &own.row)

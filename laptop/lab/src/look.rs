@@ -36,10 +36,11 @@ pub struct ChannelSummary {
     /// Percentage of samples that are clipped. A sample is clipped if it has the lowest or the highest value and
     /// belongs to a run of three or more equal samples.
     pub clipped: f64,
-    /// Lowest and highest sample in the quiet windows, which [`resting`](Self::resting) defines. `None` if all windows
-    /// are quiet, or if none is.
+    /// Lowest and highest sample in the quiet windows, in which the drone is taken to rest. [`resting`](Self::resting)
+    /// defines quiet windows. `None` if all windows are quiet, or if no window is quiet.
     pub rest: Option<[f64; 2]>,
-    /// Lowest and highest sample in the windows that are not quiet. `None` if all windows are quiet, or if none is.
+    /// Lowest and highest sample outside the quiet windows, where the drone is taken to fly. [`resting`](Self::resting)
+    /// defines quiet windows. `None` if all windows are quiet, or if no window is quiet.
     pub flight: Option<[f64; 2]>,
     /// Percentage of windows of 64 samples in which the channel is quiet. A window is quiet if its standard deviation
     /// is at most four times the fifth percentile of all windows' standard deviations.

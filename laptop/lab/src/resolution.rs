@@ -4,9 +4,8 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Limit on the rounding error of a sample type. The error is the mean change that rounding to the type causes in a
-/// step from sample to sample, as a share of the mean step. A sample type whose error exceeds the limit is said to lose
-/// the steps.
+/// Largest rounding error with which a sample type is fine enough for a column. Rounding the samples to the type
+/// changes the steps from sample to sample. The rounding error is the mean change of a step, divided by the mean step.
 const PART: f64 = 0.1;
 
 /// Statistics of the steps from sample to sample in a column, and of the errors that rounding to a sample type causes

@@ -254,10 +254,12 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Returns the frame with its keyframes in the decoders' sample type. The decoders use one type for all fixed-point
-    /// types of a width, so this type may differ from the sender's. If it does, keyframes of the sender's type get the
-    /// decoders' type. A keyframe that arrives in the decoders' type is then wrong: it gets the sender's type, so that
-    /// the receiver counts it as a misfit (a thing that does not fit the scheme).
+    /// Relabels the sample type of a frame's keyframes for the receiver, which accepts only the decoders' type.
+    ///
+    /// The decoders use one type for all fixed-point types of a width, so their type may differ from the sender's. Then
+    /// there are two cases. Keyframes labelled with the sender's type are correct. They get the decoders' type, and the
+    /// receiver accepts them. Keyframes labelled with the decoders' type are wrong, because the sender has another
+    /// type. They get the sender's type, and the receiver rejects them and counts them as misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);

@@ -7,10 +7,10 @@ use serde::Serialize;
 use serde_json::{Value, json as object};
 use std::fmt::Write;
 
-/// Largest difference between a measured mean and the paper's mean that counts as agreement, in standard errors.
+/// Tolerance for the difference between a measured mean and the paper's mean, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
-/// Largest difference between a measured standard deviation and the paper's that counts as agreement, as a share of the
-/// paper's standard deviation.
+/// Tolerance for the difference between a measured standard deviation and the paper's, as a share of the paper's
+/// standard deviation.
 const DEVIATION_PART: f64 = 0.15;
 
 /// A measured cell, and the paper's figures for it.

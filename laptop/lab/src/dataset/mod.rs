@@ -369,7 +369,9 @@ impl Request {
         last.map_or(Ok(()), Err)
     }
 
-    /// Returns the options for reading a log, without options that do not apply to its kind.
+    /// Returns the options for reading the log at `log`. `kind` is the format of a flight log, and `None` for a table.
+    /// Removes options that are for other formats. If `names` is given, chooses the columns of these names. Otherwise,
+    /// if the code is a flight, chooses the columns of the flight's channels.
     fn input(&self, log: &Path, kind: Option<Kind>, names: Option<&[String]>) -> InputOptions {
         let mut channel = self.channel.clone();
         let own;

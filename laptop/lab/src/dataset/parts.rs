@@ -21,12 +21,16 @@ use std::sync::Arc;
 
 /// Name of the column that holds the times.
 pub(super) const TIME: &str = "time_us";
-/// Keys of a Parquet file's metadata. The value of `HEADER` is the header of the spikes: the scheme and its settings.
-/// The values of `GAP` and `RATE` are arguments of [`Clock::new`](crate::input::Clock::new). The value of `FIRST` is
-/// the number of times in the argument `first_times`.
+/// Metadata key of a Parquet file. The value is the header of the spikes: the scheme and its settings.
 pub(super) const HEADER: &str = "spikewire";
+/// Metadata key of a Parquet file. The value is the number of samples at the start of the log whose times were passed
+/// to [`Clock::new`](crate::input::Clock::new).
 pub(super) const FIRST: &str = "spikewire.first";
+/// Metadata key of a Parquet file. The value is the argument `steps` of [`Clock::new`](crate::input::Clock::new): a
+/// step longer than this multiple of the usual step is a gap.
 pub(super) const GAP: &str = "spikewire.gap";
+/// Metadata key of a Parquet file. The value is the sample rate in Hz that the user gave. The file lacks the key if no
+/// rate was given.
 pub(super) const RATE: &str = "spikewire.rate";
 
 /// Number of bytes in a row group. Each file that is being written keeps one row group in memory.

@@ -121,10 +121,10 @@ pub(super) struct Writer {
     tick: Tick,
     /// Number of sender restarts so far. It is also the number of the current session.
     starts: u32,
-    /// Whether no frame has been written since the latest start of the sender.
+    /// Whether the next frame is the first one after the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
-    /// Whether no frame has been written since the latest loss or restart. The next frame reports the loss or restart.
+    /// Whether the next frame is the first one after a loss or restart, and thus reports the loss or restart.
     owes_mark: bool,
 }
 

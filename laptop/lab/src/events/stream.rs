@@ -169,8 +169,8 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Returns a text that gives the number of written bytes, `bytes`, and the mean number of bytes for an event or
-    /// value.
+    /// Returns a text for the user: how many bytes were written in total, and for each event or value on average.
+    /// `bytes` is the total.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),

@@ -51,8 +51,8 @@ pub struct LinkTally {
     pub withheld: Option<Withheld>,
 }
 
-/// Comparison of each keyframe with the value that the decoder held just before the keyframe. Only codes whose decoder
-/// should already hold the keyframe's value are compared.
+/// Comparison of keyframes with the values that the decoders held just before. In some codes, a keyframe repeats the
+/// value that the decoder already holds. A difference then shows a fault. Keyframes of other codes are not compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
     /// Number of keyframes that were compared. A keyframe is compared if the decoder's value before the keyframe was

@@ -162,8 +162,9 @@ impl Preview {
     }
 }
 
-/// Returns the colours as bytes of red, green and blue. The greys come first. Dark ink for pixels that became brighter,
-/// red for pixels that became darker, and white follow in this order.
+/// Returns the colours of the palette, three bytes each: red, green and blue. The palette begins with the greys, from
+/// black to white. Three colours of the events panels follow: dark ink for pixels that became brighter, red for pixels
+/// that became darker, and white for the background.
 fn palette() -> Vec<u8> {
     let greys = (0..GREYS).flat_map(|grey| [(grey * 255 / (GREYS - 1)) as u8; 3]);
     greys.chain([0x2b, 0x2f, 0x36, 0xc2, 0x3b, 0x4e, 0xff, 0xff, 0xff]).collect()

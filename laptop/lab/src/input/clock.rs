@@ -296,11 +296,11 @@ fn is_disordered(times: &[i64]) -> bool {
     back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
 }
 
-/// Returns the median of the steps forward, in µs, and the mean number of samples for each step forward. A mean
-/// below 2 is returned as 1.
+/// Returns the usual step in µs, and the mean number of samples in a batch. A batch is a run of samples with equal
+/// times. The usual step is the median of the steps forward. The mean is the number of all steps, divided by the number
+/// of steps forward. If the quotient is below 2, the samples do not come in batches, and the mean is returned as 1.
 ///
-/// Returns `None` if no step goes forward. Also returns `None` if the mean is 2 or more and fewer than three steps go
-/// forward.
+/// Returns `None` if no step goes forward, or if samples come in batches and fewer than three steps go forward.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));

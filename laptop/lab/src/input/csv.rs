@@ -248,7 +248,7 @@ impl Table {
         self.time = Some(time);
     }
 
-    /// Returns the fields of a column in the rows that are examined first.
+    /// Returns the fields of a column in the first rows, which were read in advance to find the format of the times.
     fn first(&self, index: usize) -> Vec<&[u8]> {
         self.ahead.iter().filter_map(|record| record.get(index)).map(<[u8]>::trim_ascii).collect()
     }

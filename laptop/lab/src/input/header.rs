@@ -84,8 +84,9 @@ impl Start {
     }
 }
 
-/// Returns whether the first row of a table holds samples rather than names. This is the case if the first row contains
-/// a number, and no text in the first row has a number below it in the second row.
+/// Returns whether the first row of a table holds samples rather than names. A row without numbers holds names. A row
+/// with a number holds samples, with one exception: if a text of the first row stands above a number of the second row,
+/// the text is the name of a column, and the first row holds names.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);

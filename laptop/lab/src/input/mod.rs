@@ -83,8 +83,8 @@ pub struct ChannelOptions {
     pub rate: Option<f64>,
     /// Longest step between the times of two samples that does not count as a gap, as a multiple of the usual step.
     pub gap: f64,
-    /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
-    /// row is an error.
+    /// Whether incomplete rows are skipped and counted. A row is incomplete if one of its values is missing (empty,
+    /// `NA`) or not finite. If `false`, an incomplete row is an error.
     pub skip_non_finite: bool,
     /// Whether damaged files are accepted. A truncated or damaged log is then read without its damaged parts, and a
     /// truncated table is read up to its last complete line. Otherwise, damage is an error.
@@ -271,9 +271,11 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Returns the options with columns in the form `TOPIC.FIELD` replaced by a topic and its fields. Returns `None` if
-    /// there are no columns, if a column has a different form, or if the topics differ. Also returns `None` if these
-    /// options already choose a topic or a field.
+    /// Converts columns such as `TOPIC.FIELD` to a topic and fields of this topic. Returns a copy of the options with
+    /// the topic and fields in place of the columns.
+    ///
+    /// Returns `None` if the options choose no columns, if they already choose a topic or a field, if a column has no
+    /// dot, or if the columns are of different topics.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
@@ -291,8 +293,8 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// If the input is a table and no column was chosen, returns a copy of these options with all columns chosen.
-    /// Otherwise, returns an unchanged copy.
+    /// Returns a copy of these options. In the copy, all columns are chosen if the input is a table and these options
+    /// choose no column.
     ///
     /// # Errors
     /// Returns an error if the file cannot be opened.

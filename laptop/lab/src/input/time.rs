@@ -290,7 +290,8 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// A column is read as times if its name consists of a word for a time and a unit. The tests of the command-line
+    /// Columns such as `gyro_ms` and `s` are not times: the first name lacks a word for a time, and the second is
+    /// nothing but a unit. A name with both, such as `time_us`, is a name of times. The tests of the command-line
     /// program cover the names in common exports.
     #[test]
     fn names_that_are_no_times() {

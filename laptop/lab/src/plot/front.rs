@@ -62,11 +62,12 @@ impl Panel {
     }
 }
 
-/// Returns the schemes that get a name and a colour, each with its colour. These are the schemes that form the largest
-/// shares of all channels' common fronts, the largest share first. At most as many schemes are returned as there are
-/// colours.
+/// Chooses the schemes that are drawn with a name and a colour, and gives each of them a colour. Counts how many points
+/// each scheme has on the common fronts of all channels. Returns the schemes with the most points, in descending order.
+/// Leaves out schemes with few points, and schemes for which no colour is left.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// A scheme gets a name and a colour only if it forms more than this share of the common fronts of all panels.
+    /// Limit on the share of a scheme in the points of all common fronts. A scheme whose share is at or below the limit
+    /// gets no name and no colour.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {

@@ -20,7 +20,11 @@ pub(super) fn array(input: impl Read + 'static) -> Result<Box<dyn Read>> {
     Ok(Box::new(Lines::new(names, Arrays(vec![array]))))
 }
 
-/// Reads the arrays of an archive, which must have equal lengths, as the columns of a CSV table.
+/// Reads the arrays of an archive as one CSV table, which has the columns of all arrays.
+///
+/// # Errors
+/// Returns an error if the file is not an archive of arrays, if the archive is empty, or if the arrays have different
+/// lengths.
 pub(super) fn archive(file: File) -> Result<Box<dyn Read>> {
     const OTHER: &str = "a zip archive or a spreadsheet; export it as CSV";
     let no_archive = |error| odd(format!("{OTHER} ({error})"));
