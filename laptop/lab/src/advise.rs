@@ -157,9 +157,9 @@ impl Filtered {
 
 /// The outcome of tuning one scheme on one channel.
 enum Tuning {
-    /// Settings within the allowed RMSE.
+    /// Settings that reach the allowed RMSE and keep all limits.
     Reached(Box<Candidate>),
-    /// The reason that no settings are within the allowed RMSE: a text to be put after the scheme's name.
+    /// The reason that the scheme is excluded: a text to be put after the scheme's name.
     Missed(String),
 }
 
@@ -175,8 +175,8 @@ struct Candidate {
 /// Describes each recording, tunes all schemes on it, and ranks the schemes that suit the recording.
 ///
 /// # Errors
-/// Returns an error if a recording is too short for a part of it to be held out, or if a field of the request is
-/// invalid.
+/// Returns an error if a field of the request is invalid, or if a recording is too short to be cut into a part for
+/// tuning and a held-out part.
 pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     if request.evaluations == 0 {
         return Err(RequestKind::NotAboveZero.of(Given::new("evaluations", 0)));
@@ -306,7 +306,8 @@ impl Advice {
         fixed: &Asked,
         budget: &Budget,
     ) -> Result<Tuning> {
-        /// Factor by which the RMSE on held-out blocks may exceed the allowed RMSE, because blocks differ by chance.
+        /// Largest RMSE on held-out blocks, as a multiple of the allowed RMSE. It is above 1 because blocks differ by
+        /// chance.
         const MARGIN: f64 = 1.25;
         let filtered = self.filter(scheme, request.sample);
         let own;

@@ -61,7 +61,7 @@ pub(crate) struct Start<'a> {
     pub names: Vec<&'a str>,
     /// Whether the samples have times.
     pub is_timed: bool,
-    /// Number of samples at the start of the recording from which the usual time between samples was measured.
+    /// Number of samples in the first part of the recording. The usual time between samples was measured in this part.
     pub first: usize,
     /// Function that reads the whole recording, and returns the smallest and largest sample of each channel.
     pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,

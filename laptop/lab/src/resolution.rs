@@ -134,8 +134,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether rounding to multiples of `step` leaves the column's changes from sample to sample nearly as they
-    /// are. On average, rounding alters a change by a third of `step`. To be safe, the check assumes half of `step`.
+    /// Returns whether rounding to multiples of `step` hardly alters the column's changes from sample to sample. On
+    /// average, rounding alters a change by a third of `step`. To be safe, the check assumes half of `step`.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }

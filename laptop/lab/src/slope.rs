@@ -15,7 +15,7 @@ pub struct Slope {
     scheme: &'static str,
     /// Whether the code can follow the signal: no change from one sample to the next exceeds the threshold.
     follows: bool,
-    /// Number of changes from one sample to the next that exceed the threshold.
+    /// Number of samples at which the signal changes by more than the threshold.
     steps_above_threshold: usize,
     /// `steps_above_threshold` as a share of the samples.
     part: f64,

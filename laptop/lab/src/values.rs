@@ -1,5 +1,5 @@
-//! Decodes link frames (packets of events from a sender) to values in any sample type. The receiver is the one that
-//! also runs on boards.
+//! Decodes link frames (packets of events from a sender) to values in any sample type. The decoding is done by
+//! [`Receiver`], which also runs on boards.
 
 use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
@@ -23,7 +23,7 @@ const EVENTS: usize = 1 << 14;
 /// A function to which the receiver is passed. The receiver decodes link frames to values.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
-/// Properties of a link's sender besides its schemes.
+/// Facts about the sender that a receiver uses in addition to the schemes: sub-timesteps, fingerprint and clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Link {
     /// Length of a sub-timestep in µs. `None` if the code does not divide samples into sub-timesteps.
@@ -155,7 +155,7 @@ impl<S: Sample> Visit<S> for Boxed {
 }
 
 /// A scheme whose decoders start from the value `start`. If `start` is `None`, they start from the scheme's own initial
-/// value. Serves only for decoding.
+/// value. Only the decoders are used, never the encoders.
 struct Started<P: Scheme> {
     scheme: P,
     /// Whether the channel exists. False for the placeholders that fill the array after the last channel.
@@ -241,7 +241,7 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     /// Number of decoded values that were dropped because their channel does not exist. This number does not include
     /// events beyond the receiver's `N` channels, which the receiver counts itself.
     outside: u64,
-    /// Length of a sub-timestep in µs; 0 if there are none.
+    /// Length of a sub-timestep in µs; 0 if the length was not given.
     slot_ticks: u32,
     /// Fingerprint (hash of the parameters) of the sender, if the caller gave it.
     known: Option<Fingerprint>,

@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The results of the simulated flights, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`,
-/// because a source package contains only files of its own directory.
+/// The results of the simulated flights, as JSON. `verdicts.json` is a symbolic link to the file of the same name in
+/// `laptop/loop`, because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
-/// The parameters with which the schemes flew, as JSON. The file is a symbolic link, as `verdicts.json` is.
+/// The parameters of the schemes in the simulated flights, as JSON. `banks.json` is a symbolic link to the file of the
+/// same name in `laptop/loop`.
 const FOUND: &str = include_str!("banks.json");
 
 /// Largest attitude error with which a scheme counts as fit to fly, as a multiple of the error without a code.

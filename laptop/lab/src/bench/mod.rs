@@ -1,5 +1,5 @@
-//! The benchmark of the paper: measures the efficiency and error of each code, for the signals of the paper's Tables I
-//! and II. All signals of one duration form a case.
+//! The benchmark of the paper *A toolbox for neuromorphic perception in robotics*. It measures the efficiency and error
+//! of each code, for the signals of the paper's Tables I and II. All signals of one duration form a case.
 
 pub mod paper;
 mod recipe;

@@ -28,7 +28,8 @@ const HOUGH: Hough<f32, 15> = Hough::new(Taps::triangular(1.0));
 const THRESHOLD_HOUGH: ThresholdHough<f32, 15> = ThresholdHough::new(Taps::triangular(1.0), 0.85);
 const BETA: f32 = 1.5;
 
-/// Runs all schemes over a signal, in the order of the columns.
+/// Runs all schemes over a signal. The results have the order of the columns of the paper's tables. The two results for
+/// Gaussian receptive fields follow.
 ///
 /// # Panics
 /// Panics if the signal is shorter than a window, or constant. The benchmark's signals are neither.

@@ -94,7 +94,7 @@ impl Row {
         }
     }
 
-    /// Records the reason `why` the log was refused, and the kind of that reason.
+    /// Marks the log as refused. `why` is the reason, as a text for the user, and `kind` is the kind of reason.
     pub(super) fn refuse(&mut self, kind: &str, why: String) {
         (self.refused, self.refused_kind) = (Some(why), Some(kind.to_owned()));
     }
@@ -315,8 +315,9 @@ impl Manifest {
     }
 }
 
-/// Assigns each flight to training or testing, by a hash of the content of a log. The flights with the smallest hashes
-/// are for testing. Copies of one log count as one flight.
+/// Assigns each flight to training or testing. A flight is one log, or all logs of one directory. The hash of a flight
+/// is computed from the smallest SHA-256 of its logs. The flights with the smallest hashes are for testing. `test` is
+/// their share of all flights, 0 to 1. Flights with the same hash count as one flight.
 fn split(rows: &mut [Row], test: f64, flights: Flights) {
     let flight = |row: &Row| match flights {
         Flights::Logs => row.sha256.clone(),

@@ -150,8 +150,8 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// Parses a comment, given without its `#`, that stands for an item: a keyframe, a heartbeat, a loss or a restart.
-/// Returns `None` for any other comment.
+/// Parses a comment that holds an item: a keyframe, a heartbeat, a loss or a restart. Returns `None` for any other
+/// comment. `note` is the comment without its `#`.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     let text = || value.to_owned();

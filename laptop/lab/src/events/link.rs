@@ -111,7 +111,7 @@ fn take(
     tally.impossible += u64::from(!events.is_complete());
 }
 
-/// Writes link frames, each as long as possible.
+/// A writer of link frames. It puts as many keyframes and events as fit into each frame.
 pub(super) struct Writer {
     framer: Framer,
     coding: Coding,
@@ -119,7 +119,8 @@ pub(super) struct Writer {
     keyframes: Vec<Keyframe>,
     /// Tick of the latest keyframe. An empty frame that reports a loss or a restart carries this tick.
     tick: Tick,
-    /// Number of sender restarts so far. It is also the number of the current session.
+    /// Number of the current session, from 0. A restart of the sender begins a new session if the current one has
+    /// frames.
     starts: u32,
     /// Whether the next frame is the first one after the latest start of the sender.
     is_fresh: bool,
@@ -185,7 +186,8 @@ impl Writer {
     }
 }
 
-/// Passes items to `put`, which adds them to a frame, until the frame is full. Returns the number of items added.
+/// Fills a frame with items. The function `put` adds one item to the frame, and fails if the frame is full. Returns the
+/// number of items added.
 fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usize {
     items.iter().map(put).take_while(Result::is_ok).count()
 }

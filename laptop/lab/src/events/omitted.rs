@@ -19,8 +19,8 @@ impl Omitted {
         self.dropped += 1;
     }
 
-    /// Records the time of a written event. Counts the event if the format changed its time. `event` is the event's own
-    /// time, and `read` is the time that a reader gets from the file.
+    /// Compares the time `event` of a written event with the time `read` that a reader gets from the file. Counts the
+    /// event if the times differ, and records the largest difference.
     pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());

@@ -11,7 +11,8 @@ use std::io::Write;
 pub struct Stream<'a> {
     reader: Box<dyn EventReader + 'a>,
     writer: Box<dyn EventWriter>,
-    /// The tick that is subtracted from all ticks to make the output start at 0, if requested.
+    /// Shift of the output's ticks. If the caller wants the output to start at 0, the first tick is subtracted from all
+    /// ticks.
     zero: Zero,
     items: Vec<Item>,
     bytes: u64,

@@ -13,7 +13,7 @@ pub struct Events {
     pub notes: Vec<String>,
 }
 
-/// Reads all events from bytes in a format, given by name: `es`, `evt2`, `link`, `edvs:e2`…
+/// Reads all events from bytes. `format` is the name of the bytes' format, such as `es`, `evt2`, `link` or `edvs:e2`.
 ///
 /// # Errors
 /// Returns an error if the format is unknown, or if the bytes belong to a different format.

@@ -12,7 +12,8 @@ use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Number of greys, which are the first colours of the palette. The three colours of the events panels follow.
+/// Number of greys in the palette, at the indexes 0 to 252. The indexes 253 to 255 are the colours of events and of
+/// the background.
 const GREYS: u16 = 253;
 const UP: u8 = 253;
 const DOWN: u8 = 254;

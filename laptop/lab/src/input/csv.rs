@@ -501,7 +501,7 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
     }
 }
 
-/// Returns the columns of signals: all columns except that of the times and those that count rows, such as `index`.
+/// Returns the columns of signals: all columns except the column of times and the columns of counts, such as `index`.
 fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
     let is_signal = move |&(index, name): &(usize, &String)| {
         time.is_none_or(|time| time.index != index)

@@ -66,9 +66,9 @@ impl Start {
         }
     }
 
-    /// Returns the header if it stands in a comment. A comment is the header if it contains no number and has as many
-    /// fields as the line after the comments. This line must contain a number. Of several such comments, the last one
-    /// is the header. `asked` is the delimiter, if the user gave one.
+    /// Searches the comments for the header: the last comment that contains no number and has as many fields as the
+    /// line below the comments. Returns `None` if there is no such comment, or if the line below contains no number.
+    /// `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));

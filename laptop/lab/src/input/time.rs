@@ -84,8 +84,8 @@ pub(super) enum Named {
     Dates,
 }
 
-/// Interprets the name of a column, as exports of Betaflight, `ArduPilot`, PX4, ROS and pandas write it. Returns `None`
-/// if the name does not stand for times.
+/// Recognises a column of times by its name. Knows the names in exports of Betaflight, `ArduPilot`, PX4, ROS and
+/// pandas. Returns `None` if the name does not stand for times.
 pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
@@ -186,7 +186,8 @@ impl Reading {
         }
     }
 
-    /// Reads a time in ps; returns `None` if the field is not a time. Numbers may have a decimal comma if `has_commas`.
+    /// Reads a field, and returns its time in ps. Returns `None` if the field is not a time. If `has_commas` is true,
+    /// numbers may have a decimal comma.
     pub(super) fn read(self, field: &[u8], has_commas: bool) -> Option<i128> {
         let seconds = |whole: i64| i128::from(whole) * TimeUnit::S.picoseconds();
         match self {
@@ -267,8 +268,9 @@ fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     }
 }
 
-/// Returns a note if the first times, in ps, are all equal, or if their usual step is shorter or longer than any flight
-/// recorder's.
+/// Returns a note for the user if the first times of a recording, in ps, are implausible. They are implausible if all
+/// are equal, or if their median step is below 1 ns or above 1 minute. A median step of 0 is allowed if some step is
+/// longer than 0.
 pub(super) fn implausible(times: &[i128]) -> Option<String> {
     const SHORTEST: f64 = 1e-3;
     const LONGEST: f64 = 60e6;

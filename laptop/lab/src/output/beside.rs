@@ -103,8 +103,8 @@ impl Write for Beside {
     }
 }
 
-/// Returns whether both paths lead to the same file, directly or through links. The path `-` for `input` stands for
-/// standard input.
+/// Returns whether both paths lead to the same file, directly or through links. If `input` is `-`, compares `output`
+/// with the file that is connected to standard input.
 pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
         return false;

@@ -30,7 +30,8 @@ const HEAD: i32 = 34;
 const LABELS: u32 = 84;
 /// Height of a line of the legend, in pixels.
 const LINE: i32 = 28;
-/// Lower end of the efficiency axis, in percent. Population codes with several spikes a sample have a lower efficiency.
+/// Efficiency at the lower end of the axis, in percent. It stands for 2 spikes a sample. Population codes with more
+/// spikes a sample are not drawn.
 const LOWEST: f64 = -100.0;
 /// Number of steps into which the efficiency axis is divided to compare schemes.
 const STEPS: usize = 400;

@@ -75,7 +75,7 @@ fn chain(error: &(dyn std::error::Error + 'static)) -> String {
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
-/// Returns a hint on why a probe may not be found.
+/// Returns the end of the error message for a debug probe that was not found. It names possible reasons.
 fn hint() -> &'static str {
     if cfg!(target_os = "linux") {
         "; is it plugged in, and may this user open it (udev rules of probe-rs)? CMSIS-DAP version 1 is not supported"

@@ -1,4 +1,5 @@
-//! Reads spikes from logs that this library or the paper's toolbox wrote.
+//! Reads spikes from logs of messages. The logs were written by this library, or by the toolbox that belongs to the
+//! paper *A toolbox for neuromorphic perception in robotics*.
 
 use super::recorder::{EVENT, HEADER};
 use super::{Header, Item, Spikes, SpikesKind};

@@ -39,7 +39,7 @@ pub enum Item {
     },
 }
 
-/// A reader of the spikes in a file, after its header.
+/// A reader of a file of spikes. It has already read the header, and reads the spikes below.
 pub struct Reader<R> {
     input: R,
     file: String,
