@@ -60,9 +60,9 @@ pub struct AdviseRequest {
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
     /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
     pub loop_bandwidth: Option<f64>,
-    /// Percentage of frames that the link loses, 0 to 10. If `loop_bandwidth` is given, some codes are excluded from
-    /// the advice. These are the codes with which a simulated drone crashed or strayed far when as many frames were
-    /// lost.
+    /// Percentage of frames that the link loses, 0 to 10. If `loop_bandwidth` is given, a code is not advised if a
+    /// simulated drone crashed or strayed far with the code while the link lost 1 % of the frames. For a percentage
+    /// above 1, the code is also not advised if the drone crashed while the link lost 10 % of the frames.
     pub frame_loss: f64,
     /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
     /// on it.
@@ -109,7 +109,7 @@ pub struct Advice {
     max_rmse: f64,
     /// The schemes that reach the allowed RMSE. The advised scheme comes first.
     reaching: Vec<Candidate>,
-    /// For each scheme that misses the allowed RMSE or breaks a limit, its name and the reason.
+    /// The schemes that miss the allowed RMSE or break a limit, each by name and with the reason.
     others: Vec<String>,
     /// The schemes among `others` with which a simulated drone flew badly. They are the same for every channel.
     #[serde(skip)]
@@ -297,7 +297,7 @@ impl Advice {
         Ok(())
     }
 
-    /// Tunes a scheme briefly, while the parameters in `fixed` keep their values.
+    /// Tunes a scheme within `budget`. The parameters in `fixed` keep their values.
     fn tuned(
         &self,
         request: &AdviseRequest,

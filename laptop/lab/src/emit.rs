@@ -232,7 +232,7 @@ spikewire_c::codecs! {
 ";
 
 const HEADER: &str = "\
-//! Writes the header: `cargo run --features header --bin header DIRECTORY`.
+//! Writes the library's C headers: `cargo run --features header --bin header DIRECTORY`.
 
 #[allow(improper_ctypes_definitions)]
 #[path = \"../codecs.rs\"]
@@ -259,7 +259,7 @@ pub static FLIGHTS: &[fn() -> spikewire_c::Flight] = &[@ALL@];
 ";
 
 const FLIGHT_HEADER: &str = "\
-//! Writes the headers: `cargo run --features header --bin header DIRECTORY`.
+//! Writes the library's C headers: `cargo run --features header --bin header DIRECTORY`.
 
 #[allow(improper_ctypes_definitions)]
 #[path = \"../flights/mod.rs\"]

@@ -33,7 +33,7 @@ pub struct Error {
 pub struct Place {
     /// Name of the file as the user gave it, or `standard input`.
     pub file: Option<String>,
-    /// The spot in the file.
+    /// The line or other spot in the file. `None` if the fault is not tied to one spot.
     pub spot: Option<Spot>,
 }
 
@@ -165,7 +165,7 @@ impl Error {
         self
     }
 
-    /// Records `parameter` as the setting at fault.
+    /// Adds `parameter` to the error, as the setting at fault. Replaces an earlier one.
     #[must_use]
     pub fn about(self, parameter: Given) -> Self {
         Self { parameter: Some(parameter), ..self }

@@ -100,8 +100,8 @@ pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     own
 }
 
-/// A source of samples that are prepared as in the flight's sender: converted to the sensor's counts, and then
-/// filtered.
+/// A source of samples. It converts the samples to the sensor's counts, and then filters them, as the flight's sender
+/// does.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,

@@ -115,7 +115,7 @@ impl Recording {
         }
     }
 
-    /// Returns notes for the user on the recording.
+    /// Returns notes on the recording, to be shown to the user.
     pub fn notes(&self) -> Vec<Words> {
         let mut notes = self.notes.clone();
         if self.rejected > 0 {

@@ -20,7 +20,7 @@ const FEWER: usize = 64;
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function to which the receiver is passed. The receiver decodes link frames to values.
+/// The caller's function, to which [`with_receiver`] passes the finished receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
 /// Facts about the sender that a receiver uses in addition to the schemes: sub-timesteps, fingerprint and clock.
@@ -28,9 +28,9 @@ type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 pub struct Link {
     /// Length of a sub-timestep in µs. `None` if the code does not divide samples into sub-timesteps.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint that the sender's frames carry. If `None`, the receiver computes the fingerprint from the channels'
-    /// schemes. If the number of channels is not known, the receiver tries numbers of channels until one gives the
-    /// fingerprint in the frames.
+    /// Fingerprint (hash of the parameters) that the sender's frames carry. If `None`, the receiver computes the
+    /// fingerprint from the channels' schemes. If the receiver does not know the number of channels, it tries each
+    /// number from 1 up, until the computed fingerprint equals the one in the frames.
     pub fingerprint: Option<Fingerprint>,
     /// Largest deviation of the sample period from its nominal length, in parts per million. If `None`, the receiver
     /// uses its default.
@@ -227,8 +227,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     channels: usize,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Whether each channel has a value. If keyframes resynchronize the code, all channels have a value from the start.
-    /// Otherwise, a channel has a value from its first event on.
+    /// Whether the decoded values of each channel are passed on. If keyframes resynchronize the code, the values of all
+    /// channels are passed on from the start. Otherwise, a channel's values are passed on from its first event.
     has_fired: [bool; N],
     /// End of the sample to which the last received event belongs: one sample period after the event's tick.
     end: Option<Tick>,

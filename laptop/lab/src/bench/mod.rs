@@ -18,7 +18,7 @@ use statistics::Statistics;
 /// Maximum number of signals in a case of the benchmark. A case runs all schemes on signals of one duration.
 pub const MOST_TESTS: usize = 1_000_000;
 
-/// The results of one case, over all its signals and for each scheme.
+/// The results of one case: for each scheme, the statistics over all signals of the case.
 pub struct CaseResult {
     /// Duration of the signals, in seconds.
     pub seconds: usize,

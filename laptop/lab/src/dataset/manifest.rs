@@ -99,7 +99,7 @@ impl Row {
         (self.refused, self.refused_kind) = (Some(why), Some(kind.to_owned()));
     }
 
-    /// Computes the hash of the log.
+    /// Computes the SHA-256 of the log, and stores it in the row.
     ///
     /// # Errors
     /// Returns an error if the log cannot be read, or can be read only once.

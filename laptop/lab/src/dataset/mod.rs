@@ -323,8 +323,8 @@ impl Request {
         }))
     }
 
-    /// Encodes a log to its files of spikes and samples, and returns its row of the manifest. The files replace those of
-    /// an earlier call for the same log once they are complete.
+    /// Encodes a log to its files of spikes and samples, and returns its row of the manifest. Once the new files are
+    /// complete, they replace the files of an earlier call for the same log.
     ///
     /// # Errors
     /// Returns an error if the file of spikes or of samples cannot be written.

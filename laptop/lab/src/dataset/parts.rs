@@ -53,7 +53,7 @@ pub(super) struct Parts {
     neurons: u16,
     /// Time between samples in µs at the rate in the header; 0 if the rate is unknown.
     period: u64,
-    /// For each finite sample whose events are not complete yet, the index and the time in µs.
+    /// Index and time (in µs) of each finite sample whose events are not complete yet.
     pending: VecDeque<(u64, i64)>,
     /// Number of finite samples before the first one in `pending`.
     first_pending: u64,

@@ -15,7 +15,8 @@ use std::str::FromStr;
 /// An event format and its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// The frames of `spikewire::link`.
+    /// Link frames (packets of events from a sender), the format of `spikewire::link`. The [`Coding`] matters only to a
+    /// writer.
     Link(Coding),
     /// The format of eDVS event cameras, with the encoding of the events' times.
     Edvs(Edvs, EdvsTime),

@@ -12,10 +12,10 @@ pub trait Values {
     /// each event. Any other code gives a value for each sample, once the time of the sample is over.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
-    /// Appends the values of the last sample. Call it after the last frame.
+    /// Appends the values of the last sample to `items`. Must be called after the last frame.
     fn finish(&mut self, items: &mut Vec<Item>);
 
-    /// Adds the decoders' counts to the link's counts in `tally`.
+    /// Sets the counts in `tally` that come from decoding, such as the number of keyframes of a wrong sample type.
     fn count(&self, tally: &mut LinkTally);
 
     /// Returns the reason that a channel's value is not exact, or `None` if the value is exact.

@@ -13,11 +13,11 @@ pub struct Tally {
     pub is_cut: bool,
     /// Number of ticks of more than 32 bits.
     pub long_ticks: u64,
-    /// Counts of a reader of link frames; `None` for other formats.
+    /// Counts kept by the reader of link frames; `None` for other formats.
     pub link: Option<LinkTally>,
 }
 
-/// Counts of a reader of link frames (packets from a sender): received frames, losses, faults and contents.
+/// Counts kept by a reader of link frames (packets from a sender): received frames, losses, faults and contents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkTally {
     /// Number of frames that arrived whole.
@@ -32,7 +32,8 @@ pub struct LinkTally {
     pub repeated: u64,
     /// Number of frames in which the sender reports that it lost events before the frame.
     pub after_loss: u64,
-    /// Number of times that the sender started.
+    /// Number of times that the sender started or restarted. The start before the first received frame counts only if
+    /// that frame is the first one after the start.
     pub restarts: u64,
     /// Number of keyframes received.
     pub keyframes: u64,

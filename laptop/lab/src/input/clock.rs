@@ -210,9 +210,9 @@ impl Clock {
         steps
     }
 
-    /// Measures the sample rate of the latest run of steps. Records a change of rate if both the median and the mean of
-    /// the steps have changed. A gap changes only the mean. Steps that alternate between two lengths change only the
-    /// median.
+    /// Measures the sample rate over the latest [`RUN`] steps. Records a change of rate only if both the median and the
+    /// mean of these steps have changed. A gap changes only the mean. Steps that alternate between two lengths change
+    /// only the median. Neither is a change of rate.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {

@@ -31,7 +31,7 @@ pub(super) struct Table {
     rows: Rows,
     /// Number of comment lines below the header.
     comments: Rc<Cell<u64>>,
-    /// A note for the user on what was left out at the end of a truncated table.
+    /// A note that tells the user which bytes were left out at the end of a truncated table.
     cut: Rc<Cell<Option<String>>>,
     ahead: VecDeque<ByteRecord>,
     /// The current row.
@@ -65,7 +65,7 @@ struct Time {
 }
 
 impl Table {
-    /// Opens a table that is CSV text, JSON lines or an array of `NumPy`.
+    /// Opens a table that can be read from a stream: CSV text, JSON lines or a single `NumPy` array.
     ///
     /// # Errors
     /// Returns an error if the input holds no table, or if the table lacks a requested column.
@@ -441,8 +441,8 @@ impl<R: Read> Read for Comments<R> {
     }
 }
 
-/// Reads the first rows, from which the header and the format of the times are found. Sets the position of each record
-/// to the line at which its row begins.
+/// Reads the first rows, at most [`AHEAD`]. The caller finds the header and the format of the times in them. The
+/// position of each returned row is set to the line at which the row begins.
 fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     let mut records = VecDeque::new();
     let mut record = ByteRecord::new();

@@ -64,9 +64,9 @@ pub struct ChannelOptions {
     /// Columns of a table by name, such as `gyro_x`. The name `all` stands for all columns except times and counts. If
     /// the input is a log, each name is a field in the form `TOPIC.FIELD`.
     pub columns: Vec<String>,
-    /// Name of the column or field that holds the time: a column of a table, or a field of a log, such as
-    /// `header.stamp`. The default for a table is a column with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas
-    /// uses for the time. The default for a message of a log is the time at which the message was recorded.
+    /// Name of the table's column or the log's field that holds the time, such as `header.stamp`. If `None`, the time
+    /// column of a table is recognised by its name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. If
+    /// `None`, each message of a log has the time at which the message was recorded.
     pub time: Option<String>,
     /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
     /// `stamp_ns`, or from the column's values.

@@ -77,8 +77,8 @@ impl fmt::Display for TimeUnit {
 pub(super) enum Named {
     /// The times are in the given unit.
     In(TimeUnit),
-    /// The unit follows from the values. The given unit applies to whole numbers that are too small for times since
-    /// 1970.
+    /// The unit is guessed from the values. If these are whole numbers too small for times since 1970, the times are in
+    /// the given unit.
     Whole(TimeUnit),
     /// The column holds times only if its values are dates.
     Dates,

@@ -199,7 +199,7 @@ impl<R: BufRead> Reader<R> {
         Ok(is_some)
     }
 
-    /// Makes an error of this kind at the current line.
+    /// Makes an error of the kind `kind`, with the current line as its place.
     fn refused(&self, kind: SpikesKind) -> Error {
         kind.at(Place::line(&self.file, self.number))
     }

@@ -18,7 +18,7 @@ pub(crate) struct Spyke {
     pub threshold: f32,
     /// The sample that was encoded.
     pub input: f32,
-    /// Name of the scheme in the toolbox that the module documentation names.
+    /// Name of the scheme, as the paper's toolbox spells it.
     pub scheme: &'static str,
     /// Time of the sample by the recording's clock. If the recording has no times, the time since the first sample.
     pub time: Duration,

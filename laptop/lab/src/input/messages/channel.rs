@@ -186,7 +186,7 @@ fn read(
     })
 }
 
-/// Returns the names of all numbers in a field that contains several, separated by commas.
+/// Lists the names of the numbers that a field contains, separated by commas.
 fn within(definition: &Definition, field: &str) -> String {
     let (numbers, _) = definition.names();
     let own: Vec<&str> =

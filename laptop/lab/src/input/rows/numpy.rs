@@ -221,7 +221,7 @@ fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
     (!fields.is_empty()).then_some((fields, at, rows))
 }
 
-/// Arrays of equal length whose rows are joined to rows of one table.
+/// Arrays of equal length, read as one table. Each row of the table joins one row of every array.
 struct Arrays(Vec<Array>);
 
 impl Rows for Arrays {
