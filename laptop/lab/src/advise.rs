@@ -57,15 +57,16 @@ pub struct AdviseRequest {
     pub max_rmse: Option<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
-    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
-    /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
+    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. If
+    /// the bandwidth is given, a code with too long a latency for the loop is not advised. Neither is a code whose
+    /// decoded value changes too slowly to follow the signal.
     pub loop_bandwidth: Option<f64>,
     /// Percentage of frames that the link loses, 0 to 10. If `loop_bandwidth` is given, a code is not advised if a
     /// simulated drone crashed or strayed far with the code while the link lost 1 % of the frames. For a percentage
     /// above 1, the code is also not advised if the drone crashed while the link lost 10 % of the frames.
     pub frame_loss: f64,
-    /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
-    /// on it.
+    /// Name of the processor core that will run the codecs, such as `M4F` for a Cortex-M4F. A core on which the codecs'
+    /// instructions were not counted is an error.
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
@@ -268,9 +269,11 @@ impl Advice {
         })
     }
 
-    /// Decides whether a scheme suits the recording. Tunes the scheme briefly. Adds it to `reaching` if the settings
-    /// found are within the allowed RMSE, and otherwise to `others`, with the reason. A scheme with which the simulated
-    /// drone flew badly is not tuned. It is added to `unflown` and `others`.
+    /// Tunes a scheme briefly, and decides whether it suits the recording. A scheme that suits is added to `reaching`,
+    /// with its settings. A scheme that does not suit is added to `others`, with the reason.
+    ///
+    /// If a loop bandwidth is given, a scheme with which a simulated drone flew badly is not tuned. Such a scheme is
+    /// added to `unflown` and to `others`.
     fn consider(
         &mut self,
         request: &AdviseRequest,

@@ -253,7 +253,8 @@ fn main() -> std::io::Result<()> {
 
 const FLIGHTS: &str = "\
 @MODULES@
-/// Descriptions of the flights, from which the headers are written.
+/// Functions that describe the flights, one for each flight. A flight is the scheme and the channels of a sender. The
+/// program `header` writes the C headers from the descriptions.
 #[allow(dead_code)] // the library itself does not ask
 pub static FLIGHTS: &[fn() -> spikewire_c::Flight] = &[@ALL@];
 ";

@@ -171,7 +171,7 @@ impl Error {
         Self { parameter: Some(parameter), ..self }
     }
 
-    /// Makes the error of a file that cannot be opened.
+    /// Makes the error for a file that cannot be opened.
     pub(crate) fn open(file: impl Into<String>, error: io::Error) -> Self {
         Self { parameter: None, place: Place::of(file), kind: Box::new(ErrorKind::Open(error)) }
     }

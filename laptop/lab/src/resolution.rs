@@ -42,8 +42,8 @@ impl Resolution {
         }
     }
 
-    /// Measures the steps from sample to sample in a whole column. Also measures how much rounding to the sample type
-    /// `sample` changes these steps.
+    /// Measures the steps from sample to sample in a whole column. Also measures the errors that rounding to the sample
+    /// type causes in these steps.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
@@ -89,8 +89,9 @@ impl Resolution {
         })
     }
 
-    /// Returns a text that names other sample types, in which rounding causes little error in the steps from sample to
-    /// sample. If there are no such types, the text says so.
+    /// Returns a text for the user that names other sample types, if they are fine enough for the column. If none is
+    /// fine enough, the text says so. If `f32` would be fine enough after a constant is subtracted from all values, the
+    /// text names that constant.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()

@@ -170,7 +170,7 @@ pub struct Trial {
     pub scheme: Scheme,
     /// The values of all parameters of the scheme.
     pub settings: Settings,
-    /// Numbers of neurons and sub-timesteps.
+    /// Number of neurons, and number of sub-timesteps into which a sample is divided.
     pub shape: Shape,
     /// Latency of the code: the number of samples by which the encoder's output lags behind its input.
     pub latency: usize,

@@ -245,8 +245,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     slot_ticks: u32,
     /// Fingerprint (hash of the parameters) of the sender, if the caller gave it.
     known: Option<Fingerprint>,
-    /// Fingerprint (hash of the parameters) of each channel's scheme. The list has a single fingerprint if all channels
-    /// have the same scheme and the number of channels is unknown.
+    /// Fingerprint (hash of the parameters) of each channel's scheme. A list of one fingerprint stands for any number
+    /// of channels with the same scheme.
     schemes: Vec<Fingerprint>,
     /// Whether any decoded value so far was known to equal the encoder's value.
     has_exact: bool,
@@ -292,12 +292,12 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
     }
 
     /// Converts the decoded values to items, and appends the items to `items`. The first `keyframes` values come from
-    /// keyframes. `before` says for each channel whether it was exact before the frame: the decoded value was known to
-    /// equal the encoder's value.
+    /// keyframes. A channel is exact if its decoded value is known to equal the encoder's value. `before` says for
+    /// each channel whether the channel was exact before the frame.
     ///
-    /// A channel may become exact in the middle of a frame. If keyframes resynchronize the code, the frame's values are
-    /// then marked exact. Otherwise, the channel's values are marked exact only from the next frame on, so that no
-    /// estimate is marked exact.
+    /// A channel may become exact in the middle of a frame. With a code that recovers by keyframes, all values of the
+    /// channel in this frame are marked exact. With any other code, the channel's values are marked exact from the next
+    /// frame on. Estimates from the first part of the frame are thus never marked exact.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {

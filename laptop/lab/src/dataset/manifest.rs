@@ -407,7 +407,8 @@ fn lock(file: &fs::File) -> io::Result<()> {
     Ok(flock(file, FlockOperation::NonBlockingLockExclusive)?)
 }
 
-/// Locks nothing. On systems other than Unix, the oldest Rust version that this crate supports has no file locks.
+/// Locks nothing. The standard library of the oldest supported Rust version cannot lock files, and the crate `rustix`
+/// can lock files only on Unix.
 #[cfg(not(unix))]
 fn lock(_: &fs::File) -> io::Result<()> {
     Ok(())

@@ -175,8 +175,9 @@ pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome
 
 /// A data set that is being completed. Its directory is locked, which keeps other runs out.
 ///
-/// [`run`] does all the work in one process. To share the work between processes, call [`Request::encode`] in any of
-/// them for each log of [`left`](Self::left), and [`add`](Self::add) the rows here.
+/// [`run`] does all the work in one process. Several processes can also share the work. One process holds the `Run`.
+/// Every process calls [`Request::encode`] for some of the logs in [`left`](Self::left), and gets a row for each. The
+/// process with the `Run` passes all rows to [`add`](Self::add), and calls [`finish`](Self::finish) at the end.
 pub struct Run {
     request: Request,
     manifest: Manifest,
@@ -217,8 +218,8 @@ impl Run {
         self.manifest.add(row)
     }
 
-    /// Splits the flights into training and test flights, and sorts the manifest by log. Returns the counts of the
-    /// requested logs.
+    /// Splits the data set into training and test data, and sorts the rows of the manifest by the logs' paths. All logs
+    /// of a flight (see [`Flights`]) are on the same side of the split. The result counts only the requested logs.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.

@@ -219,8 +219,8 @@ struct Part {
     file: SerializedFileWriter<Pipe>,
 }
 
-/// Bytes that the Parquet writer has produced, before they go to the output. The Parquet writer must be `Send`, and the
-/// output is not.
+/// A buffer between the Parquet writer and the output. The Parquet writer accepts only sinks that are `Send`, and
+/// `Output` is not `Send`.
 #[derive(Default)]
 struct Pipe(Vec<u8>);
 

@@ -9,7 +9,7 @@ pub(super) struct Omitted {
     dropped: u64,
     retimed: u64,
     furthest: u32,
-    /// Number of items left out that are not events: keyframes, heartbeats and losses.
+    /// Number of omitted keyframes, heartbeats and losses.
     others: u64,
 }
 

@@ -65,7 +65,7 @@ pub(super) struct Y4m<R: Read> {
     size: (u16, u16),
     /// Number of bytes read so far.
     bytes: Rc<Cell<u64>>,
-    /// Number of bytes up to the end of the last frame read.
+    /// Offset in the video, in bytes, at which the latest frame ends. Before the first frame, the end of the header.
     end: u64,
     index: u64,
     frames: Option<u64>,

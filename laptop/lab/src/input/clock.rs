@@ -82,7 +82,7 @@ const RESTART: f64 = 10.0;
 /// Factor by which the sample rate must rise or fall before the change is reported.
 const JUMP: f64 = 1.5;
 
-/// The number of findings of one kind, such as gaps, with the first few of them.
+/// The findings of one kind, such as gaps: the number of findings, and the first few findings.
 #[derive(Clone, Debug)]
 struct Listed<T> {
     count: u64,

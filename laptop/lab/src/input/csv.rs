@@ -379,8 +379,9 @@ struct Rows {
 }
 
 impl Rows {
-    /// Makes a reader of the rows in `start` and then in `input`. Comment lines are counted in `count`. `above` is the
-    /// number of lines that were added at the start of `start`, such as a header. The file itself has no such lines.
+    /// Makes a reader of the rows in `start`, followed by the rows in `input`. The reader counts comment lines in
+    /// `count`. `above` is the number of lines at the beginning of `start` that are not in the file, such as a header
+    /// that was added.
     fn new(
         start: Start,
         input: impl Read + 'static,

@@ -81,7 +81,8 @@ pub struct ChannelOptions {
     pub fields: Vec<String>,
     /// Samples a second, for a recording without times.
     pub rate: Option<f64>,
-    /// Longest step between the times of two samples that does not count as a gap, as a multiple of the usual step.
+    /// Limit on the step between the times of consecutive samples, as a multiple of the usual step. A longer step
+    /// counts as a gap.
     pub gap: f64,
     /// Whether incomplete rows are skipped and counted. A row is incomplete if one of its values is missing (empty,
     /// `NA`) or not finite. If `false`, an incomplete row is an error.
@@ -313,7 +314,7 @@ impl InputOptions {
         self.input == Path::new("-")
     }
 
-    /// Returns the name that messages to the user give the input: its path, or `standard input`.
+    /// Returns the name of the input for messages to the user: its path, or `standard input`.
     pub fn name(&self) -> String {
         if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
     }

@@ -215,9 +215,9 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// Converts a number from `unit` to ps. The field holds digits with or without a decimal point or, if `has_commas`, a
-/// decimal comma. All digits of a time stamp are used, while a float would keep only 15. Returns `None` if the field
-/// contains an exponent or any other character.
+/// Parses a number in `unit`, and converts it to ps. Keeps all digits down to 1 ps, while a float would keep only 15
+/// digits. The decimal sign is a point. If `has_commas`, a comma is a decimal sign as well. Returns `None` for a number
+/// in another form, such as one with an exponent, and for a number with more than 24 digits before the decimal sign.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
     /// Maximum number of digits before the decimal point. The limit keeps the time in ps within 128 bits.
     const MOST: usize = 24;

@@ -17,8 +17,9 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Deletes all unfinished files when the program is interrupted. The program must exit after this call. From now on, a
-/// thread that starts or finishes a file waits forever, so that no file appears after the deletion.
+/// Deletes all unfinished files. This function is for a program that is interrupted: the program must exit right after
+/// the call. A thread that starts or finishes a file after the call waits forever. No file thus appears after the
+/// deletion.
 pub fn abandon() {
     let files = unfinished();
     for file in files.iter() {

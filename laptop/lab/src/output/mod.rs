@@ -150,7 +150,7 @@ impl Output {
         Ok(())
     }
 
-    /// Writes buffered bytes. If the output is a file, gives it its final name.
+    /// Writes buffered bytes. A file is then renamed from its temporary name to its final name.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.

@@ -189,9 +189,9 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the efficiency and error at the point of the panel where the name of `scheme` is drawn. The common front has
-/// the least error of all schemes at each efficiency. The point is the middle of the part of this front that `scheme`
-/// forms. Only points with an efficiency of at least `left` percent count. Returns `None` if there are none.
+/// Returns the efficiency and error of the point at which the name of `scheme` is drawn. It is the middle one of the
+/// scheme's points on the common front, which [`Panel::front`] defines. Points with an efficiency below `left` percent
+/// are ignored. Returns `None` if no point remains.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

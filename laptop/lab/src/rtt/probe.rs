@@ -69,7 +69,7 @@ pub fn with_channel(
     use_it(&mut Probed { core, rtt, number: *number })
 }
 
-/// Formats an error and its causes with the messages of probe-rs, joined by colons.
+/// Formats an error of probe-rs: its message, followed by the messages of its causes, joined by colons.
 fn chain(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")

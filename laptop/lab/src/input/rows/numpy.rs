@@ -159,8 +159,9 @@ fn by_rows(mut input: impl Read, size: usize, columns: usize, rows: u64) -> Resu
     Ok(sorted)
 }
 
-/// Parses the header of an array. Returns the position of each number in a row, the length of a row in bytes, and the
-/// number of rows.
+/// Parses the header of an array. Returns the numeric fields of a row, the length of a row in bytes, and the number of
+/// rows. `name` is the array's name in an archive, or empty. The names of the fields begin with it. Returns `None` if
+/// the array has more than two dimensions, or a type that this module does not read.
 fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
     let (_, shape) = header.split_once("'shape':")?;
     let shape = shape.split_once('(')?.1.split_once(')')?.0;
