@@ -41,7 +41,8 @@ const STEEP: f64 = 0.02;
 /// the bandwidth, is too small.
 const FEWEST: f64 = 4.0;
 
-/// Returns the largest latency, in samples, that a loop of `bandwidth` Hz tolerates at `rate` samples a second.
+/// Returns the largest latency, in samples, that a control loop tolerates. `bandwidth` is the loop's bandwidth in Hz,
+/// and `rate` is the number of samples a second.
 fn borne(bandwidth: f64, rate: f64) -> f64 {
     (PHASE / 360.0 * rate / bandwidth).floor()
 }
@@ -108,14 +109,15 @@ pub struct Advice {
     /// The reason that no scheme is advised; `None` if a scheme is advised.
     objection: Option<String>,
     max_rmse: f64,
-    /// The schemes that reach the allowed RMSE. The advised scheme comes first.
+    /// The schemes that stay within the allowed RMSE and break no limit. The advised scheme comes first.
     reaching: Vec<Candidate>,
     /// The schemes that miss the allowed RMSE or break a limit, each by name and with the reason.
     others: Vec<String>,
-    /// The schemes among `others` with which a simulated drone flew badly. They are the same for every channel.
+    /// The entries of `others` whose schemes were left out because a simulated drone flew badly with them. All channels
+    /// have the same entries here.
     #[serde(skip)]
     unflown: Vec<String>,
-    /// Whether a search stopped before it had scored all its settings.
+    /// Whether the search for good settings of a scheme in `reaching` was cut short, by the time limit or by the user.
     is_cut_short: bool,
     /// Largest latency that the control loop tolerates, in samples. `None` if the bandwidth of the loop is unknown.
     loop_latency: Option<f64>,
@@ -513,8 +515,9 @@ impl Advice {
     }
 }
 
-/// Returns the number of bytes that a trial's events take on the crate's link, if each frame is sent once it is full. A
-/// scheme whose decoder needs keyframes sends one after every `keyframe_every` samples.
+/// Returns the number of bytes that a trial's events take as frames of `spikewire`'s link. Each frame is sent once it
+/// is full. If the scheme's decoder needs keyframes, the bytes include a keyframe every `keyframe_every` samples.
+/// `rate` is the number of samples a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.

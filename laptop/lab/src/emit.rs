@@ -29,7 +29,7 @@ pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
     Ok(emit::toml(comments, coding.scheme, &settings(coding)?))
 }
 
-/// Completes a coding's parameters with defaults. Returns an error if a parameter must be found in a signal.
+/// Completes a coding's parameters with defaults. Returns an error if a parameter can only be derived from a signal.
 fn settings(coding: &Coding) -> Result<Settings> {
     let Coding { scheme, sample, asked } = coding;
     let past = vec![0.0; scheme.looks_back(asked)];

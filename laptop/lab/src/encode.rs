@@ -31,8 +31,8 @@ pub fn encode_flight(
     encode_to(&open, &input, (scheme, sample, &asked), format, output)
 }
 
-/// Encodes channels of a recording to a log in `format`, or to a table of spikes if `None`. The output is opened last,
-/// once recording and parameters are known to be valid.
+/// Encodes channels of a recording. Writes a log in `format`, or a table of spikes if `format` is `None`. The output is
+/// opened last, once the recording and the parameters are known to be valid.
 ///
 /// Returns the output, which the caller must finish, and notes for the user, a line each.
 ///

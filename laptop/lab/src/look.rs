@@ -231,7 +231,8 @@ fn clipped(values: &[f64], min: f64, max: f64) -> f64 {
     100.0 * runs.sum::<usize>() as f64 / values.len() as f64
 }
 
-/// Returns the frequency, as a share of the sample rate, below which 99 % of the power around the mean lies.
+/// Returns the bandwidth, as a share of the sample rate: 99 % of the signal's power lies below this frequency. The mean
+/// of the signal does not count as power.
 fn bandwidth(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let around: Vec<f64> = values.iter().map(|own| own - mean).collect();

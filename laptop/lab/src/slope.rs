@@ -22,7 +22,7 @@ pub struct Slope {
     /// Largest slope that the code can follow: the threshold times the sample rate, or the threshold if the rate is
     /// unknown.
     fastest: f64,
-    /// Largest slope of the signal, per second or, if the sample rate is unknown, per sample.
+    /// Largest slope of the signal, per second. If the sample rate is unknown, the slope is per sample.
     steepest: f64,
     /// Unit of time of `fastest` and `steepest`: `second` or `sample`.
     per: &'static str,

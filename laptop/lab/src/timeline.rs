@@ -25,7 +25,7 @@ impl Timeline {
         }
     }
 
-    /// Returns the number of known times that belong to samples after the one last passed to [`at`](Self::at).
+    /// Counts the samples whose time is known and that come after the sample last passed to [`at`](Self::at).
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }

@@ -28,8 +28,8 @@ pub struct CaseResult {
     pub rmse: [Statistics; COLUMNS],
 }
 
-/// Runs the first `cases` cases, with `tests` signals in each, and passes each signal's number of samples to `tick`.
-/// Each signal has its own random generator, which makes the results independent of the number of cores.
+/// Runs the first `cases` cases, with `tests` signals in each. After each signal, calls `tick` with the signal's number
+/// of samples. Each signal has its own random generator, which makes the results independent of the number of cores.
 pub fn run(cases: usize, tests: usize, seed: u64, tick: impl Fn(u64) + Sync) -> Vec<CaseResult> {
     let cases = CASES.iter().take(cases).enumerate();
     cases.map(|(case, &seconds)| run_case(case, seconds, tests, seed, &tick)).collect()

@@ -16,8 +16,9 @@ use std::time::UNIX_EPOCH;
 pub(super) const MANIFEST: &str = "manifest.jsonl";
 /// Name of the file with the settings of a data set.
 const SETTINGS: &str = "dataset.json";
-/// Names of the directories of spike files (`EVENTS`) and of sample files (`VALUES`).
+/// Name of the directory with the files of spikes.
 pub(super) const EVENTS: &str = "events";
+/// Name of the directory with the files of samples.
 pub(super) const VALUES: &str = "values";
 
 /// The part of a data set to which a flight belongs: the part for training or the part for testing.
@@ -162,7 +163,8 @@ impl File {
     /// Reads the length and the modification time of a log.
     ///
     /// # Errors
-    /// Returns an error if the log is missing, or if it is not a regular file. A pipe can be read only once.
+    /// Returns an error if the log is missing, or if it is not a regular file. Pipes are refused because they can be
+    /// read only once.
     pub(super) fn of(log: &Path) -> Result<Self> {
         let mut own = Self { bytes: 0, modified_us: 0 };
         for file in files(log)? {

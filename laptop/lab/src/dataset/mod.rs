@@ -41,8 +41,8 @@ pub struct Request {
     pub code: Code,
     /// Options for reading the logs. An option that does not apply to a kind of log is ignored for logs of that kind.
     pub channel: ChannelOptions,
-    /// Channels to read from logs of certain kinds. A kind may have several entries. The entries are tried in order
-    /// until the log contains all channels of an entry.
+    /// Channels to read from logs of certain kinds. A kind may have several entries, which are tried in order for each
+    /// log. The first entry whose channels are all in the log is used.
     pub channels_of: Vec<ChannelsOf>,
     /// Directory of the data set.
     pub output: PathBuf,

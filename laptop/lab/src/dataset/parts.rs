@@ -318,7 +318,7 @@ fn column(name: &str, physical: Physical, logical: Option<LogicalType>) -> Resul
     Ok(column.build()?)
 }
 
-/// Returns `name` or, if a column has this name already, `name` with a number appended.
+/// Returns `name`, with a number appended if `taken` already contains `name`. Adds the result to `taken`.
 fn apart(name: &str, taken: &mut HashSet<String>) -> String {
     let numbered = (2..).map(|number| format!("{name}_{number}"));
     let name = std::iter::once(name.to_owned()).chain(numbered).find(|own| !taken.contains(own));

@@ -172,8 +172,8 @@ impl<'a> Settings<'a> {
         Ok(Self(pairs.collect::<Result<_, _>>()?))
     }
 
-    /// Removes the pair of `key`, and returns its value. The value is a decimal number, or a hexadecimal number that
-    /// starts with `0x`. Returns `otherwise` if the key is missing.
+    /// Removes the pair with the key `key`, and returns the pair's value. The value is a decimal number, or a
+    /// hexadecimal number that starts with `0x`. Returns `otherwise` if the key is missing.
     fn number<N: TryFrom<u32>>(&mut self, key: &str, otherwise: N) -> Result<N> {
         let Some(place) = self.0.iter().position(|pair| pair.0 == key) else {
             return Ok(otherwise);

@@ -1,4 +1,4 @@
-//! Reads and writes the frames of the crate's link.
+//! Reads and writes frames of `spikewire`'s link: packets of events from a sender.
 
 use super::{EventReader, EventWriter, Item, LinkTally, Tally};
 use crate::Result;

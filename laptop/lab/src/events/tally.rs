@@ -47,8 +47,8 @@ pub struct LinkTally {
     pub unused_keyframes: u64,
     /// Comparison of the keyframes with the values decoded just before each keyframe.
     pub held: Held,
-    /// The reason that no decoded value is exact (known to equal the sender's value). `None` if a value is exact, or
-    /// if no values are decoded.
+    /// The reason that no decoded value is exact (known to equal the sender's value). `None` if at least one value is
+    /// exact, or if no values are decoded.
     pub withheld: Option<Withheld>,
 }
 
@@ -59,7 +59,7 @@ pub struct Held {
     /// Number of keyframes that were compared. A keyframe is compared if the decoder's value before the keyframe was
     /// exact (known to equal the sender's value).
     pub compared: u64,
-    /// Number of compared keyframes that differed from the exact value.
+    /// Number of compared keyframes that differed from the decoder's value.
     pub contradicted: u64,
 }
 

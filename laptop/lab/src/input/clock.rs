@@ -165,7 +165,7 @@ impl Clock {
         self.span.map_or(0, |(first, last)| last.saturating_sub(first))
     }
 
-    /// Adds the next times, in µs, and returns the unusual steps among them.
+    /// Adds the times of the next samples, in µs. Returns the unusual steps from one time to the next.
     pub fn observe(&mut self, times: &[i64]) -> Vec<Step> {
         let mut steps = Vec::new();
         for &time in times {

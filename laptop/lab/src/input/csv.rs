@@ -316,7 +316,7 @@ impl Table {
 }
 
 impl Time {
-    /// Returns the time of a row, in ps. Returns `None` if a field of the time is invalid.
+    /// Returns the time of a row, in ps. Returns `None` if the row's text in a column of times is not a valid time.
     fn read(&self, record: &ByteRecord) -> Option<i128> {
         let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
         let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;
@@ -412,8 +412,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the number of the line at which `record`, the row read last, begins. The position that `record` stores
-    /// is of no use here: if comments precede the row, that position is where the comments begin.
+    /// Returns the number of the line at which the row in `record` begins. This row must be the row that was read last.
+    /// The position stored in `record` is not used: it counts comments above the row as part of the row.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);

@@ -14,7 +14,7 @@ pub(super) struct Start {
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
-    /// Offset in `text` of the line directly below the line at offset `line`.
+    /// Offset in `text` of the second line after the comments.
     next: usize,
 }
 

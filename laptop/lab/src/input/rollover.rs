@@ -8,8 +8,8 @@ use catalogue::run::Words;
 /// Ranges of 32-bit clocks, in µs: first for a clock that counts µs, then for a clock that counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Limit in µs on the time between the last sample before a wrap of the clock and the first sample after it. A wrap
-/// within the limit is recognised. [`STEPS`] may raise the limit.
+/// Longest time between two samples, in µs, for which a wrap of the clock between these samples is recognised.
+/// [`STEPS`] may raise this limit.
 const SECOND: i64 = 1_000_000;
 /// Multiple of the latest step forward in time. If this multiple is longer than [`SECOND`], it replaces [`SECOND`] as
 /// the limit.

@@ -23,7 +23,7 @@ pub struct Panel {
 
 /// Font size of a panel's title, legible when the picture is as narrow as a phone.
 const TITLE: i32 = 22;
-/// Font size of the text that is not a panel's title, in pixels. The text is legible when the picture is as narrow as a
+/// Font size in pixels of all text except the titles of panels. The text is legible when the picture is as narrow as a
 /// phone.
 const TEXT: i32 = 19;
 const HEAD: i32 = 34;
@@ -47,9 +47,9 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front: for each step along the efficiency axis, the point of least error among all points
-    /// that have the step's efficiency or more. Each point has the scheme, the efficiency and the error. The entry is
-    /// `None` if no scheme reaches the step's efficiency.
+    /// Returns the common front, with one entry for each step along the efficiency axis. An entry holds the scheme, the
+    /// efficiency and the error of one point. This point has the least error among all points with at least the step's
+    /// efficiency. The entry is `None` if no scheme reaches the step's efficiency.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);

@@ -65,7 +65,7 @@ pub trait Spikes {
     /// Returns an error if an item is invalid, or if the end of the file is missing.
     fn next(&mut self) -> Result<Item>;
 
-    /// Returns the place of the latest item in the file, to be named in an error.
+    /// Returns the place of the item that was read last. Errors name this place.
     fn place(&self) -> Place;
 
     /// Returns notes on the file, to be shown to the user. The notes are complete once the last item was read.
