@@ -1,16 +1,20 @@
-"""The network that holds a drone's attitude on tinyODIN: `attitude.py` lays it out and writes it as `attitude.nir`.
+"""Lays out the network that holds a drone's attitude on tinyODIN, and writes it as a NIR graph: `attitude.py`.
 
-Nothing is trained. The turn that is left, of each axis, is a number of balanced ternary digits, -1, 0 or 1 times a power of
-three. A digit is a ring of three places, and the place that is set is the neuron whose potential is `SET`:
+Nothing is trained. For each axis the network keeps a number: the turn that is left, in steps of STEP. The number has balanced
+ternary digits, -1, 0 or 1 times a power of three. Eight neurons keep a digit:
 
-- One bank of the ring's neurons fires when the number goes up, another when it goes down. The one that is set fires, sets its
-  neighbour in all banks, and takes `PUSH` from the others, which the spike before had pushed too; past 1 it pushes the next digit.
-- A third bank, without the 0, fires when it is asked, twice a sample, and sets itself again: these are the outputs.
-- Each spike of a gyroscope passes a relay, which is an output too: the rate.
-- Relays without a reset in sight add up what the third bank says, and move the number towards 0: within `1 / FADES` samples it
-  would be there, so that the accelerometer, whose spikes move it too, has the last word over minutes.
+- Three *up* neurons and three *down* neurons, one for each value of the digit. The two neurons of the present value are set:
+  their potential is SET, that of the others is 0. An event that counts up adds PUSH to the up neurons, so that the one that is
+  set fires. Its spike sets the neurons of the next value, resets the down neuron of its own, and takes PUSH from the other up
+  neurons. Past 1 it also counts up the next digit.
+- Two *answers*, one for 1 and one for -1, are set along with these. A question, sent once a sample, makes those that are set
+  fire and sets them again. They are outputs.
 
-What a spike of each neuron is worth, in rad/s² during a sample, is the graph's last layer.
+Other neurons are relays: a gyroscope's spike passes one to be an output itself, which makes the rate; four an axis count
+numbers back to 0 within some 1 / FADES samples, so that over minutes the accelerometer says what is level; two correct the yaw by
+what a roll and a pitch make together.
+
+The last layer of the graph says what a spike of each neuron is worth, in rad/s² for a sample. It is the microcontroller's.
 """
 
 from __future__ import annotations
@@ -22,26 +26,28 @@ import numpy as np
 
 from network_pilot import FADES
 
-#: What `main` writes.
+#: The graph that `main` writes.
 NETWORK = Path(__file__).with_name("attitude.nir")
 
+#: Seconds of a sample.
 DT = 0.002
-#: Roll, pitch, yaw: a step of the number, rad; its digits.
-STEP, DIGITS = (2**-7, 2**-7, 2**-5), (6, 6, 4)
+#: Roll, pitch, yaw: a number's step, rad, and its digits.
+STEP, DIGITS = (2**-8, 2**-8, 2**-5), (7, 7, 4)
 #: Angular acceleration per turn that is left, 1/s², and per rate, 1/s, by axis.
 TURN, RATE = (380, 380, 72), (48, 48, 18)
-#: A place's potential when it is set, what an event adds to it, and where it fires.
+#: The potential of a neuron that is set, what an event adds to it, and the threshold.
 SET, PUSH, THRESHOLD = 4, 3, 7
 #: The largest weight.
 MOST = 7
-#: Where the relays that move the yaw by a product of turn and rate fire: at 1 rad of turn, for 7 of the threshold's turns.
-CROSS = 266
-#: The digit at which the inputs of large turns move roll and pitch, and by which yaw is corrected: a spike is 27 steps.
+#: The digit that the inputs of far turns count, each of whose spikes is NEARBY steps.
 COARSE = 3
 NEARBY = 3**COARSE
+#: The digit of a tilt that corrects the yaw, and the threshold of the relays. Digit 4 is 18°, and 0 for tilts below 9°. By the
+#: formula the threshold is 354; half of it flies best, as it makes up for small tilts.
+TILT, CROSS = 4, 177
 
-#: Inputs, up before down: three gyroscopes, two accelerometers, three wanted turns, a turn that leads, two wanted turns of
-#: 27 steps; then the question, what lets numbers fade upwards and downwards, and what sets all zeros at the start.
+#: First inputs of each kind, up before down: gyroscopes by axis, accelerometers ahead and aside, wanted turns by axis, the rate
+#: that leads a flip, wanted far turns of roll and pitch. Then the question, the times at which numbers fade, and the start.
 GYRO, ACCEL, WANTED, LEAD, FAR, ASK, FADE, START = 0, 6, 10, 16, 18, 22, 23, 25
 INPUTS = 26
 
@@ -50,34 +56,30 @@ class Layout:
     """Weights from inputs (inputs, neurons) and between neurons (from, to), thresholds, and what spikes are worth (3, neurons)."""
 
     def __init__(self):
-        self.count, self.edges, self.from_inputs = 0, [], []
+        self.edges, self.from_inputs = [], []
         self.thresholds: list[int] = []
-        #: By axis and digit: the first neurons of the banks for up, down and answers.
+        #: By axis and digit: the first up neuron, the first down neuron, the first answer.
         self.digits: list[list[tuple[int, int, int]]] = []
-        #: The relays of inputs that are a rate.
+        #: The relay of an input. It fires whenever the input does.
         self.relay: dict[int, int] = {}
         worth: dict[tuple[int, int], float] = {}
 
-        # Takes back what a question adds: the first neuron, so that it is the first to fire.
-        self.back = self._add(THRESHOLD)
-        self.from_inputs.append((ASK, self.back, THRESHOLD))
+        # A relay that takes back what its input has added to others comes before them, as neurons fire in order.
+        self._relay(ASK)
         for axis in range(3):
             self._number(axis)
         for axis in range(3):
             for way in range(2):
-                # A drone that turns up has less left to turn.
-                self._move(self.from_inputs, GYRO + 2 * axis + way, axis, 1 - way)
-                self._move(self.from_inputs, WANTED + 2 * axis + way, axis, way)
-                sources = [(GYRO + 2 * axis + way, -1)] + [(LEAD + way, 1)] * (axis == 0)
-                for source, sign in sources:
-                    relay = self.relay[source] = self._add(THRESHOLD)
-                    self.from_inputs.append((source, relay, THRESHOLD))
-                    worth[axis, relay] = sign * (1, -1)[way] * RATE[axis] * STEP[axis] / DT
+                # A turn of the drone leaves less to turn.
+                self._count(self.from_inputs, GYRO + 2 * axis + way, axis, 1 - way)
+                self._count(self.from_inputs, WANTED + 2 * axis + way, axis, way)
+                for source, sign in [(GYRO + 2 * axis + way, -1)] + [(LEAD + way, 1)] * (axis == 0):
+                    self._relay(source)
+                    worth[axis, self.relay[source]] = sign * (1, -1)[way] * RATE[axis] * STEP[axis] / DT
                 if axis < 2:
-                    self._move(self.from_inputs, FAR + 2 * axis + way, axis, way, COARSE)
-                    # Forces ahead say that the nose is up, forces to the left that roll is; gravity is felt upwards.
-                    other = 1 - axis
-                    self._move(self.from_inputs, ACCEL + 2 * other + way, axis, 1 - way if axis == 0 else way)
+                    self._count(self.from_inputs, FAR + 2 * axis + way, axis, way, COARSE)
+                    # Gravity is felt upwards: ahead if the nose is up, to the right if the drone leans to the left.
+                    self._count(self.from_inputs, ACCEL + 2 * (1 - axis) + way, axis, way if axis == 1 else 1 - way)
             if axis < 2:
                 self._fade(axis)
             for digit, (_, _, answers) in enumerate(self.digits[axis]):
@@ -85,96 +87,91 @@ class Layout:
                     worth[axis, answers + way] = (1, -1)[way] * TURN[axis] * STEP[axis] * 3**digit
         self._cross()
 
-        self.inputs = np.zeros((INPUTS, self.count), int)
-        self.recurrent = np.zeros((self.count, self.count), int)
-        self.worth = np.zeros((3, self.count))
-        for source, to, weight in self.from_inputs:
-            self.inputs[source, to] += weight
-        for source, to, weight in self.edges:
-            self.recurrent[source, to] += weight
+        count = len(self.thresholds)
+        self.inputs = np.zeros((INPUTS, count), int)
+        self.recurrent = np.zeros((count, count), int)
+        self.worth = np.zeros((3, count))
+        for weights, edges in ((self.inputs, self.from_inputs), (self.recurrent, self.edges)):
+            for source, to, weight in edges:
+                weights[source, to] += weight
         for place, value in worth.items():
             self.worth[place] = value
 
-    def _add(self, threshold: int) -> int:
-        """A neuron."""
+    def _add(self, threshold: int = THRESHOLD) -> int:
+        """Adds a neuron."""
         self.thresholds.append(threshold)
-        self.count += 1
-        return self.count - 1
+        return len(self.thresholds) - 1
 
-    def _move(self, edges: list, source: int, axis: int, way: int, digit: int = 0) -> None:
-        """A spike of `source` moves a number up (0) or down (1)."""
+    def _relay(self, source: int) -> None:
+        """Adds a relay of an input that has none."""
+        if source not in self.relay:
+            self.relay[source] = self._add()
+            self.from_inputs.append((source, self.relay[source], THRESHOLD))
+
+    def _count(self, edges: list, source: int, axis: int, way: int, digit: int = 0) -> None:
+        """Makes a spike of `source` count a number up (0) or down (1)."""
         first = self.digits[axis][digit][way]
-        edges += [(source, first + place, PUSH) for place in range(3)]
+        edges += [(source, first + value, PUSH) for value in range(3)]
+
+    def _ask(self, source: int, answer: int) -> None:
+        """Makes an input ask a neuron that may be set, and that is set again if it answers."""
+        self.from_inputs.append((source, answer, PUSH))
+        self.edges += [(self.relay[source], answer, -PUSH), (answer, answer, SET + PUSH)]
 
     def _number(self, axis: int) -> None:
-        """The digits of an axis."""
-        banks = []
-        for _ in range(DIGITS[axis]):
-            first = self.count
-            for _ in range(8):
-                self._add(THRESHOLD)
-            banks.append((first, first + 3, first + 6))
+        """Adds the digits of an axis. Values -1, 0 and 1 have the places 0, 1 and 2."""
+        banks = [tuple(self._add() for _ in range(8))[::3] for _ in range(DIGITS[axis])]
         self.digits.append(banks)
         for digit, (up, down, answers) in enumerate(banks):
             self.from_inputs += [(START, up + 1, SET), (START, down + 1, SET)]
-            for place in range(3):
-                for way, bank in ((0, up), (1, down)):
-                    source, end, step = bank + place, (2, 0)[way], (1, -1)[way]
-                    self.edges += [(source, bank + other, -PUSH) for other in range(3) if other != place]
-                    if place == end and digit + 1 == len(banks):
+            for value in range(3):
+                for way, (bank, other) in enumerate(((up, down), (down, up))):
+                    source, to, ends = bank + value, (value + (1, -1)[way]) % 3, value == (2, 0)[way]
+                    self.edges += [(source, bank + each, -PUSH) for each in range(3) if each != value]
+                    if ends and digit + 1 == len(banks):
+                        # The number is as far as it goes.
                         self.edges.append((source, source, SET))
                         continue
-                    if place == end:
-                        self._move(self.edges, source, axis, way, digit + 1)
-                    to = (place + step) % 3
-                    self.edges += [(source, other + to, SET) for other in (up, down)]
-                    self.edges.append((source, (down, up)[way] + place, -SET))
-                    # Of the answers, the first is 1's and the second is -1's.
-                    self.edges += [
-                        (source, answers + (0 if at == 2 else 1), sign * SET) for at, sign in ((to, 1), (place, -1)) if at != 1
-                    ]
+                    if ends:
+                        self._count(self.edges, source, axis, way, digit + 1)
+                    self.edges += [(source, bank + to, SET), (source, other + to, SET), (source, other + value, -SET)]
+                    self.edges += [(source, answers + (each == 0), sign * SET) for each, sign in ((to, 1), (value, -1)) if each != 1]
             for way in range(2):
-                self.from_inputs.append((ASK, answers + way, PUSH))
-                self.edges += [(self.back, answers + way, -PUSH), (answers + way, answers + way, SET + PUSH)]
-
-    def _cross(self) -> None:
-        """Yaw that comes of a roll and a pitch: neurons that are set with a digit of one, and asked by the other's gyroscope,
-        move the yaw's number by way of two relays."""
-        yaw = [self._add(CROSS) for _ in range(2)]
-        for way in range(2):
-            self._move(self.edges, yaw[way], 2, way)
-        for axis in range(2):
-            up, _, answers = self.digits[axis][COARSE]
-            for source, turns in ((kind + 2 * (1 - axis) + turns, turns) for kind in (GYRO, WANTED) for turns in range(2)):
-                if source not in self.relay:
-                    self.relay[source] = self._add(THRESHOLD)
-                    self.from_inputs.append((source, self.relay[source], THRESHOLD))
-                kept = [edge for edge in self.edges if up <= edge[0] < answers <= edge[1] <= answers + 1]
-                for way in range(2):
-                    own = self._add(THRESHOLD)
-                    self.edges += [(place, own, weight) for place, to, weight in kept if to == answers + way]
-                    self.from_inputs.append((source, own, PUSH))
-                    self.edges += [(self.relay[source], own, -PUSH), (own, own, SET + PUSH)]
-                    self.edges.append((own, yaw[(way + turns + axis) % 2], MOST))
+                self._ask(ASK, answers + way)
 
     def _fade(self, axis: int) -> None:
-        """Relays that move a number towards 0, for digits 1 and 2 and for those above."""
+        """Adds relays that count a number towards 0: one pair for the digits of 3 and 9, one for those above."""
         for way in range(2):
             for first, digits in ((1, 2), (3, 3)):
-                # A digit of 1 here moves the number so often a second.
                 relay = self._add(round(1 / (3**first * FADES)))
-                self._move(self.edges, relay, axis, 1 - way)
-                # Fires at its own time only, as a number must not move both ways at once, nor while it is asked.
+                self._count(self.edges, relay, axis, 1 - way)
+                # Only FADE lets it fire: a number must not count both ways at once, nor while it is asked.
                 self.from_inputs.append((FADE + way, relay, MOST))
-                self.edges.append((self.back, relay, -MOST))
+                self.edges.append((self.relay[ASK], relay, -MOST))
                 for digit in range(digits):
-                    weight = min(3**digit, MOST)
-                    self.edges.append((self.digits[axis][first + digit][2] + way, relay, weight))
+                    self.edges.append((self.digits[axis][first + digit][2] + way, relay, min(3**digit, MOST)))
+
+    def _cross(self) -> None:
+        """Adds what corrects the yaw by half the product of the tilt that is left and the turns, of drone and wish: a drone that
+        rolls while its nose is to rise turns it. A neuron is set along with a digit of one tilt, and asked by turns of the other."""
+        yaw = [self._add(CROSS) for _ in range(2)]
+        for way in range(2):
+            self._count(self.edges, yaw[way], 2, way)
+        for axis in range(2):
+            up, _, answers = self.digits[axis][TILT]
+            for source in (kind + 2 * (1 - axis) + turns for kind in (GYRO, WANTED) for turns in range(2)):
+                self._relay(source)
+                sets = [edge for edge in self.edges if up <= edge[0] < answers <= edge[1] <= answers + 1]
+                for way in range(2):
+                    product = self._add()
+                    self.edges += [(value, product, weight) for value, to, weight in sets if to == answers + way]
+                    self._ask(source, product)
+                    self.edges.append((product, yaw[(way + source + axis) % 2], MOST))
 
 
 def main() -> None:
     layout = Layout()
-    each = np.ones(layout.count)
+    each = np.ones(len(layout.thresholds))
     nodes = {
         "input": nir.Input({"input": np.array([INPUTS])}),
         "weights": nir.Linear(layout.inputs.T.astype(float)),
@@ -185,7 +182,6 @@ def main() -> None:
     edges = [*zip(nodes, list(nodes)[1:]), ("neurons", "recurrent"), ("recurrent", "neurons")]
     nodes["recurrent"] = nir.Linear(layout.recurrent.T.astype(float))
     nir.write(NETWORK, nir.NIRGraph(nodes, edges))
-    print(f"{layout.count} neurons, {INPUTS} inputs")
 
 
 if __name__ == "__main__":

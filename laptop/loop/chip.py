@@ -3,8 +3,8 @@
 Six inertial channels and what is wanted come in as spikes of integrate-and-fire, one event after the other. What comes out
 is added up, each spike by what its neuron is worth: three angular accelerations for the mixer. Nothing else knows an attitude.
 
-`chip.py SPIKEWIRE PICTURE` brings the network of `attitude.nir` onto the chip by the laptop's program, flies all manoeuvres
-on it, prints a table and draws a flight.
+`chip.py SPIKEWIRE` brings the network of `attitude.nir` onto the chip by the laptop's program, flies all manoeuvres on it and
+prints a table. `chip.py` alone flies the graph in whole numbers with other seeds, in the other world and with other vibration.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ import numpy as np
 from numba import njit
 
 import flight
-from attitude import ACCEL, ASK, DIGITS, DT, FADE, FAR, GYRO, LEAD, NETWORK, NEARBY, START, STEP, WANTED, Layout
+from attitude import ACCEL, ASK, DT, FADE, FAR, GYRO, LEAD, NETWORK, NEARBY, START, STEP, WANTED, Layout
 from banks import LEVEL
+from brushless import Brushless
 from control import Control, F
 from flight import Registers
 from manoeuvres import ALL, Manoeuvre
 from network_flies import LONG, Flown, check
 from network_pilot import Encoder, Networked
+from world import World
 
 #: What a spike of each signal is worth, in its unit times a sample: the number's steps, and those of a lean that the
 #: accelerometer moves by `network_pilot.FADES`.
-LEAN = 192.0
-THRESHOLD = np.array(
-    [*(step / DT for step in STEP), LEAN, LEAN, LEAN, *STEP, STEP[0] / DT], np.float32
-)
+LEAN = 96.0
+THRESHOLD = np.array([*(step / DT for step in STEP), LEAN, LEAN, LEAN, *STEP, STEP[0] / DT], np.float32)
 #: The most spikes of a signal in a sample.
 MOST = 127
 #: Each manoeuvre is flown so often.
@@ -171,8 +171,10 @@ class Chip:
 
 
 class Held(Control):
-    """The cascade's mixer behind the network: nothing of the cascade but that. `fired` keeps, by sample, how often each
-    neuron fired."""
+    """The cascade's mixer behind the network, and nothing else of the cascade.
+
+    `heard` keeps, by sample, how many events came in; `fired`, how often each neuron fired.
+    """
 
     def __init__(self, network: Plain | Chip, rate: int = flight.RATE, **drone):
         super().__init__(rate, **drone)
@@ -243,5 +245,21 @@ def main(program: str) -> None:
     )
 
 
+def elsewhere() -> None:
+    network = Network()
+    for world, vibration, seeds in [(World, LEVEL, 5), (Brushless, LEVEL, 2), (World, 2 * LEVEL, 2), (World, 0, 2)]:
+        for name, make in [
+            ("cascade", lambda: Control(flight.RATE, world.drone)),
+            ("network", lambda: Held(Plain(network), drone=world.drone)),
+        ]:
+            flights = [
+                flight.fly(manoeuvre, Registers(), 100 * (3 + seed) + number, control=make(), world=world, vibration=vibration)
+                for number, manoeuvre in enumerate(ALL)
+                for seed in range(seeds)
+            ]
+            lost = sum(own.lost for own in flights)
+            print(f"{world.__name__}, vibration {vibration:g}, {name}: {mean(flights):.1f}°, {lost} of {len(flights)} lost", flush=True)
+
+
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(sys.argv[1]) if len(sys.argv) > 1 else elsewhere()
