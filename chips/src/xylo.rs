@@ -111,8 +111,8 @@ impl XyloMap {
 ///
 /// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which
 ///   bank the next step reads, and writes the counts to that bank.
-/// - **Order:** set the counts, then run the step. While the chip runs a step the driver accepts no counts, and
-///   [`step`](Self::step) waits for the step without triggering a second one.
+/// - **Order:** set the counts, then run the step. While the chip runs a step, the driver accepts no counts. A call of
+///   [`step`](Self::step) then waits for the end of this step, and does not trigger a second one.
 /// - **Counts stay** in the chip. A step without new counts uses the old counts of the bank that it reads. To prevent
 ///   this, [clear](Self::clear_input) the counts, as the vendor's programs do.
 /// - **Faults:** the chip does not confirm writes, and the public sources do not say which registers can be read back.

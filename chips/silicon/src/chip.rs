@@ -34,9 +34,9 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     fn is_disabled(neuron: u128) -> bool;
     /// Returns whether a bistability event, which moves a weight by 1 towards 0 or 7, may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Returns whether the chip puts a spike from the queue on the output bus while it applies the spike to `neuron`.
-    /// Called only if the output bus carries the spikes from the queue, and
-    /// [`POPS_AFTER_OUTPUT`](Self::POPS_AFTER_OUTPUT) is false.
+    /// Returns whether the chip sends a spike from its queue to the output bus when it applies the spike to `neuron`.
+    /// (The chip applies the spike to one neuron after the other.) Called only if the output bus carries the spikes
+    /// from the queue, and [`POPS_AFTER_OUTPUT`](Self::POPS_AFTER_OUTPUT) is false.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 

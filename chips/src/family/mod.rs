@@ -103,9 +103,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
     /// times.
     ///
-    /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If polls are
-    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies the number of polls. With fewer polls,
-    /// the wait for a slow word times out, and a later call must finish the word.
+    /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If several polls
+    /// fit into one clock cycle, call [`with_reads_per_clock`](Self::with_reads_per_clock), which multiplies the number
+    /// of polls. With too few polls, the wait for a slow word times out. The word then stays pending, and a later call
+    /// must finish it.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -132,8 +133,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Sets the length of a time step to `step` µs. [`Running::feed`] and [`Running::advance`] then send a leak event
     /// for every `step` µs that pass. Without this setting they send no leak events.
     ///
-    /// Call [`Running::advance`] at least every 70 minutes. If a tick (a time stamp) is more than 70 minutes after the
-    /// previous tick, it seems to be earlier, and the driver sends no leak event.
+    /// Call [`Running::advance`] at least every 70 minutes. A tick is a time stamp in µs with 32 bits, which wraps
+    /// after 71.6 minutes. After a longer pause than 70 minutes the driver cannot tell how much time has passed, and
+    /// sends too few leak events or none.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }

@@ -7,8 +7,9 @@ use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome};
 
 /// Number of clock cycles from the driver's ACK of an output until the chip continues, with a margin.
 const HANDSHAKE_CLOCKS: u32 = 32;
-/// Number of clock cycles that [`Running::quiesce`] allows for the handshakes of outputs; enough for more than a
-/// thousand outputs. `quiesce` adds this number to four times the longest time that the chip works without an output.
+/// Number of clock cycles that [`Running::quiesce`] allows for the handshakes of outputs: enough for more than a
+/// thousand outputs. `quiesce` waits until no output has come for a certain time. It gives up after four times that
+/// time, plus these clock cycles.
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
 /// A running chip: it takes events, and its memories cannot be accessed. After an error the chip still runs, unless the

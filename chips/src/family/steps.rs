@@ -90,18 +90,21 @@ pub struct Steps<'a> {
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// The rows of synapses of each input, and of each neuron whose spikes act on neurons: for each row, the number of
-    /// events that a spike sends on it. The weight of an input or neuron is the sum of the weights in its rows, each
-    /// times this number. With `&[8, 1]`, two rows of 4 bits hold weights from -72 to 63.
+    /// Numbers of events that one spike sends: one number for each row of synapses of an input or neuron. All inputs,
+    /// and all neurons whose spikes act on neurons, have the same number of rows. A spike acts with the sum of the
+    /// weights in its rows, each times the number of events for that row. With `&[8, 1]`, two rows of 4-bit weights
+    /// give weights from -72 to 63.
     pub rows: &'a [u16],
     /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
     pub layers: &'a [StepsLayer],
-    /// Number of events that raise the potentials of each layer in a step. Each event raises them by one rung. At the
-    /// end of the step, the same number of events lowers the potentials of all neurons.
+    /// Number of events that raise the potentials of each layer in a step. Each event raises a potential by one *rung*:
+    /// the neuron's weight in the row that raises its layer. At the end of the step, the same number of events lowers
+    /// the potentials of all neurons, each by one rung.
     pub rungs: u16,
     /// The leaks of all neurons: one list for each step. After the last list, the next step takes the first list again.
-    /// A list has one entry for each leak: the number of lowering events that the driver sends before this leak. The
-    /// entries are in ascending order.
+    /// The driver sends these leaks at the end of the step, among the [`rungs`](Self::rungs) events that lower the
+    /// potentials. A list has one entry for each leak: the number of these events, 0 to `rungs`, that the driver has
+    /// sent before the leak. The entries are in ascending order.
     pub leaks: &'a [&'a [u16]],
     /// Number of events that raise the potentials of all neurons before the leaks of [`own_leaks`](Self::own_leaks).
     /// After these leaks, the same number of events lowers the potentials again. With 0, these leaks are sent without

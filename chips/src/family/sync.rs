@@ -49,9 +49,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.configure(GATE_ACTIVITY, 0)
     }
 
-    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`], and stores it as the beacon. Then
-    /// checks that chip and bus are in sync. If all these bytes are 0, the neuron was never written. This call then
-    /// disables the neuron, which makes one byte differ from 0.
+    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`], and stores it as the [`Beacon`]. If
+    /// all parameters are 0, as in a neuron that was never written, first disables the neuron, which sets a bit in one
+    /// of the bytes. Checks that chip and bus are in sync.
     pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
         let last = I::NEURON_BYTES.saturating_sub(1);
         for byte in (0..=last).rev() {
@@ -191,9 +191,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores the byte `value` at `address` as the beacon: a byte that is known not to be 0. Uses only bits of
-    /// parameters, which the chip does not change, and of these only the bits that are 1 in `mask`. Does nothing if all
-    /// these bits of `value` are 0, or if `address` is not in the memory of neurons.
+    /// Stores the byte `value` at `address` as the [`Beacon`]. The beacon leaves out bits that are 0 in `mask`. It also
+    /// leaves out bits outside a neuron's parameters, because the chip can change those bits. Does nothing if all other
+    /// bits of `value` are 0, or if `address` is not in the memory of neurons.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

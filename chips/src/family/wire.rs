@@ -24,8 +24,9 @@ impl Address {
         Self::neuron(255, 0x7F)
     }
 
-    /// Returns the address of the byte with the synapse from `pre` to `post`. The address has bit fields for `byte`,
-    /// `pre` and `post / 8`, from high to low: a byte holds two synapses, and a 32-bit word holds four bytes.
+    /// Returns the address of the byte with the synapse from `pre` to `post`. A byte holds two synapses, and a 32-bit
+    /// word holds four bytes. The address has three bit fields, from high to low: the byte's index in its word, `pre`,
+    /// and `post / 8`.
     pub(super) fn synapse(pre: u8, post: u8) -> Self {
         let (pre, post) = (u32::from(pre), u32::from(post));
         Self(SYNAPSE | (post >> 1 & 3) << 13 | pre << 5 | post >> 3)

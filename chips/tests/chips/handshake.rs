@@ -72,9 +72,9 @@ impl<D: SpiDevice> SpiDevice for Recorder<D> {
 
 #[test]
 fn reads_per_clock_multiply_the_polls_of_every_wait() {
-    /// Sends a word to a chip that is gated, and therefore never acknowledges it. Returns the number of port calls that
-    /// the driver makes before it gives up. `reads` is the number of pin reads for each clock cycle of the chip, and
-    /// `polls` the limit that is multiplied by it.
+    /// Sends a word to a chip that is gated, and therefore never acknowledges the word. Returns the number of port
+    /// calls that the driver makes before it gives up. `polls` is the driver's limit of polls, and `reads` is the
+    /// number that multiplies this limit: the number of pin reads for each clock cycle of the chip.
     fn polls(reads: u32, polls: u32) -> u64 {
         let board = Board::<silicon::TinyOdin>::new(8, 1);
         board.pins().chip.neurons.fill(0x1000);
@@ -293,7 +293,8 @@ fn quiesce_waits_as_long_as_the_chip_may_work() {
     assert_eq!(waits(true, true), 4 * open + (1 << 15));
 }
 
-/// A port without a pin for `SCHED_FULL` cannot say whether the queue is full: the default returns `None`.
+/// A port without a pin for `SCHED_FULL` cannot tell whether the chip's queue is full. Its `queue_full`, which the
+/// trait provides, returns `None`.
 #[test]
 fn a_port_may_leave_the_full_pin_unwired() {
     let port = TinyBoard::new(4, 1).port();

@@ -99,11 +99,14 @@ fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usi
     both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
 }
 
-/// Makes an access many times, each time with a pair of faults: one lost and one doubled clock pulse. Tries `some`
-/// random pairs, whose faults are less than `reach` clock pulses apart. If `all_in_first` is set, also tries all pairs
-/// within the first frame. Leaves out pairs with a fault in a frame that writes a register, or in the frame before;
-/// `is_register` returns whether the frame with a given number writes a register. Asserts that each access returns an
-/// error or has the same effect as without faults. Returns the number of pairs tried.
+/// Makes an access many times, each time with a pair of faults: one lost and one doubled clock pulse. Asserts that each
+/// access returns an error, or has the same result and effect as an access without faults. `comparison` selects the
+/// registers and memories that are compared. Returns the number of accesses with faults.
+///
+/// Draws `some` random pairs of clock pulses for each of [`WORDS`]; the two pulses are less than `reach` pulses apart.
+/// If `all_in_first` is set, also takes all pairs of pulses within the first frame of the access. Leaves out pairs that
+/// have a fault in a frame that writes a register, or in the frame that precedes such a frame. `is_register` returns
+/// whether the frame with a given number writes a register.
 fn pairs<T: PartialEq + std::fmt::Debug>(
     (some, all_in_first): (usize, bool),
     reach: u64,

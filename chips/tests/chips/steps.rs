@@ -1,5 +1,5 @@
-//! Tests of `Steps`, in which each neuron compares with its threshold once a step: the driver on tinyODIN's model
-//! against plain arithmetic.
+//! Tests of `Steps`: time steps in which each neuron compares its potential with its threshold once. The tests run
+//! random networks with the driver on tinyODIN's model, and compare the spikes with those of plain arithmetic.
 
 use proptest::prelude::*;
 use silicon::Board;
@@ -32,9 +32,10 @@ struct Net {
     /// For each row of synapses of an input or neuron, the number of events that a spike sends on it.
     rows: Vec<u16>,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Number of rungs by which each potential on the chip is lower than in the reference, between steps.
+    /// Number of rungs (see [`Neuron::rung`]) by which the chip keeps each potential below that of the reference
+    /// between two steps.
     below: u16,
-    /// Number of rungs by which each threshold on the chip is higher than in the reference.
+    /// Number of rungs by which each threshold on the chip lies above that of the reference.
     above: u16,
     leaks: Vec<Vec<u16>>,
     lift: u16,
@@ -158,8 +159,8 @@ impl Net {
     }
 }
 
-/// The network in the form that the driver loads: without recurrent weights, and with every row of synapses as the row
-/// of an input. The second field is the number of rows.
+/// The network in the form that the driver loads: each row of synapses is described as the row of an input, and there
+/// are no recurrent weights. The second field is the number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

@@ -28,7 +28,8 @@ pub enum State {
     /// Waits for a sample to begin.
     #[default]
     Idle,
-    /// Applies spikes of neurons and inputs to neurons, before the next tick.
+    /// Waits for the next tick. Meanwhile the controller for events applies the spikes of inputs and neurons to all
+    /// neurons.
     Prop,
     /// Lets neurons leak and fire, after a tick.
     Step,
@@ -225,8 +226,8 @@ pub struct Outputs {
     pub data: u8,
     /// Level of `SPI_RDY`, which is high while SPI may access the memories.
     pub spi_ready: bool,
-    /// Level of `TIMING_ERROR_RDY`, which is high while the chip is ready for a tick. If register 23 is set, the level
-    /// is high after a tick that came too early.
+    /// Level of `TIMING_ERROR_RDY`. If register 23 is 0, the level is high while the chip is ready for a tick. If
+    /// register 23 is 1, the level is high from a tick that came too early until the next reset.
     pub error_or_ready: bool,
 }
 
@@ -460,8 +461,8 @@ impl ReckOn {
         }
     }
 
-    /// Returns the highest number of a neuron, an input or an output. In each time step, the counter `step_count` runs
-    /// from 0 to this number.
+    /// Returns the largest of three numbers: those of the last neuron, the last input and the last output. In each time
+    /// step, the counter `step_count` runs from 0 to the returned number.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }
