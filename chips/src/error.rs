@@ -28,9 +28,9 @@ pub enum ChipError<B, P = Infallible> {
     NotGated,
     /// The chip's activity is gated, so the chip takes no events.
     Gated,
-    /// The chip did not answer after the driver had let it run: reset the chip first.
-    /// [`ReckOn::sample`](super::ReckOn::sample) returns this error if the chip is between samples; then no reset is
-    /// needed.
+    /// The driver let the chip run, but the chip failed the check that it runs: reset the chip first.
+    /// [`ReckOn::sample`](super::ReckOn::sample) also returns this error, for a chip between two samples; such a chip
+    /// needs no reset.
     NotStarted,
     /// The driver found no neuron that is fit for the check that the chip runs. The check is a time step of one neuron.
     /// The driver first moves the neuron's potential away from 0 by the leak, so that the time step moves the potential

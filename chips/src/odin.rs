@@ -26,7 +26,8 @@ pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinNeuron {
-    /// Potential at which the neuron fires and returns to 0, 1 to 255. Bits 9 to 16.
+    /// Threshold, 1 to 255. A neuron whose potential reaches the threshold fires, and its potential returns to 0. Bits
+    /// 9 to 16.
     pub threshold: u8,
     /// Amount by which a time step lowers the potential, 0 to 127. Bits 1 to 7; bit 8 is 1 unless the amount is 0.
     pub leak: u8,
@@ -276,8 +277,8 @@ impl Input for OdinInput {
         Some(OdinNeuron { potential: before, ..*neuron })
     }
 
-    /// Encodes a signed weight as the 4 bits of a synapse, without its sign. Sets the mapping bit, with which the
-    /// synapse acts, unless the weight is 0.
+    /// Encodes a signed weight as the 4 bits of a synapse, which do not contain the sign. If the weight is not 0, sets
+    /// the mapping bit, which enables the synapse.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
         in_range("weight", weight.into(), -7, 7)?;
         Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })

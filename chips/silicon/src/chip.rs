@@ -54,7 +54,7 @@ pub enum Input {
     Queued(u8, u8),
 }
 
-/// The event that acts on a neuron, as the signals that the controller gives to the neuron.
+/// The signals that the controller gives to a neuron. They describe the event that acts on the neuron, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Drive {
     /// Whether an event acts on the neuron. False if the neuron is only read or written over SPI.
@@ -251,7 +251,7 @@ impl<K: Kind> Chip<K> {
         self.queue.len()
     }
 
-    /// Returns whether the chip is gated. After a write to register 0 this changes only some clock cycles later, when
+    /// Returns whether the chip is gated. A write to register 0 changes the result only some clock cycles later, when
     /// the new value has passed the synchroniser to the chip's clock.
     pub fn is_gated(&self) -> bool {
         self.clocked.gate[1]

@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use super::AerPort;
 use spikewire::Event;
 
-/// A phase of the 4-phase handshake of an input word. In an error it is the phase in which the chip did not answer in
+/// A phase of the 4-phase handshake of an input word. An error names the phase in which the chip did not answer in
 /// time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -142,8 +142,8 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    /// Ends the handshake of the previous word, then puts `word` on the input bus. If this fails, `word` is not
-    /// pending.
+    /// Ends the handshake of the previous word, then puts `word` on the input bus. If the call returns an error, `word`
+    /// is not pending.
     pub(super) fn begin(
         &mut self,
         word: u32,

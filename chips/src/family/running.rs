@@ -39,8 +39,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Ok(aer.finish(&mut on_output)?)
     }
 
-    /// Passes neurons that have fired to `on_output`, and continues with a pending word. Reads the pins only a few
-    /// times: call this often, because the chip stops while an output waits.
+    /// Passes neurons that have fired to `on_output`, and advances the handshake of a pending word. Reads the pins only
+    /// a few times, and does not wait. Call `poll` often, because the chip stops while an output waits.
     ///
     /// # Errors
     /// Returns an error if the port failed. No output is passed on twice.

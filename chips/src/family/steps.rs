@@ -5,17 +5,20 @@ use embedded_hal::spi::SpiDevice;
 
 use super::{AerPort, ChipError, Input, Outcome, Running};
 
-/// Describes how tinyODIN runs a time step of a network in which each neuron compares its potential with its threshold
-/// once a step, as in training. [`Running::step`] runs such a step. `Steps` belong to a [`Network`](super::Network) in
-/// open loop; the command `spikewire network` writes both.
+/// A description of the time steps of a network on tinyODIN. In each step, each neuron compares its potential with its
+/// threshold once, as in training. [`Running::step`] runs a step. A `Steps` belongs to a [`Network`](super::Network)
+/// whose loop is open; the command `spikewire network` writes both.
 ///
 /// While the inputs of a step arrive, all potentials are offset downwards, so that no neuron reaches its threshold.
-/// Then events on an extra row of weights raise the first layer. Each of these events raises the layer by one *rung*.
-/// After the last of these events the offset is gone, and the neurons above their thresholds have fired. Their spikes
-/// go to the next layer, which is raised in turn. Finally, events on a second extra row lower all neurons again. Leaks
-/// are sent between the lowering events. A leak moves the lowered potential towards 0, by a fixed amount. Leaks while
-/// the potentials are lowered by different amounts together reduce a potential by a share of its value, as in training.
-/// A neuron that fired may end above its reset value; leaks that only this neuron receives remove the excess.
+/// Then events on an extra row of weights raise the potentials of the first layer. Each event raises them by one
+/// *rung*. After the last of these events the offset is gone, and the neurons above their thresholds have fired. Their
+/// spikes go to the next layer, whose potentials are raised in turn. Finally, events on a second extra row lower the
+/// potentials of all neurons again.
+///
+/// Leaks are sent between the events that lower the potentials. Each leak moves a potential towards 0, by a fixed
+/// amount. The offset changes between the leaks, so that together they reduce a potential by a share of its value, as
+/// in training. A neuron that fired may end above its reset value. Further leaks, which only this neuron receives,
+/// remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
@@ -79,11 +82,11 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// 1. the inputs, and the bias if the network has one;
 /// 2. for each layer, its neurons onto the next layer (except for the last layer), and onto the layer itself if the
 ///    layer is recurrent;
-/// 3. for each layer, a row that raises it;
+/// 3. for each layer, a row that raises its potentials;
 /// 4. a row that lowers all neurons;
 /// 5. a row that raises all neurons, if [`lift`](Self::lift) is not 0.
 ///
-/// The neurons' initial potentials contain the offset.
+/// The initial potentials in the network must already be offset downwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps<'a> {
     /// Number of inputs. The bias (see [`has_bias`](Self::has_bias)) does not count.
@@ -315,9 +318,9 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends a spike of an input or a neuron, on each of its rows of synapses as many times as the network's `rows`
-    /// say. `first` is the first row of all inputs, or of all neurons of the layer. `number` is the index of this input
-    /// or neuron among them.
+    /// Sends a spike of an input or a neuron. For each row of synapses of this input or neuron, `self.rows` has the
+    /// number of events to send. `first` is the first row of all inputs, or of all neurons of the layer. `number` is
+    /// the index of this input or neuron among them.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let rows = self.rows;
         let mut row = first.saturating_add(number.saturating_mul(rows.len() as u16));

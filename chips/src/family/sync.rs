@@ -41,9 +41,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_sync()
     }
 
-    /// Opens the gate, which lets the chip run. First reads a byte that does not exist, to protect the neurons' bytes:
-    /// if the gate is later shut while tinyODIN works, the chip overwrites a byte of each neuron that it has not
-    /// processed yet. The index of this byte is the one that was last accessed over SPI.
+    /// Opens the gate, which lets the chip run. First reads a byte that does not exist, to protect the neurons' bytes.
+    /// If the gate is later shut while tinyODIN works, the chip overwrites one byte in each neuron that it has not
+    /// processed yet: the byte with the index that SPI accessed last. After this read, the last index is one that no
+    /// neuron has, so that nothing is overwritten.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)

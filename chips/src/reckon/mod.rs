@@ -194,7 +194,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         port.set_infer(false)
     }
 
-    /// Returns a chip that an earlier call left stopped, with its memories open to access.
+    /// Gives access to the memories of a chip that an earlier call left stopped.
     ///
     /// # Errors
     /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, or [`NotGated`](ChipError::NotGated)

@@ -1,5 +1,4 @@
-//! Tests of the frames on the SPI bus and their order, of handshakes, and of time steps, on the models of tinyODIN and
-//! ODIN.
+//! Tests on the models of tinyODIN and ODIN: the frames on the SPI bus and their order, handshakes, and time steps.
 
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;

@@ -448,8 +448,8 @@ impl ReckOnPort for FaultyPort<'_> {
     }
 }
 
-/// Begins a sample on a chip without a network. (The potentials in an answer of such a chip are those of 16 outputs.)
-/// Then sets faults with `set`, and returns the result of `act`.
+/// Begins a sample on a chip without a network, sets faults of the pins with `set`, and returns the result of `act` on
+/// the sample. Without a network, an answer with potentials has all 16 outputs.
 fn with_faults<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),

@@ -9,8 +9,8 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// A way to compare two chips. For each chip, the second function makes further calls of the driver; then the first
-/// function returns the content to compare.
+/// A way to compare two chips. The first function returns the content of a chip. The second function is called before,
+/// and makes further calls of the driver.
 type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
@@ -190,9 +190,9 @@ fn a_weight_that_is_read_is_not_written_where_it_ends() {
     assert!(result.is_err());
 }
 
-/// A fault that the driver cannot notice must do no harm. The header of a read of neurons loses its first bit, so that
-/// the chip writes the potential of an output instead. The read returns 0, which is also the correct word. The
-/// potential must stay 0.
+/// A fault that the driver cannot notice must do no harm. A read of neurons loses the first bit of its header, so that
+/// the chip takes the read for a write of an output's potential. The driver gets 0, which is also the correct word. The
+/// outputs' potentials must still be 0.
 #[test]
 fn a_word_of_neurons_that_is_read_moves_no_output() {
     // All words are written, the sync is checked, and the first word is read.

@@ -17,8 +17,9 @@ struct Neuron {
     rung: i32,
     /// Number of leaks that act only on this neuron, at the end of each step in which it fires.
     own: u16,
-    /// Weights from the previous layer: [`Net::rows`] weights from its first neuron, then as many from its second
-    /// neuron, and so on. Contains no weights from the bias or from the neuron's own layer.
+    /// Weights from the previous layer or, in the first layer, from the inputs. Each sender has one weight for each
+    /// entry of [`Net::rows`]; the weights of the first sender come first. Contains no weights from the bias or from
+    /// the neuron's own layer.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -29,7 +30,7 @@ struct Neuron {
 struct Net {
     inputs: usize,
     has_bias: bool,
-    /// For each row of synapses of an input or neuron, the number of events that a spike sends on it.
+    /// Numbers of events that one spike sends: one number for each row of synapses of the input or neuron that spikes.
     rows: Vec<u16>,
     layers: Vec<(bool, Vec<Neuron>)>,
     /// Number of rungs (see [`Neuron::rung`]) by which the chip keeps each potential below that of the reference

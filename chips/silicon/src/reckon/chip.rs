@@ -414,7 +414,7 @@ impl ReckOn {
         &self.now.outputs
     }
 
-    /// Returns whether, since the last reset, a tick came before the previous step was done.
+    /// Returns whether a tick came too early since the last reset: before the previous step was done.
     pub const fn timing_error(&self) -> bool {
         self.now.timing_error
     }
@@ -904,9 +904,10 @@ impl ReckOn {
         self.now = new;
     }
 
-    /// Advances the random generators that this clock cycle uses. A reset or a write of a seed instead sets the
-    /// generator's state; `prog` has the flags of the seeds that are written. `alpha` is the share of its potential
-    /// that a neuron keeps, in units of 1/32 768. `draws` selects the generators that learning uses.
+    /// Advances the random generators that the chip uses in this clock cycle. During a reset, sets all generators to
+    /// their initial states. If a seed is written, sets the generator of this seed; `prog` has one flag for each seed.
+    /// `alpha` is the share of a neuron's potential that a step keeps, in units of 1/32 768. `draws` selects the
+    /// generators that learning uses.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;
         let is_reset = now.resets[1];
@@ -943,7 +944,8 @@ impl ReckOn {
         }
     }
 
-    /// Advances the synchronisers, and applies a reset.
+    /// Advances the synchronisers, which take over the levels of the pins. During a reset, clears the synchronisers and
+    /// the states of the controllers.
     fn synchronise(&self, new: &mut Clocked) {
         let (now, pins) = (&self.now, &self.inputs);
         let shift = |bits: [bool; 2], pin| [pin, bits[0]];

@@ -228,8 +228,8 @@ impl Learning {
         self.neuron
     }
 
-    /// Advances the counters of learning. Stores the slope and the learning signal of the current neuron, in its place
-    /// among sixteen neurons.
+    /// Advances the counters of learning. Stores the slope and the learning signal of the current neuron; the chip
+    /// holds these values for sixteen neurons at a time.
     pub(super) fn clock(&self, chip: &ReckOn, new: &mut Clocked, next: State) {
         let now = &chip.now;
         let only_outputs = chip.register(9) == 4;
