@@ -20,8 +20,8 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory; the bits that the fields name are counted
-/// from 0 within these. The driver does not support the chip's Izhikevich neurons.
+/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory, numbered 0 to 127; the text of each field
+/// names the field's bits. The driver does not support the chip's Izhikevich neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -29,7 +29,7 @@ pub struct OdinNeuron {
     /// Threshold, 1 to 255. A neuron whose potential reaches the threshold fires, and its potential returns to 0. Bits
     /// 9 to 16.
     pub threshold: u8,
-    /// Amount by which a time step lowers the potential, 0 to 127. Bits 1 to 7; bit 8 is 1 unless the amount is 0.
+    /// Amount, 0 to 127, by which a time step lowers the potential. Bits 1 to 7; bit 8 is 1 unless the amount is 0.
     pub leak: u8,
     /// The potential, which saturates at 0 and 255. Bits 70 to 77.
     pub potential: u8,
@@ -54,7 +54,7 @@ impl OdinNeuron {
 /// threshold and below the third. The spike weakens the synapse if the potential is low, and the calcium is at least
 /// the first threshold and below the second.
 ///
-/// The bits that the fields name are counted from 0 within the neuron's 128 bits of memory.
+/// A neuron takes 128 bits of memory, numbered 0 to 127; the text of each field names the field's bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -49,8 +49,9 @@ pub enum InputBank {
 
 /// The register addresses and masks of a chip of the Xylo family.
 ///
-/// Checked only against the sources of `rockpool`: `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for
-/// A2. Both sources poll for the end of a time step as [`step`](Xylo::step) does.
+/// The maps in this crate were checked against two sources of the vendor's library `rockpool`, and against no chip:
+/// `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for A2. Both sources poll for the end of a time step
+/// as [`step`](Xylo::step) does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -89,7 +90,8 @@ impl XyloMap {
     };
 
     /// Xylo Audio A2: 8 outputs. Ask the vendor for `trigger`, the value that triggers a time step. The vendor's open
-    /// library `rockpool` does not contain this value: there `samna`, whose source is not public, triggers the step.
+    /// library `rockpool` does not contain this value: it leaves the trigger to the library `samna`, whose source is
+    /// not public.
     pub const fn a2(trigger: u32) -> Self {
         Self {
             input: 0x11,

@@ -167,7 +167,8 @@ impl DelayNs for Rtl {
     }
 }
 
-/// Returns the numbers in each list of the field `name` of the constant `STEPS`. A field that is a number has one list.
+/// Finds the line of the field `name` in `source`, and splits the field's value at each `[`. Returns the numbers in
+/// each part: a plain number gives one part, and each `[` one more.
 fn lists(source: &str, name: &str) -> Result<Vec<Vec<u16>>> {
     let start = format!("    {name}: ");
     let line = source.lines().find_map(|line| line.strip_prefix(&start)).ok_or(start.clone())?;

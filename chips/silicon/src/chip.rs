@@ -62,8 +62,8 @@ pub struct Drive {
     /// Whether the event is a time step from the input word [`Leak`](Input::Leak). False for a virtual leak of ODIN,
     /// which is a virtual event.
     pub is_leak: bool,
-    /// Bits of the input word of a virtual event: the weight for tinyODIN; the weight, the sign and whether the event
-    /// is a leak for ODIN. 0 for other events.
+    /// For a virtual event, bits of its input word; 0 for other events. On tinyODIN the bits are the weight. On ODIN
+    /// they are the weight, its sign, and a bit that makes the event a leak.
     pub virtual_bits: u8,
     /// The 4 bits of the synapse through which the event acts.
     pub synapse: u8,

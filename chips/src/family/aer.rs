@@ -225,7 +225,7 @@ impl<P: AerPort> Aer<P> {
     }
 
     /// Advances the output bus's handshake by at most one edge of ACK: raises ACK after REQ rose, or lowers ACK after
-    /// REQ fell. Also counts a queue that became full.
+    /// REQ fell. Also counts an overflow if the chip's queue has become full since the last call.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());

@@ -57,8 +57,8 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   it again.
 /// - **Waits:** the driver waits for the chip by reading pins. The argument `polls` of [`new`](Self::new) limits the
 ///   number of reads; after the last read, the driver returns an error.
-/// - **Pending words:** a word that the chip has not acknowledged when a wait ends stays pending. Every call that sends
-///   a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
+/// - **Pending words:** if a wait ends before the chip has acknowledged a word, the word stays pending. Every call that
+///   sends a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
 /// - **Unsent events:** the driver keeps an event that [`Running::feed`] could not send. The next call of `feed` sends
 ///   this event first, even after a reset.
 /// - **Losses** are counted; see [`counters`](Self::counters).
@@ -68,7 +68,8 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   queue. In open loop (the spikes go only to the output bus) a leak overtakes no spike.
 /// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the output bus carries the inputs, not the
 ///   neurons that fire.
-/// - A neuron in use with threshold 0, as in memory that was never written, fires at every event and every leak.
+/// - A neuron in use whose threshold is 0 fires at every event and every leak. Memory that was never written may hold
+///   such neurons.
 /// - An overflow of the queue is invisible unless [`AerPort::queue_full`] is wired.
 #[derive(Debug)]
 pub struct OdinChip<I: Input, D, P> {
@@ -153,11 +154,12 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Pulses reset, which brings chip and bus into sync; then gates the chip, opens its loop, and checks that the chip
-    /// answers. The check needs a byte in the memory of neurons that is not 0. Therefore, if neuron [`Input::PROBED`]
-    /// was never written, this call disables it, which sets a bit.
+    /// answers. For the check, at least one bit in the parameters of neuron [`Input::PROBED`] must be 1. If all of them
+    /// are 0, as in a neuron that was never written, this call sets the bit that disables the neuron.
     ///
-    /// Spikes in the chip's queue are lost, and the pending word is dropped. If the pending word was an event of
-    /// [`Running::feed`] that the chip has not acknowledged, the driver keeps the event and sends it again.
+    /// Spikes in the chip's queue are lost, and the pending word (sent, but not acknowledged by the chip) is dropped.
+    /// If the pending word is an event of [`Running::feed`], the driver keeps the event, and the next call of `feed`
+    /// sends it again.
     ///
     /// # Errors
     /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.

@@ -141,7 +141,7 @@ pub enum Inputs<const IN: usize, const N: usize> {
 }
 
 impl<const IN: usize, const N: usize> Inputs<IN, N> {
-    /// Gives each input a row of synapses in which input `n` has this weight to neuron `n`, and 0 to all other neurons.
+    /// Connects input `n` to neuron `n` with this weight. Each input gets a row of synapses; its other weights are 0.
     #[must_use]
     pub const fn one_to_one(weight: i8) -> Self {
         let mut rows = [[0; N]; IN];

@@ -104,10 +104,10 @@ pub struct Steps<'a> {
     /// the neuron's weight in the row that raises its layer. At the end of the step, the same number of events lowers
     /// the potentials of all neurons, each by one rung.
     pub rungs: u16,
-    /// The leaks of all neurons: one list for each step. After the last list, the next step takes the first list again.
-    /// The driver sends these leaks at the end of the step, among the [`rungs`](Self::rungs) events that lower the
-    /// potentials. A list has one entry for each leak: the number of these events, 0 to `rungs`, that the driver has
-    /// sent before the leak. The entries are in ascending order.
+    /// Leaks that act on all neurons: one list for each step. After the last list, the next step takes the first list
+    /// again. The driver sends these leaks at the end of the step, among the [`rungs`](Self::rungs) events that lower
+    /// the potentials. A list has one entry for each leak: the number of these events, 0 to `rungs`, that the driver
+    /// has sent before the leak. The entries are in ascending order.
     pub leaks: &'a [&'a [u16]],
     /// Number of events that raise the potentials of all neurons before the leaks of [`own_leaks`](Self::own_leaks).
     /// After these leaks, the same number of events lowers the potentials again. With 0, these leaks are sent without
@@ -126,7 +126,7 @@ pub struct StepsLayer {
     pub loops: bool,
 }
 
-/// The state that a network in [`Steps`] has between two steps: 36 bytes.
+/// The state that [`Running::step`] keeps from one step to the next: 36 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepsState {
     /// The neurons that fired in the last step.
@@ -195,14 +195,22 @@ impl Steps<'_> {
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Runs one time step of a network. `inputs` are the numbers of the inputs that fire, in any order. A number that
-    /// is not an input of the network is dropped and [counted](super::Counters::unmapped_events). Neurons that fire are
-    /// passed to `on_output` immediately, each at most once in a step. These neurons belong to any layer;
-    /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
+    /// is not an input of the network is dropped and [counted](super::Counters::unmapped_events). Passes each neuron
+    /// that fires to `on_output` immediately, at most once in a step. This includes neurons of all layers;
+    /// [`Describe::answers`](super::Describe::answers) makes a callback that ignores all neurons except the outputs.
     ///
-    /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. Each input or spike
-    /// takes as many events as [`rows`](Steps::rows) has in sum. Raising each layer takes [`rungs`](Steps::rungs)
-    /// events, and lowering all neurons takes `rungs` events once. Each leak takes one event. The chip still works on
-    /// the last event when the call returns.
+    /// **Time:** the chip takes 2 clock cycles for every neuron in use, and 6 more, for each event that acts on all
+    /// neurons. An event for one neuron takes less. The events of a step are:
+    ///
+    /// - for each input that fires, and for the bias: as many events as the sum of [`rows`](Steps::rows);
+    /// - for each neuron that fires: the same number for the next layer, if there is one; and if its own layer is
+    ///   recurrent, the same number again in the next step;
+    /// - for each layer: [`rungs`](Steps::rungs) events that raise potentials, and one event for one neuron;
+    /// - at the end: `rungs` events that lower all potentials, and one event for each of the [`leaks`](Steps::leaks);
+    /// - if a neuron fired and the network has [`own_leaks`](Steps::own_leaks): twice [`lift`](Steps::lift) events, and
+    ///   one event for one neuron for each own leak of a neuron that fired.
+    ///
+    /// When the call returns, the chip still works on the last event.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). The step is then incomplete and the chip's potentials are useless:

@@ -73,8 +73,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Checks that chip and bus are in sync. Changes a byte in the memory of synapses and reads it, then restores the
-    /// byte and reads it again. Between the two reads, reads a byte that is known not to be 0, if there is one, because
-    /// a chip that is out of sync sends 0. Returns an error if the chip runs, or after a lost or doubled clock pulse.
+    /// byte and reads it again. Between the two reads, reads the [`Beacon`] if one is stored: this byte is not 0, but a
+    /// chip that is out of sync sends 0. Returns an error if the chip runs, or after a lost or doubled clock pulse.
     pub(super) fn check_sync(&mut self) -> Outcome<(), D, P> {
         let value = match self.anchor {
             Some(value) => value,
@@ -163,7 +163,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
+    /// Writes `value` to a byte of memory. Bits that are 1 in the mask `keep` keep their value.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -217,8 +217,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Converts an error of the bus. After such an error the driver refuses all calls until the next reset, because a
-    /// clock pulse may have been lost.
+    /// Passes on the result of a bus access, with its error as [`ChipError::Bus`]. After such an error the driver
+    /// refuses all calls until the next reset, because a clock pulse may have been lost.
     pub(super) fn heed<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
         result.map_err(|error| {
             self.state = State::NotReset;

@@ -16,7 +16,8 @@ const MAX_LEAKS: u32 = 255;
 /// difference is at most this time.
 const LATEST: u32 = 1 << 26;
 
-/// Returns the time from `last` to `now` in µs. Returns `None` if `now` is earlier than `last` by up to [`LATEST`].
+/// Returns the time from `last` to `now` in µs. Returns `None` if `now` is earlier than `last` by at most [`LATEST`];
+/// reads any other `now` as later.
 fn passed(last: Tick, now: Tick) -> Option<u32> {
     let passed = now.micros().wrapping_sub(last.micros());
     (passed < LATEST.wrapping_neg()).then_some(passed)

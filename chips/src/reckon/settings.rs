@@ -51,8 +51,8 @@ pub struct ReckOnLearning {
     /// Whether weights learn. The three entries are for the weights from inputs, between neurons and to outputs, in
     /// this order.
     pub learns: [bool; 3],
-    /// Number of extra fractional bits of the traces, 0 to 7 each. A trace is a measure of recent spikes, from which
-    /// weights learn. In this order: traces for the weights of inputs, of connections between neurons, of outputs.
+    /// Numbers of extra fractional bits of the traces, 0 to 7 each. The three entries are for the weights from inputs,
+    /// between neurons and to outputs, in this order. A trace is a measure of recent spikes, from which weights learn.
     pub traces: [u8; 3],
     /// Left shift of the learning signal, 0 to 15. (After this shift, the chip divides the signal by 4096.)
     pub signal: u8,
@@ -83,13 +83,13 @@ pub struct ReckOnSettings {
 }
 
 impl ReckOnSettings {
-    /// Settings without learning that return the outputs' potentials in each step.
+    /// Settings without learning: the driver returns the outputs' potentials after every step and after the sample.
     pub const POTENTIALS: Self = Self {
         answers: ReckOnAnswers::PotentialsEachStep,
         task: ReckOnTask::Regression,
         learning: None,
     };
-    /// Settings without learning that return a label for each sample.
+    /// Settings without learning: the driver returns a label after the sample.
     pub const LABEL: Self =
         Self { answers: ReckOnAnswers::Label, task: ReckOnTask::Classification, learning: None };
 }

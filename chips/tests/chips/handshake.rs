@@ -23,8 +23,8 @@ const OPEN: TinyOdinRegisters = TinyOdinRegisters {
     last_neuron: 255,
 };
 
-/// Makes a board with a running chip, whose first `firing` neurons fire at every event, and a driver for the chip. A
-/// port call takes `clocks` clock cycles of the chip.
+/// Makes a board and a driver, and starts the chip. The first `firing` neurons fire at every event. A port call takes
+/// `clocks` clock cycles of the chip. The driver's waits end after `polls` pin reads.
 fn running(clocks: u32, polls: u32, firing: usize) -> (TinyBoard, Tiny) {
     let board = TinyBoard::new(4, clocks);
     let mut chip = TinyOdin::new(board.spi(), board.port(), polls);

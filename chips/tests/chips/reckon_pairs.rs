@@ -40,8 +40,9 @@ fn network_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (whole_content(chip).0, own.chain(rows).chain(outputs).collect())
 }
 
-/// Fills a chip's memories with `words`, plans `faults`, and calls `access`. Returns the result, the content of the
-/// chip afterwards, and the number of SPI clock pulses that the access took.
+/// Fills a chip's memories with `words`, plans `faults`, and calls `access`, then `confirm` if `access` succeeded.
+/// Returns the value of `access` or the first error; the content of the chip afterwards, as `view` reads it; and the
+/// number of SPI clock pulses that `access` took.
 fn run_access<T>(
     words: u128,
     faults: &[(u64, ClockFault)],
@@ -84,8 +85,8 @@ const LOADED: u64 = 512 + 1 + 256 + 256;
 
 /// Compares all registers and memories, immediately after the access.
 const AT_ONCE: Comparison = (whole_content, |_| Ok(()));
-/// Compares all registers with those of a run without faults, and the words of memory that `verify` checks. `verify`
-/// comes first: it returns an error if a fault made a write of a read, and so changed the memory.
+/// Compares all registers, and the words of memory that `verify` checks. Calls `verify` before the comparison: it
+/// returns an error if a fault turned a read into a write that changed one of these words.
 const VERIFIED: Comparison = (network_content, |chip| chip.programmed()?.verify(&NETWORK));
 
 const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];

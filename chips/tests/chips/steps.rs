@@ -13,7 +13,7 @@ use spikewire_chips::{
 struct Neuron {
     threshold: i32,
     leak: i32,
-    /// Amount by which an event that raises the neuron (a rung) changes its potential.
+    /// The neuron's rung: the amount by which each event that raises the layer raises this neuron's potential.
     rung: i32,
     /// Number of leaks that act only on this neuron, at the end of each step in which it fires.
     own: u16,
@@ -48,8 +48,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl Net {
-    /// Runs a step and returns the neurons of each layer that fire. `before` holds the neurons of each layer that
-    /// fired in the previous step.
+    /// Runs a step. Returns the neurons that fire, as one list for each layer. `before` holds these lists of the
+    /// previous step.
     fn step(&mut self, step: usize, inputs: &[u16], before: &[Vec<u16>]) -> Vec<Vec<u16>> {
         let [below, above, lift] = [self.below, self.above, self.lift].map(i32::from);
         let rows = &self.rows;

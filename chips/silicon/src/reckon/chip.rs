@@ -906,7 +906,7 @@ impl ReckOn {
 
     /// Advances the random generators that the chip uses in this clock cycle. During a reset, sets all generators to
     /// their initial states. If a seed is written, sets the generator of this seed; `prog` has one flag for each seed.
-    /// `alpha` is the share of a neuron's potential that a step keeps, in units of 1/32 768. `draws` selects the
+    /// `alpha` is the factor by which a step multiplies a neuron's potential, in units of 1/32 768. `draws` selects the
     /// generators that learning uses.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;

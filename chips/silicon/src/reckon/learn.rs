@@ -32,8 +32,8 @@ struct Move<'a> {
 }
 
 impl Move<'_> {
-    /// Returns the new word of weights, and a mask of the weights that change. For the index of a weight in the word,
-    /// `likely` returns a measure of how likely the weight is to rise (if positive) or to fall (if negative), and
+    /// Returns the new word of weights, and a mask of the weights that change. `likely` takes the index of a weight in
+    /// the word. It returns a measure of how likely this weight is to rise (if positive) or to fall (if negative), and
     /// whether the weight may change at all.
     fn apply(&self, likely: impl Fn(usize) -> (i32, bool)) -> (u128, u128) {
         let (mut data, mut mask) = (0, 0);
