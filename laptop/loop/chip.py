@@ -4,7 +4,8 @@ Six inertial channels and what is wanted come in as spikes of integrate-and-fire
 is added up, each spike by what its neuron is worth: three angular accelerations for the mixer. Nothing else knows an attitude.
 
 `chip.py SPIKEWIRE` brings the network of `attitude.nir` onto the chip by the laptop's program, flies all manoeuvres on it and
-prints a table. `chip.py` alone flies the graph in whole numbers with other seeds, in the other world and with other vibration.
+prints a table. `chip.py` alone flies the graph in whole numbers with other seeds, in the other world, with other vibration and
+losses.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from flight import Registers
 from manoeuvres import ALL, Manoeuvre
 from network_flies import LONG, Flown, check
 from network_pilot import Encoder, Networked
-from world import World
+from world import CRAZYFLIE, Drone, World
 
 #: What a spike of each signal is worth, in its unit times a sample: the number's steps, and those of a lean that the
 #: accelerometer moves by `network_pilot.FADES`.
@@ -173,17 +174,22 @@ class Chip:
 class Held(Control):
     """The cascade's mixer behind the network, and nothing else of the cascade.
 
-    `heard` keeps, by sample, how many events came in; `fired`, how often each neuron fired.
+    `heard` keeps, by sample, how many events came in; `fired`, how often each neuron fired. In a share `loss` of the samples
+    the sensor's spikes are lost.
     """
 
-    def __init__(self, network: Plain | Chip, rate: int = flight.RATE, **drone):
-        super().__init__(rate, **drone)
+    def __init__(self, network: Plain | Chip, drone: Drone = CRAZYFLIE, loss: float = 0.0):
+        super().__init__(flight.RATE, drone)
         self.network, self.encoder = network, Encoder(THRESHOLD, MOST)
+        self.loss, self.dice = loss, np.random.default_rng(1)
         self.heard: list[int] = []
         self.fired: list[np.ndarray] = []
 
     def step(self, sample, wanted, thrust, feed=(0.0, 0.0, 0.0)):
-        heard = events(self.encoder.counts(sample, wanted, feed[0]).tolist())
+        counts = self.encoder.counts(sample, wanted, feed[0])
+        if self.loss and self.dice.random() < self.loss:
+            counts[:6] = 0
+        heard = events(counts.tolist())
         self.heard.append(len(heard))
         self.fired.append(self.network.step(heard))
         wishes = self.network.network.worth @ self.fired[-1]
@@ -247,18 +253,19 @@ def main(program: str) -> None:
 
 def elsewhere() -> None:
     network = Network()
-    for world, vibration, seeds in [(World, LEVEL, 5), (Brushless, LEVEL, 2), (World, 2 * LEVEL, 2), (World, 0, 2)]:
-        for name, make in [
-            ("cascade", lambda: Control(flight.RATE, world.drone)),
-            ("network", lambda: Held(Plain(network), drone=world.drone)),
-        ]:
-            flights = [
-                flight.fly(manoeuvre, Registers(), 100 * (3 + seed) + number, control=make(), world=world, vibration=vibration)
-                for number, manoeuvre in enumerate(ALL)
-                for seed in range(seeds)
-            ]
+    whole = [(World, LEVEL, 0, 5), (Brushless, LEVEL, 0, 2), (World, 2 * LEVEL, 0, 2), (World, 0, 0, 2)]
+    for world, vibration, loss, seeds in [*whole, (World, LEVEL, 0.01, 2), (World, LEVEL, 0.1, 2)]:
+        for name in ("cascade", "network"):
+            flights = []
+            for number, manoeuvre in enumerate(ALL):
+                for seed in range(300 + number, 300 + 100 * seeds, 100):
+                    is_cascade = name == "cascade"
+                    control = Control(flight.RATE, world.drone) if is_cascade else Held(Plain(network), world.drone, loss)
+                    more = {"world": world, "vibration": vibration, "loss": loss * is_cascade}
+                    flights.append(flight.fly(manoeuvre, Registers(), seed, control=control, **more))
             lost = sum(own.lost for own in flights)
-            print(f"{world.__name__}, vibration {vibration:g}, {name}: {mean(flights):.1f}°, {lost} of {len(flights)} lost", flush=True)
+            words = f"{world.__name__}, vibration {vibration:g}, {loss:.0%} lost on the way: {name}"
+            print(f"{words} {mean(flights):.1f}°, {lost} of {len(flights)} lost", flush=True)
 
 
 if __name__ == "__main__":
