@@ -293,10 +293,10 @@ impl Trained {
         Ok(self)
     }
 
-    /// Converts layers for chips on which a spike subtracts the threshold one step later. Changes only layers in which
-    /// a spike subtracts the threshold in the same step. In such a layer, the next leak also reduces the subtracted
-    /// amount. Because the chip subtracts only after this leak, it would subtract too much. A positive weight from each
-    /// neuron to itself makes up for the difference.
+    /// Adapts layers to chips on which a spike subtracts the threshold one step later. Changes only layers in which a
+    /// spike subtracts the threshold in the same step. In the trained layer, the leak of the next step also reduces the
+    /// subtracted amount. The chip subtracts the whole threshold, after the leak. A positive weight from each neuron to
+    /// itself adds the difference to the potential.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {

@@ -1,5 +1,5 @@
-//! The choices about how neurons decay, fire and reset that a file and its framework leave open, and the text that asks
-//! the user for them.
+//! Choices about the decay, firing and reset of neurons. If a network's file and its framework leave such a choice
+//! open, a text asks the user to make it.
 
 use super::Framework;
 use catalogue::run::Spell;

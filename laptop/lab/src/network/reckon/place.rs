@@ -23,8 +23,9 @@ pub(super) struct Places {
     by_layer: Vec<Vec<usize>>,
 }
 
-fn part(layer: &str) -> Spot {
-    Spot::Part(layer.to_owned())
+/// Returns the location that an error reports for the layer `name`.
+fn layer_at(name: &str) -> Spot {
+    Spot::Part(name.to_owned())
 }
 
 impl Places {
@@ -68,18 +69,18 @@ impl Places {
             }
             let (count, needed) = (layer.neurons.len(), neurons.len());
             let kind = || FitKind::Neurons { most: NEURONS, layer: count, needed };
-            ensure!(needed <= NEURONS, kind().at(part(&layer.name)));
+            ensure!(needed <= NEURONS, kind().at(layer_at(&layer.name)));
             by_layer.push(own);
         }
         let inputs = trained.inputs() + usize::from(has_bias);
         let kind = || FitKind::Inputs { most: Self::INPUTS, inputs, has_bias };
-        ensure!(inputs <= Self::INPUTS, kind().at(part(&trained.layers[0].name)));
+        ensure!(inputs <= Self::INPUTS, kind().at(layer_at(&trained.layers[0].name)));
         let (name, outputs) = match (&trained.readout, trained.layers.last()) {
             (Some(readout), _) => (readout.name.as_str(), readout.weights.len()),
             (None, Some(layer)) => (layer.name.as_str(), layer.neurons.len()),
             (None, None) => ("", 0),
         };
-        ensure!(outputs <= OUTPUTS, FitKind::Outputs { most: OUTPUTS, outputs }.at(part(name)));
+        ensure!(outputs <= OUTPUTS, FitKind::Outputs { most: OUTPUTS, outputs }.at(layer_at(name)));
         Ok(Self { neurons, by_layer })
     }
 

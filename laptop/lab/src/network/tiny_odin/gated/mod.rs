@@ -50,11 +50,13 @@ struct GatedLayer {
     neurons: Vec<GatedNeuron>,
 }
 
-/// Quantises the network: first with a rough search for each [shape](Shape), then with a thorough search for the
-/// [`CHOSEN`] shapes that were rated best. The rating is the agreement with the original, minus [`PRICE`] for each
-/// event in a step. Returns the best network of the rough search, then the networks of the thorough search. In the
-/// rough search, the parameters follow almost directly from the trained ones. In the thorough search, the spikes come
-/// nearer to those of the original in this recording. Returns an empty list if the chip has no room for any shape.
+/// Quantises the network in two searches. The first search is rough: it tries all [shapes](Shape), with parameters that
+/// follow almost directly from the trained ones. The second search is thorough: it takes the [`CHOSEN`] shapes with the
+/// best ratings, and brings the spikes in this recording nearer to those of the original. The rating of a shape is the
+/// agreement with the original, minus [`PRICE`] for each event in a step.
+///
+/// Returns the best network of the rough search, then the networks of the thorough search. Returns an empty list if the
+/// chip has no room for any shape.
 ///
 /// Calls `progress` with the number of finished parts of this work and the total number of parts.
 pub(super) fn quantise(
@@ -179,7 +181,7 @@ impl Gated {
         network
     }
 
-    /// Runs the network in plain arithmetic, and returns the spikes of the last layer.
+    /// Runs the network without the chip's model, and returns the spikes of the last layer.
     pub(super) fn outputs(&self, inputs: &Trains) -> Trains {
         let of_layer = |before: Trains, layer: &GatedLayer| layer.run(&self.shape, &before);
         self.layers.iter().fold(inputs.clone(), of_layer)

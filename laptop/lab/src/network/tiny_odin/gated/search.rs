@@ -61,14 +61,14 @@ struct Choice {
     /// Change of the number of leaks that the neuron alone receives after a spike. The number of leaks is the result of
     /// [`own_leaks`] plus this change.
     more: i16,
-    /// Amount that every step adds to the potential. This amount comes in addition to the trained bias, and to a
-    /// correction for leaks that would otherwise move a potential of 0.
+    /// Change of the neuron's bias, in the chip's units. The bias on the chip is the sum of three amounts: the trained
+    /// bias, this change, and a correction for leaks that would otherwise move a potential of 0.
     bias: i16,
 }
 
 /// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
 /// distance between the spikes and the target, and the neuron. `climbs` is the number of initial choices of parameters
-/// that the search improves; with 0, it only selects the best initial choice.
+/// that the search improves. If `climbs` is 0, the search takes the best initial choice as it is.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);

@@ -1,5 +1,6 @@
-//! The shape of a network whose neurons compare their potentials with their thresholds once a step. A shape is what all
-//! neurons of the network share: the rows of synapses for each weight, and the sequence of events in a step.
+//! The shape of a network whose neurons compare their potentials with their thresholds once a step. The shape is the
+//! same for all neurons of the network. It describes how each weight is split into synapses, and which events make up a
+//! step.
 
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, MAX_POTENTIAL, NEURONS, ROWS};
@@ -8,8 +9,8 @@ use super::{LARGEST_RUNG, MAX_POTENTIAL, NEURONS, ROWS};
 /// number of events that a spike sends on this row. Each way can represent all integers from its smallest to its
 /// largest possible weight.
 const ROWS_TRIED: [&[u16]; 5] = [&[1], &[4, 1], &[8, 1], &[8, 8, 1], &[24, 8, 1]];
-/// Factor by which the number of rungs is larger than this recording needs. A rung is an event that raises the neurons.
-/// The additional rungs are for other recordings, in which a step may add more to a potential.
+/// Safety factor for the number of rungs, the events that raise the neurons in a step. A step has this factor times as
+/// many rungs as the recording needs. In other recordings, a step may add more to a potential.
 const SPARE: f64 = 1.5;
 /// Differences in height to try between neighbouring leaks, in units of the amount by which one rung (an event) raises
 /// a neuron.
@@ -35,17 +36,18 @@ pub(super) struct Shape {
     /// Number of rungs (events that raise the neurons) that follow those of [`below`](Self::below). They raise a neuron
     /// at rest from 0 to a positive potential. On the chip, the neuron's threshold is higher by the same amount.
     pub above: u16,
-    /// Number of rungs (events that raise the neurons) that raise a neuron at rest to 0. A neuron at rest begins a step
-    /// below 0, at the downward offset.
+    /// Number of rungs from the downward offset to 0. A rung is an event that raises the neurons. A neuron at rest
+    /// begins a step at the offset, and this number of rungs raises it to 0.
     pub below: u16,
     /// The leaks that all neurons receive: one list for each step of a cycle, which then repeats. A list has one entry
     /// for each leak: the number of events in the step that lower the neurons before the leak comes.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of rungs (events that raise the neurons) that raise all neurons again at the end of a step. Additional
-    /// leaks then act on each neuron that fired in the step. 0 if spikes subtract the threshold.
+    /// Number of events at the end of a step that raise all neurons again, by one rung each. Then additional leaks act
+    /// on each neuron that fired in the step, and the same number of events lowers all neurons. This number is 0 if
+    /// spikes subtract the threshold.
     pub lift: u16,
-    /// The leaks that reduce a potential by a share of its value. `None` if no step has more than one leak that acts on
-    /// all neurons.
+    /// The leaks that reduce a potential by a share of its value. `None` if each step has at most one leak for all
+    /// neurons.
     pub share: Option<Share>,
 }
 
@@ -83,8 +85,9 @@ impl Share {
         (2.0 * levels < MAX_LEAKS).then_some(Self { spacing, levels, middle: -levels * leak })
     }
 
-    /// Returns the heights of the leaks, in rungs, by step and leak. The list covers [`TURNS`] steps, after which the
-    /// heights repeat.
+    /// Returns the heights of the leaks: one list for each of [`TURNS`] steps, after which the lists repeat. The height
+    /// of a leak is the potential towards which the leak moves a neuron. The unit is the amount by which one rung (an
+    /// event) raises the neuron.
     fn heights(self) -> Vec<Vec<i32>> {
         let levels = self.levels as i32;
         let leak = if levels > 0 { -self.middle / self.levels } else { 0.0 };
@@ -105,8 +108,8 @@ impl Share {
         (1.0 - keep) / (1.0 + keep) * self.spacing * f64::from(rung)
     }
 
-    /// Returns where a potential of 0 lies after the leaks of a step. Each leak moves the neuron's potential by `leak`;
-    /// each event that raises the neuron (a rung) moves it by `rung`.
+    /// Returns the amount by which the leaks of a step move a potential of 0. `leak` is the amount by which a single
+    /// leak moves the potential. `rung` is the amount by which one rung (an event) raises the potential.
     pub(super) fn drift(self, leak: u8, rung: u8) -> f64 {
         let (leak, rung) = (f64::from(leak), f64::from(rung));
         2.0 * leak / (self.spacing * rung + leak) * (self.levels * leak + self.middle * rung)
@@ -153,8 +156,8 @@ pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     sources * rows + trained.layers.len() + 2
 }
 
-/// Returns all shapes to try. `drive` is the largest sum of weights that a step adds to a neuron, and `threshold` the
-/// median threshold, both in units of a neuron's largest weight.
+/// Returns all shapes to try. `drive` is the largest sum of positive weights that a step adds to a neuron. `threshold`
+/// is the median threshold. Both are in units of a neuron's largest weight.
 pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f64) -> Vec<Shape> {
     let neurons = || trained.layers.iter().flat_map(|layer| &layer.neurons);
     if neurons().count() >= NEURONS - 1 {
