@@ -50,13 +50,13 @@ pub trait OnChip {
     /// Returns an error if the chip refuses a call.
     fn run(&self, inputs: &Trains) -> Result<Ran>;
 
-    /// Loads the network into the chip's model, and runs it step by step. Passes the result of each step to `see`
-    /// before it reads the inputs of the next step, so that later inputs may depend on the result. Returns the number
+    /// Loads the network into the chip's model, and runs it step by step. The result of each step is passed to `see`
+    /// before the inputs of the next step are read, so that later inputs may depend on the result. Returns the number
     /// of spikes that were lost on their way into the chip.
     ///
     /// # Errors
-    /// Returns an error if the chip or `see` refuses a step, or if the chip's outputs for a step come only in later
-    /// steps.
+    /// Returns an error if the chip or `see` refuses a step. Also returns an error if the chip's outputs for a step
+    /// appear one or more steps later.
     fn follow(
         &self,
         _steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,

@@ -120,7 +120,7 @@ impl Layer {
         self.weights.first().map_or(0, Vec::len)
     }
 
-    /// Replaces a reset that no chip has by the one that is most like it.
+    /// Replaces a reset that no chip supports with the most similar reset that chips support.
     pub(super) fn reset_by_chip(self) -> Self {
         let reset = match self.reset {
             Reset::ToValueHeld => Reset::ToValue,
@@ -130,7 +130,8 @@ impl Layer {
         Self { reset, ..self }
     }
 
-    /// Returns whether no chip has this reset.
+    /// Returns whether the layer resets as [`Reset::ToValueHeld`] or [`Reset::SubtractNoDelay`], which no chip
+    /// supports.
     pub(super) fn has_own_reset(&self) -> bool {
         matches!(self.reset, Reset::ToValueHeld | Reset::SubtractNoDelay)
     }

@@ -5,8 +5,8 @@ use super::Framework;
 use catalogue::run::Spell;
 use std::fmt::Write as _;
 
-/// A choice about how neurons decay, fire and reset. It is left to the user unless the network's file or the training
-/// framework makes it.
+/// A choice about how neurons decay, fire and reset. The network's file or the training framework may settle the
+/// choice. Otherwise, the user must decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Choice {

@@ -34,8 +34,8 @@ pub enum Reset {
     Subtract,
     /// Subtracts the threshold in the next step.
     SubtractLate,
-    /// Subtracts the threshold in the same step, as snnTorch does with `reset_delay=False`. If the last potential was
-    /// above the threshold, the neuron fires only if the new potential minus the threshold is above the threshold.
+    /// Subtracts the threshold in the same step, as snnTorch does with `reset_delay=False`. A neuron whose potential is
+    /// above the threshold before a step must exceed twice the threshold to fire in the step.
     SubtractNoDelay,
     /// Leaves the potential as it is.
     NoReset,
@@ -120,7 +120,7 @@ pub(super) const PLAIN: Rule = Rule {
     dt: 1.0,
 };
 
-/// Default duration of a step, in seconds, with which snnTorch and `SpikingJelly` write files.
+/// Duration of a step, in seconds, that snnTorch and `SpikingJelly` assume by default when they write a NIR file.
 const WRITTEN: f64 = 1e-4;
 
 /// Properties of a network that decide which parts of a rule must be known.
@@ -163,7 +163,8 @@ impl Framework {
         Asked { framework: Some(self), resets, fires, decay: Some(decay), current, dt }
     }
 
-    /// Returns whether gains near 1 in this framework's files stand for exactly 1.
+    /// Returns whether a gain near 1 in this framework's files differs from 1 only by a rounding error. A gain is a
+    /// factor for the weights that lead to a neuron.
     pub(super) const fn means_ones(self) -> bool {
         matches!(self, Self::SnnTorch | Self::SpikingJelly)
     }

@@ -15,9 +15,9 @@ const SAME: f64 = 1e-4;
 /// leaks are as similar as possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
-    /// that stays free. One neuron of a pair stays free if a layer has an odd number of neurons, or if no other neuron
-    /// of the layer has a similar leak.
+    /// The network's neuron that each neuron of the chip holds: the index of the layer, then the index of the neuron in
+    /// the layer. `None` if the chip's neuron stays free. One neuron of a pair stays free if a layer has an odd number
+    /// of neurons, or if no other neuron of the layer has a similar leak.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
     /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
     by_layer: Vec<Vec<usize>>,
@@ -42,9 +42,12 @@ impl Places {
         if apart.is_ok() { apart } else { Self::placed(trained, has_bias, f64::INFINITY) }
     }
 
-    /// Assigns all neurons of a network to the chip. `most` limits which neurons of a layer form a pair: both keep a
-    /// share of their potential in a step, and these shares differ by at most `most`. `has_bias` says whether the bias
-    /// needs an input.
+    /// Assigns all neurons of a network to the chip. Two neurons of a layer may form a pair if their decay factors
+    /// differ by at most `most`. A step multiplies a neuron's potential by its decay factor. `has_bias` says whether
+    /// the network has a bias, which takes one of the chip's inputs.
+    ///
+    /// # Errors
+    /// Returns an error if the chip has too few neurons, inputs or outputs.
     fn placed(trained: &Trained, has_bias: bool, most: f64) -> Result<Self> {
         let mut neurons = Vec::new();
         let mut by_layer = Vec::new();

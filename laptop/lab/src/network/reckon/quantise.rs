@@ -13,16 +13,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
 /// factor.
 const KEEP: f64 = 32_768.0;
-/// The integer that stands for a decay factor of 1 of an output. Each tick of the chip multiplies the output's
-/// potential by its decay factor.
+/// The integer that stands for an output's decay factor of 1. Each tick of the chip multiplies the output's potential
+/// by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
 /// more ticks of the chip.
 const LEAST_KEEP: f64 = 0.875;
 /// Maximum number of the chip's ticks that one step of the network takes.
 const MOST_TICKS: u32 = 16;
-/// Safety factor of gates: inputs that lower a neuron so that it does not fire. A gate lowers the neuron by this factor
-/// times the amount that the recording needs.
+/// Safety factor for gates. A gate is an input that lowers a neuron to keep it from firing. It lowers the neuron by
+/// this factor times the amount that suffices in the recording.
 const SPARE: f64 = 1.5;
 const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
@@ -84,8 +84,8 @@ pub(super) struct Quantised {
 pub(super) struct Tick {
     /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
     pub(super) always: Vec<usize>,
-    /// Numbers of the gates that raise neurons before this tick. In the first step, they fire only if this is the last
-    /// tick of the step, because the neurons of the other ticks have not been lowered yet.
+    /// Numbers of the gates (which are inputs) that raise neurons before this tick. In the first step, only the gates
+    /// of the last tick fire: the neurons that the other gates raise have not been lowered yet.
     pub(super) raises: Vec<usize>,
 }
 
@@ -139,7 +139,8 @@ struct Source {
     gate: f64,
     /// The neurons that send spikes to this one. Each entry is the sender's number on the chip, and the weight.
     recurrent: Vec<(usize, f64)>,
-    /// Largest absolute potential that the neuron reaches in double precision, plus the amount [`gate`](Self::gate).
+    /// Sum of two amounts: the largest absolute potential that the neuron reaches in double precision, and the amount
+    /// [`gate`](Self::gate) by which gates lower the neuron.
     peak: f64,
 }
 
@@ -410,7 +411,8 @@ struct Drive {
     /// Neurons of the preceding layer that fire in the step. Each entry is the index of that layer, then the index of
     /// the neuron in the layer.
     before: Vec<(usize, usize)>,
-    /// Neurons of the layer itself that fire in the step. Their spikes act one tick later.
+    /// Neurons of the layer itself that fire in the step. Each entry is the index of the layer, then the index of the
+    /// neuron in the layer. These spikes act one tick later.
     own: Vec<(usize, usize)>,
 }
 
@@ -492,8 +494,8 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Runs the neuron on the spikes in `drives`. Returns the distance between its spikes and the spikes in `fired` of
-    /// the neuron with index `neuron`.
+    /// Runs the neuron on the spikes in `drives`. Returns the distance between two spike trains: the neuron's spikes in
+    /// this run, and the spikes that `fired` contains for the neuron with index `neuron`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let (mut is_over, mut raised) = (false, 0);
@@ -556,8 +558,8 @@ impl Quantised {
         self.inputs.len() - 1
     }
 
-    /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of all
-    /// layers that compare at this tick, unless these layers have no bias.
+    /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of the
+    /// layers that may fire at this tick. There is no such input if all these biases are 0.
     fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
         for tick in 0..self.ticks.len() {
             let mut weights = Vec::new();
@@ -576,8 +578,9 @@ impl Quantised {
         }
     }
 
-    /// Adds the gates of each layer: inputs that lower the layer's neurons after they have compared their potentials
-    /// with their thresholds, and raise them when they compare again. The layer then cannot fire at other ticks.
+    /// Adds the gates of each layer. Gates are inputs that keep a layer from firing except at its own tick of a step.
+    /// Some gates lower the layer's neurons before the tick after the layer's own. The others raise the neurons again
+    /// before the layer's own tick comes again.
     fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
         let ticks = self.ticks.len();
         for layer in 0..self.layers.len() {

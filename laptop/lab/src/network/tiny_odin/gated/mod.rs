@@ -28,8 +28,8 @@ const MAX_POTENTIAL: u16 = 2047;
 /// Number of [shapes](Shape) for which the search for parameters is thorough. A rough search with all shapes selects
 /// them.
 const CHOSEN: usize = 2;
-/// Increase in agreement with the original that makes one more event in each step worthwhile. Agreement is the share of
-/// active steps in which the same outputs fire. A step is active if an output fires in either network.
+/// Increase in agreement that justifies one more event in each step. Agreement with the original is the share of active
+/// steps in which the same outputs fire. A step is active if an output fires in either network.
 const PRICE: f64 = 1e-4;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
@@ -153,7 +153,10 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
 
 impl Gated {
     /// Quantises the network with the shape `shape`, layer by layer. The inputs of each further layer are the spikes of
-    /// the quantised layer before it. The search for each neuron climbs from the `climbs` best initial choices.
+    /// the quantised layer before it. `fired` contains the spikes that the original fires, by layer and step. `targets`
+    /// contains the same spikes: for each layer and neuron, whether the neuron fires in each step. The search for each
+    /// neuron improves the `climbs` best initial choices of parameters. If `climbs` is 0, the search takes the best
+    /// initial choice as it is.
     fn find(
         trained: &Trained,
         inputs: &Trains,

@@ -13,7 +13,7 @@ pub(super) struct GatedNeuron {
     pub bias: i16,
     /// Potential at which the neuron fires.
     pub threshold: u16,
-    /// Amount by which a leak moves the chip's potential towards 0.
+    /// Amount by which a leak moves the neuron's potential on the chip towards 0.
     pub leak: u8,
     /// Amount by which a rung raises the potential. A rung is one of the events that raise the neurons in a step.
     pub rung: u8,
@@ -45,9 +45,9 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
     centre + away.signum() * (away.abs() - by).max(0)
 }
 
-/// Returns the potential after all leaks of `turn`. Each leak moves the potential by at most `leak` towards the leak's
-/// height; the leaks come from the lowest height to the highest. `turn` has one entry for each leak: the number of
-/// events that lower the neurons before the leak. `height` converts an entry to the height of its leak.
+/// Returns the potential after all leaks of a step. Each leak moves the potential by at most `leak` towards the height
+/// of the leak. `turn` has one entry for each leak, as in [`Shape::leaks`]. The leaks come from the lowest height to
+/// the highest. `height` converts an entry to the height of its leak.
 fn leaked(potential: i32, turn: &[u16], leak: i32, height: impl Fn(u16) -> i32) -> i32 {
     // The leaks below the potential move it down, all but the last of them by the whole leak. When one comes, the leaks
     // before have moved the potential already.
@@ -65,9 +65,9 @@ fn leaked(potential: i32, turn: &[u16], leak: i32, height: impl Fn(u16) -> i32) 
 }
 
 impl GatedNeuron {
-    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that act on
-    /// all neurons in the step. The entry for a leak is the number of events in the step that lower the neurons before
-    /// the leak comes.
+    /// Runs one step, which changes `potential`. Returns whether the neuron fires. `turn` has one entry for each leak
+    /// that acts on all neurons in the step, as in [`Shape::leaks`]. `added` contains the sums of the weights that act
+    /// on the neuron in the step.
     #[inline]
     pub(super) fn step(
         &self,
