@@ -162,7 +162,7 @@ WHICH = {
 }
 
 THIRD = """\
-| code | flies? RotorPy | MuJoCo | error, °: RotorPy | MuJoCo | bytes/s: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | nine settings: error | bytes |
+| code | flies? RotorPy | MuJoCo | error, °: RotorPy | MuJoCo | bytes/s: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error | of bytes |
 |---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|
 """
 
@@ -212,8 +212,8 @@ def filtered_row(name: str, own: dict) -> str:
 
 def third_row(name: str, own: dict, flown: dict, thirds: dict) -> str:
     """A row of the third table: RotorPy's flights beside MuJoCo's."""
-    theirs, control = in_rotorpy(flown[name]), in_rotorpy(flown[CONTROL])
-    columns = [label(name), verdict(theirs, control), verdict(own, thirds[CONTROL])]
+    theirs = in_rotorpy(flown[name])
+    columns = [label(name), *verdicts(name, own, flown, thirds)]
     for figure, digits in (("error", 1), ("bytes", 0)):
         columns += [number(theirs["here"][figure], digits), number(own["here"][figure], digits)]
     columns += [crashes(theirs), crashes(own)]
@@ -221,6 +221,17 @@ def third_row(name: str, own: dict, flown: dict, thirds: dict) -> str:
         ratios = compared(theirs, own, figure)
         columns.append(f"{min(ratios):.2f}–{max(ratios):.2f}" if ratios else "–")
     return "| " + " | ".join(columns) + " |\n"
+
+
+def verdicts(name: str, own: dict, flown: dict, thirds: dict) -> tuple[str, str]:
+    """The first table's verdict on a code, and the same with MuJoCo's flights in the place of RotorPy's."""
+
+    def moved(third: dict, first: dict) -> dict:
+        others = {where: cell for where, cell in first["everywhere"].items() if "RotorPy" not in where}
+        return third | {"everywhere": third["everywhere"] | others}
+
+    control = moved(thirds[CONTROL], flown[CONTROL])
+    return verdict(flown[name], flown[CONTROL]), verdict(moved(own, flown[name]), control)
 
 
 def in_rotorpy(own: dict) -> dict:
@@ -264,7 +275,7 @@ def printed(kept: dict) -> str:
     rows = sorted((*flown_row(name, own, control), name) for name, own in kept["banks"].items())
     order = [CONTROL, *sw.schemes]
     others = [filtered_row(name, kept["filters"][name]) for name in order if name in kept["filters"]]
-    thirds = [third_row(name, kept["third"][name], kept["banks"], kept["third"]) for *_, name in rows]
+    thirds = [third_row(name, kept["third"][name], kept["banks"], kept["third"]) for *_, name in rows if name in kept["third"]]
     tables = (FLOWN, [text for _, text, _ in rows]), (FILTERED, others), (THIRD, thirds)
     return "\n".join(head + "".join(rows) for head, rows in tables)
 
@@ -276,11 +287,12 @@ def main(arguments: list[str]) -> None:
         for name in names:
             print(filtered_row(name, rounded(filtered(name))), end="")
         return
-    all_banks = banks() | banks(KEPT_ADVISED)
+    found = banks()
+    all_banks = found | banks(KEPT_ADVISED)
     kept = json.loads(VERDICTS.read_text()) if VERDICTS.exists() else {}
     if "--third" in options:
         for name in names:
-            print(third_row(name, rounded(third(all_banks.get(name))), kept["banks"], kept["third"]), end="")
+            print(third_row(name, rounded(third(found.get(name))), kept["banks"], kept["third"]), end="")
         return
     if "--no-vibration" in options:
         for name in names or all_banks:
@@ -288,12 +300,13 @@ def main(arguments: list[str]) -> None:
         return
     whole = [CONTROL, *all_banks, *(name for name in sw.schemes if name not in all_banks)]
     kept = {kind: kept.get(kind, {}) for kind in ("banks", "filters", "third")}
-    for kind in ("banks", "third"):  # those that are flown no longer go
-        kept[kind] = {name: own for name, own in kept[kind].items() if name in whole}
+    for kind, rows in kept.items():  # what is flown no longer goes
+        kept[kind] = {name: own for name, own in rows.items() if name in whole}
     for name in [] if "--print" in options else names or whole:
         if name == CONTROL or name in all_banks:
             kept["banks"][name] = flown(name, all_banks.get(name))
-            kept["third"][name] = third(all_banks.get(name))
+        if name == CONTROL or name in found:
+            kept["third"][name] = third(found.get(name))
         if "/" not in name:
             kept["filters"][name] = filtered(name)
         keep(kept)
