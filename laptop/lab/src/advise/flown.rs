@@ -258,7 +258,7 @@ mod tests {
         let sod = Scheme::named("sod").unwrap();
         let of = |name| {
             let asked = parameters(sod, Inertial::named(name).unwrap()).unwrap();
-            (asked.number("threshold").unwrap(), asked.number("spikes").unwrap())
+            (asked.number("threshold").unwrap(), asked.get("spikes").cloned())
         };
         let (rad, spikes) = of("gyro_x");
         assert!((of("gyro_x_deg").0 / rad - 57.29578).abs() < 1e-4);
