@@ -17,6 +17,7 @@ const TABLES: [&str; 3] = ["loop", "filters", "third"];
 const CHIP: &str = "chip";
 const PICTURE: &str = "docs/loop.svg";
 const CRASH: &str = "docs/crash.svg";
+const CHIP_PICTURE: &str = "docs/chip.svg";
 /// The banks that `advise` takes.
 const ADVISED: &str = "laptop/loop/advised.json";
 
@@ -99,20 +100,24 @@ pub fn verify() -> Result<()> {
     Ok(())
 }
 
-/// Flies all manoeuvres with a network on the model of tinyODIN: the page's table of it must come again from the
-/// committed graph.
+/// Flies all manoeuvres with a network on the model of tinyODIN: the page's table and picture of it must come again
+/// from the committed graph.
 pub fn chip() -> Result<()> {
-    markdown::ensure_written(PAGE, CHIP, &on_chip()?, "cargo xtask write chip")
+    let (python, command) = (environment()?, "cargo xtask write chip");
+    drawing::ensure_kept(&draw(&python, "chip_picture.py")?, CHIP_PICTURE, command)?;
+    markdown::ensure_written(PAGE, CHIP, &on_chip(&python)?, command)
 }
 
-/// Flies all manoeuvres with a network on the model of tinyODIN, and writes the table into docs/loop.md.
+/// Flies all manoeuvres with a network on the model of tinyODIN, writes the table into docs/loop.md, and draws the
+/// picture.
 pub fn write_chip() -> Result<()> {
-    markdown::write(PAGE, CHIP, &on_chip()?)
+    let python = environment()?;
+    drawing::keep(&draw(&python, "chip_picture.py")?, CHIP_PICTURE)?;
+    markdown::write(PAGE, CHIP, &on_chip(&python)?)
 }
 
-fn on_chip() -> Result<String> {
-    let python = environment()?;
-    let flown = output(program(&python, "chip.py").arg(laptop()?))?;
+fn on_chip(python: &Path) -> Result<String> {
+    let flown = output(program(python, "chip.py").arg(laptop()?))?;
     println!("{flown}");
     Ok(format!("\n{flown}\n"))
 }
