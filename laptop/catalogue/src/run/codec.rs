@@ -3,8 +3,13 @@
 //! The code of a sample is a row of cells, one for each neuron in each sub-timestep. A cell holds the number of its
 //! spikes, positive for up and negative for down: -1, 0 or 1, or more if the code has several spikes in a sample.
 
-use std::{any::Any, array, iter, ops::Range};
+use std::{
+    any::{Any, TypeId},
+    array, iter,
+    ops::Range,
+};
 
+use bytemuck::Pod;
 use rand_pcg::Pcg32;
 use spikewire::population::{Probabilistic, ProbabilisticState};
 use spikewire::rate::{Average, Bernoulli, BernoulliState};
@@ -423,7 +428,7 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     }
 
     /// Encodes in blocks, for which schemes have faster code.
-    fn encode_all<T: Copy>(
+    fn encode_all<T: Pod>(
         &mut self,
         samples: &[T],
         sample: impl Fn(T) -> P::Sample,
@@ -432,15 +437,21 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
         const BLOCK: usize = 512;
         const KEPT: usize = 64;
         for samples in samples.chunks(BLOCK) {
-            self.block.clear();
-            self.block.extend(samples.iter().copied().map(&sample));
-            if self.outputs.len() < samples.len() {
+            // Samples of the scheme's own type are taken where they are.
+            let is_own = TypeId::of::<T>() == TypeId::of::<P::Sample>();
+            let block: &[P::Sample] = if is_own && self.one == 1.0 {
+                bytemuck::cast_slice(samples)
+            } else {
+                self.block.clear();
+                self.block.extend(samples.iter().copied().map(&sample));
+                &self.block
+            };
+            if self.outputs.len() < block.len() {
                 // Any output will do to make room for others.
-                let any = self.scheme.encode(&mut self.encoder.clone(), self.block[0]);
-                self.outputs.resize(samples.len(), any);
+                let any = self.scheme.encode(&mut self.encoder.clone(), block[0]);
+                self.outputs.resize(block.len(), any);
             }
-            let (block, outputs) = (&self.block, &mut self.outputs);
-            let count = self.scheme.encode_slice(&mut self.encoder, block, outputs);
+            let count = self.scheme.encode_slice(&mut self.encoder, block, &mut self.outputs);
             if !sink.put_spikes(&self.outputs, count) {
                 sink.put(self.outputs.iter().take(count).filter_map(|output| output.code()));
             }
@@ -452,7 +463,7 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     }
 
     /// Encodes recordings one after the other; see [`Codec::encode_channels`].
-    fn encode_each<T: Copy>(
+    fn encode_each<T: Pod>(
         &mut self,
         samples: &[T],
         length: usize,
