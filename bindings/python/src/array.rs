@@ -1,6 +1,5 @@
 //! Samples of `NumPy` arrays as they lie in memory, and decoded values.
 
-use std::array;
 use std::ops::Range;
 
 use catalogue::run::{self, Codec, SampleType};
@@ -188,14 +187,13 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// Copies channels by some times at once: neighbours share the lines of the cache.
+    /// Copies channels by time, as neighbours share the lines of the cache.
     fn copied<'b, T: Copy + Default>(
         &self,
         all: &[T],
         channels: Range<usize>,
         tile: &'b mut Vec<T>,
     ) -> &'b [T] {
-        const TIMES: usize = 8;
         tile.resize(channels.len() * self.length, T::default());
         let mut channel = channels.start;
         while channel < channels.end {
@@ -203,19 +201,10 @@ impl<'a> Grid<'a> {
             let start = self.start(channel);
             let lanes = (channel - channels.start) * self.length;
             let lanes = &mut tile[lanes..lanes + count * self.length];
-            let row = |time: usize| &all[start + time * self.step..][..count];
-            let whole = self.length - self.length % TIMES;
-            for time in (0..whole).step_by(TIMES) {
-                let rows: [_; TIMES] = array::from_fn(|later| row(time + later));
-                for (place, lane) in lanes.chunks_exact_mut(self.length).enumerate() {
-                    if let Some((samples, _)) = lane[time..].split_first_chunk_mut() {
-                        *samples = rows.map(|row| row[place]);
-                    }
-                }
-            }
-            for time in whole..self.length {
-                for (lane, sample) in lanes.chunks_exact_mut(self.length).zip(row(time)) {
-                    lane[time] = *sample;
+            for time in 0..self.length {
+                let row = &all[start + time * self.step..][..count];
+                for (place, sample) in row.iter().enumerate() {
+                    lanes[place * self.length + time] = *sample;
                 }
             }
             channel += count;
