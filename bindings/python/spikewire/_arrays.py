@@ -25,7 +25,7 @@ def samples(x: ArrayLike, sample: str = "f32") -> NDArray[Any]:
         raise ValueError(f"samples are an array (samples,) or (channels, samples), not the number {x}")
     if x.dtype.isnative and x.dtype in TAKEN:
         return x
-    if x.dtype == np.float16:
+    if x.dtype == np.float16 or (x.dtype.kind in "iub" and x.dtype.itemsize == 1):
         return x.astype(np.float32)
     if x.dtype.kind not in "fiub":
         raise ValueError(f"samples are floats or integers, not {x.dtype}")

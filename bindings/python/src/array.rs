@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use catalogue::run::{self, Codec, SampleType};
+use numpy::PyReadonlyArrayDyn;
 use numpy::ndarray::{ArrayView1, ArrayViewD, Axis, Ix1, Ix2, Slice};
-use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::channel::Bad;
@@ -19,6 +19,16 @@ pub(crate) enum Samples<'py> {
     F64(PyReadonlyArrayDyn<'py, f64>),
     /// `int16`.
     I16(PyReadonlyArrayDyn<'py, i16>),
+}
+
+/// Samples of any number of channels, as those of [`Samples`].
+pub(crate) enum View<'a> {
+    /// `float32`.
+    F32(ArrayViewD<'a, f32>),
+    /// `float64`.
+    F64(ArrayViewD<'a, f64>),
+    /// `int16`.
+    I16(ArrayViewD<'a, i16>),
 }
 
 /// The samples of one channel, perhaps with others between them.
@@ -39,15 +49,6 @@ impl Lane<'_> {
             Self::F32(lane) => lane.len(),
             Self::F64(lane) => lane.len(),
             Self::I16(lane) => lane.len(),
-        }
-    }
-
-    /// The first sample.
-    pub(crate) fn first(&self) -> Option<f64> {
-        match self {
-            Self::F32(lane) => lane.first().copied().map(f64::from),
-            Self::F64(lane) => lane.first().copied(),
-            Self::I16(lane) => lane.first().copied().map(f64::from),
         }
     }
 
@@ -124,90 +125,133 @@ impl Lane<'_> {
     }
 }
 
-/// Copies of neighbouring channels whose samples lie apart in memory.
-pub(crate) enum Gathered {
-    F32(Vec<f32>),
-    F64(Vec<f64>),
-    I16(Vec<i16>),
-    /// The samples are used where they are.
-    None,
+/// Where the samples of channels lie in memory, if in even steps and with nothing between them: sample `time` of channel
+/// `block * width + place` at `block * block_step + place + time * step`.
+#[derive(Clone, Copy)]
+pub(crate) struct Grid<'a> {
+    /// The samples, in the order in which they lie in memory.
+    pub(crate) all: run::Samples<'a>,
+    /// Number of channels whose samples of one time are neighbours.
+    width: usize,
+    block_step: usize,
+    step: usize,
+    /// Number of samples of a channel.
+    length: usize,
 }
 
-impl Gathered {
-    /// Copies the channels if their samples lie apart, and if there are no more than `most` of all channels. `whole` are
-    /// all samples of the array in the order in which they lie in memory, if nothing lies between them.
-    pub(crate) fn new(lanes: &[Lane], whole: Option<run::Samples>, most: usize) -> Self {
-        let length = lanes.first().map_or(0, Lane::len);
-        macro_rules! gathered {
-            ($kind:ident) => {{
-                let mut all = Vec::with_capacity(lanes.len());
-                for lane in lanes {
-                    match lane {
-                        Lane::$kind(lane) if lane.as_slice().is_none() => all.push(lane.view()),
-                        _ => return Self::None,
-                    }
+impl<'a> Grid<'a> {
+    /// Returns the first samples of these channels, up to `count` of each.
+    pub(crate) fn firsts(&self, channels: Range<usize>, count: usize) -> Vec<f64> {
+        match self.all {
+            run::Samples::F32(all) => self.firsts_of(all, channels, count),
+            run::Samples::F64(all) => self.firsts_of(all, channels, count),
+            run::Samples::I16(all) => self.firsts_of(all, channels, count),
+        }
+    }
+
+    fn firsts_of<T: Copy + Into<f64>>(
+        &self,
+        all: &[T],
+        channels: Range<usize>,
+        count: usize,
+    ) -> Vec<f64> {
+        let times = 0..count.min(self.length);
+        let mut firsts = Vec::with_capacity(channels.len() * times.len());
+        for start in channels.map(|channel| self.start(channel)) {
+            firsts.extend(times.clone().map(|time| all[start + time * self.step].into()));
+        }
+        firsts
+    }
+
+    fn start(&self, channel: usize) -> usize {
+        channel / self.width * self.block_step + channel % self.width
+    }
+
+    /// Returns the samples of these channels, one channel after the other: where they are, or copied to the tile.
+    pub(crate) fn channels<'b>(
+        &self,
+        channels: Range<usize>,
+        tile: &'b mut Tile,
+    ) -> run::Samples<'b>
+    where
+        'a: 'b,
+    {
+        let is_in_order = self.width == 1 && self.step == 1 && self.block_step == self.length;
+        if is_in_order {
+            return self.all.part(channels.start * self.length..channels.end * self.length);
+        }
+        match self.all {
+            run::Samples::F32(all) => run::Samples::F32(self.copied(all, channels, &mut tile.f32)),
+            run::Samples::F64(all) => run::Samples::F64(self.copied(all, channels, &mut tile.f64)),
+            run::Samples::I16(all) => run::Samples::I16(self.copied(all, channels, &mut tile.i16)),
+        }
+    }
+
+    /// Copies channels by time, as neighbours share the lines of the cache.
+    fn copied<'b, T: Copy + Default>(
+        &self,
+        all: &[T],
+        channels: Range<usize>,
+        tile: &'b mut Vec<T>,
+    ) -> &'b [T] {
+        tile.resize(channels.len() * self.length, T::default());
+        let mut channel = channels.start;
+        while channel < channels.end {
+            let count = (self.width - channel % self.width).min(channels.end - channel).min(RUN);
+            let start = self.start(channel);
+            let lanes = (channel - channels.start) * self.length;
+            let lanes = &mut tile[lanes..lanes + count * self.length];
+            for time in 0..self.length {
+                let row = &all[start + time * self.step..][..count];
+                for (place, sample) in row.iter().enumerate() {
+                    lanes[place * self.length + time] = *sample;
                 }
-                let whole = match whole {
-                    Some(run::Samples::$kind(whole)) => whole,
-                    _ => &[],
-                };
-                Self::$kind(transposed(&all, whole, length))
-            }};
-        }
-        if lanes.len() < 2 || lanes.len() * length > most {
-            return Self::None;
-        }
-        match lanes.first() {
-            Some(Lane::F32(_)) => gathered!(F32),
-            Some(Lane::F64(_)) => gathered!(F64),
-            Some(Lane::I16(_)) => gathered!(I16),
-            None => Self::None,
-        }
-    }
-
-    /// The copy of a channel, if there is one.
-    pub(crate) fn lane(&self, place: usize, length: usize) -> Option<run::Samples<'_>> {
-        let range = place * length..(place + 1) * length;
-        match self {
-            Self::F32(all) => Some(run::Samples::F32(&all[range])),
-            Self::F64(all) => Some(run::Samples::F64(&all[range])),
-            Self::I16(all) => Some(run::Samples::I16(&all[range])),
-            Self::None => None,
-        }
-    }
-}
-
-/// The samples of the channels, one channel after the other. `whole` may hold them, and more.
-fn transposed<T: Copy + Default>(lanes: &[ArrayView1<T>], whole: &[T], length: usize) -> Vec<T> {
-    let mut samples = vec![T::default(); lanes.len() * length];
-    if let Some(rows) = rows(lanes, whole) {
-        for (time, row) in rows.enumerate() {
-            for (place, sample) in row.iter().enumerate() {
-                samples[place * length + time] = *sample;
             }
+            channel += count;
         }
-    } else {
-        for (lane, samples) in lanes.iter().zip(samples.chunks_mut(length.max(1))) {
-            samples.iter_mut().zip(lane).for_each(|(own, sample)| *own = *sample);
-        }
+        tile
     }
-    samples
 }
 
-/// The samples of each moment, if those of neighbouring channels are neighbours in memory.
-fn rows<'a, T>(lanes: &[ArrayView1<T>], whole: &'a [T]) -> Option<impl Iterator<Item = &'a [T]>> {
-    let first = lanes.first()?;
-    let step = usize::try_from(first.strides()[0]).ok().filter(|step| *step >= lanes.len())?;
-    let place = |lane: &ArrayView1<T>| lane.as_ptr().addr() / size_of::<T>();
-    let is_next = |(at, lane): (usize, &ArrayView1<T>)| {
-        place(lane) == place(first) + at && lane.strides() == first.strides()
-    };
-    let start = place(first).checked_sub(whole.as_ptr().addr() / size_of::<T>())?;
-    if !lanes.iter().enumerate().all(is_next) {
-        return None;
+/// Number of neighbouring channels that are copied together: 16 samples of `float32` at one time are a line of the cache.
+pub(crate) const RUN: usize = 16;
+
+/// Room for copies of channels whose samples lie apart in memory.
+#[derive(Default)]
+pub(crate) struct Tile {
+    f32: Vec<f32>,
+    f64: Vec<f64>,
+    i16: Vec<i16>,
+}
+
+/// Returns the grid of an array whose last axis is time; `None` if its steps are not even.
+fn grid<'a, T>(
+    view: &ArrayViewD<'a, T>,
+    kind: impl Fn(&'a [T]) -> run::Samples<'a>,
+) -> Option<Grid<'a>> {
+    let time = Axis(view.ndim().checked_sub(1)?);
+    let length = view.len_of(time);
+    let step = if length == 1 { 0 } else { usize::try_from(view.stride_of(time)).ok()? };
+    // A sample that is repeated stands in memory once.
+    let once =
+        if step == 0 { view.clone().index_axis_move(time, 0).into_dyn() } else { view.clone() };
+    let start = once.as_ptr();
+    let all =
+        once.to_slice_memory_order().filter(|all| all.as_ptr() == start && !all.is_empty())?;
+    let (mut width, mut blocks, mut block_step) = (1, 1, 0);
+    for axis in (0..time.index()).rev().map(Axis).filter(|axis| view.len_of(*axis) > 1) {
+        let (count, stride) = (view.len_of(axis), usize::try_from(view.stride_of(axis)).ok()?);
+        if block_step == 0 && stride == width {
+            width *= count;
+        } else if block_step == 0 {
+            (blocks, block_step) = (count, stride);
+        } else if stride == block_step * blocks {
+            blocks *= count;
+        } else {
+            return None;
+        }
     }
-    let rest = whole.get(start..)?;
-    Some(rest.chunks(step).map(|row| &row[..lanes.len().min(row.len())]).take(first.len()))
+    Some(Grid { all: kind(all), width, block_step, step, length })
 }
 
 /// Returns the place of the first sample that is not good. Looks at blocks at first, without branches within.
@@ -228,48 +272,66 @@ fn is_good(sample: SampleType) -> fn(&f64) -> bool {
     }
 }
 
-/// The first sample that an encoder of this type does not take, and its channel. `whole` are the samples of all
-/// channels in any order, where they can be had so.
-pub(crate) fn bad(
-    whole: Option<run::Samples>,
-    lanes: &[Lane],
-    sample: SampleType,
-) -> Option<(usize, Bad)> {
-    let are_good = match whole {
-        Some(run::Samples::F32(all)) => first_bad(all, |value| value.is_finite()).is_none(),
-        Some(run::Samples::F64(all)) => first_bad(all, is_good(sample)).is_none(),
-        Some(run::Samples::I16(_)) => true,
-        None => false,
-    };
-    let mut lanes = lanes.iter().enumerate().filter(|_| !are_good);
-    lanes.find_map(|(channel, lane)| Some((channel, lane.bad(sample)?)))
+impl Samples<'_> {
+    /// A view that threads may share.
+    pub(crate) fn view(&self) -> View<'_> {
+        match self {
+            Self::F32(all) => View::F32(all.as_array()),
+            Self::F64(all) => View::F64(all.as_array()),
+            Self::I16(all) => View::I16(all.as_array()),
+        }
+    }
 }
 
-impl Samples<'_> {
-    /// All samples in the order in which they lie in memory, if nothing lies between them.
-    pub(crate) fn in_memory(&self) -> Option<run::Samples<'_>> {
+impl<'a> View<'a> {
+    /// The first sample that an encoder of this type does not take, and its channel.
+    pub(crate) fn bad(&self, sample: SampleType) -> Option<(usize, Bad)> {
+        let are_good = match self.grid().map(|grid| grid.all) {
+            Some(run::Samples::F32(all)) => first_bad(all, |value| value.is_finite()).is_none(),
+            Some(run::Samples::F64(all)) => first_bad(all, is_good(sample)).is_none(),
+            Some(run::Samples::I16(_)) => true,
+            None => false,
+        };
+        if are_good {
+            return None;
+        }
+        let lanes = self.lanes();
+        lanes.iter().enumerate().find_map(|(channel, lane)| Some((channel, lane.bad(sample)?)))
+    }
+
+    /// Where its samples lie, if in even steps.
+    pub(crate) fn grid(&self) -> Option<Grid<'a>> {
         match self {
-            Self::F32(all) => all.as_array().to_slice_memory_order().map(run::Samples::F32),
-            Self::F64(all) => all.as_array().to_slice_memory_order().map(run::Samples::F64),
-            Self::I16(all) => all.as_array().to_slice_memory_order().map(run::Samples::I16),
+            Self::F32(all) => grid(all, run::Samples::F32),
+            Self::F64(all) => grid(all, run::Samples::F64),
+            Self::I16(all) => grid(all, run::Samples::I16),
         }
     }
 
-    /// The lengths of its axes.
-    pub(crate) fn shape(&self) -> &[usize] {
+    fn shape(&self) -> &[usize] {
         match self {
-            Self::F32(array) => array.shape(),
-            Self::F64(array) => array.shape(),
-            Self::I16(array) => array.shape(),
+            Self::F32(all) => all.shape(),
+            Self::F64(all) => all.shape(),
+            Self::I16(all) => all.shape(),
         }
+    }
+
+    /// Number of channels.
+    pub(crate) fn count(&self) -> usize {
+        self.shape().split_last().map_or(0, |(_, outer)| outer.iter().product())
+    }
+
+    /// Number of samples of a channel.
+    pub(crate) fn length(&self) -> usize {
+        self.shape().last().copied().unwrap_or_default()
     }
 
     /// The channels, in the order of a C array. There is an axis at least.
-    pub(crate) fn lanes(&self) -> Vec<Lane<'_>> {
+    pub(crate) fn lanes(&self) -> Vec<Lane<'a>> {
         match self {
-            Self::F32(array) => split(array.as_array()).into_iter().map(Lane::F32).collect(),
-            Self::F64(array) => split(array.as_array()).into_iter().map(Lane::F64).collect(),
-            Self::I16(array) => split(array.as_array()).into_iter().map(Lane::I16).collect(),
+            Self::F32(all) => split(all.clone()).into_iter().map(Lane::F32).collect(),
+            Self::F64(all) => split(all.clone()).into_iter().map(Lane::F64).collect(),
+            Self::I16(all) => split(all.clone()).into_iter().map(Lane::I16).collect(),
         }
     }
 }
@@ -281,7 +343,7 @@ pub(crate) fn cut(py: Python, sample: &str, samples: Samples) -> PyResult<Option
     if sample == SampleType::F32 {
         return Ok(None);
     }
-    let lanes = samples.lanes();
+    let lanes = samples.view().lanes();
     let count: usize = py.detach(|| lanes.iter().map(|lane| lane.beyond(sample)).sum());
     Ok(lab::fit::cut(sample, count as u64))
 }

@@ -1,5 +1,7 @@
 //! A scheme with what was given of its parameters, and with all of them.
 
+use std::ops::Range;
+
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{
     Asked, Calibrated, Codec, Known, RunTime, SampleType, Settings, Values, missing,
@@ -10,7 +12,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{self, Gathered, Lane, Samples};
+use crate::array::{Grid, Lane, RUN, Samples, Tile, View};
 use crate::channel::{self, Bad};
 use crate::error::value;
 use crate::stream::{Decoder, Encoder};
@@ -131,15 +133,26 @@ impl Coder {
         Ok(is_one && self.scheme.needs_signal(&self.asked).is_none())
     }
 
-    fn fitted(&self, lanes: &[Lane], is_shared: bool) -> Result<Fitted> {
-        let past = lanes.first().map_or(0, |lane| lane.len().min(self.looks_back()));
+    fn fitted(&self, samples: &View, is_shared: bool) -> Result<Fitted> {
+        let (scheme, sample, count) = (self.scheme, self.sample, samples.count());
+        let past = samples.length().min(self.looks_back());
+        let has_own_start = self.asked.get("start").is_none() && scheme.info().has_first_value();
+        if !is_shared
+            && count > 1
+            && let Some(grid) = samples.grid()
+            && self.is_same_for_all()?
+        {
+            let settings = self.settle(&grid.firsts(0..1, past), None)?;
+            let samples = has_own_start.then(|| grid.firsts(0..count, past));
+            let begins = samples.map(|samples| Begins { past, samples });
+            return Ok(Fitted::new(scheme, sample, vec![settings], begins, count));
+        }
+        let lanes = &samples.lanes()[..];
         let first = |lane: &Lane| lane.part(0..past).to_vec();
-        let firsts = || match past {
-            1 => lanes.iter().filter_map(Lane::first).collect(),
-            _ => lanes.iter().flat_map(first).collect(),
-        };
+        let needs_signal = self.scheme.needs_signal(&self.asked).is_some();
+        let is_one = self.asked.channels(scheme.info())?.is_none();
         let settle = |(place, group): (usize, &[Lane])| {
-            let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
+            let calibrated = needs_signal.then(|| {
                 let mut calibrated = Calibrated::of(self.sample, &self.asked);
                 for lane in group {
                     calibrated.observe(&lane.to_vec());
@@ -147,26 +160,30 @@ impl Coder {
                 calibrated
             });
             let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
+            let (first, calibrated) = (first(lane), calibrated.as_ref());
             let channels = if is_shared { 1 } else { lanes.len() };
-            let settled = self.channel(place, channels)?.settle(&first(lane), calibrated.as_ref());
+            let settled = if is_one {
+                self.settle(&first, calibrated)
+            } else {
+                self.channel(place, channels)?.settle(&first, calibrated)
+            };
             if lanes.len() > 1 && !is_shared {
                 settled.with_context(|| format!("channel {place}"))
             } else {
                 settled
             }
         };
-        let (scheme, sample, count) = (self.scheme, self.sample, lanes.len());
         if is_shared {
             let channels = vec![settle((0, lanes))?];
             return Ok(Fitted::new(scheme, sample, channels, None, 1));
         }
         if count > 1 && self.is_same_for_all()? {
             let channels = vec![settle((0, &lanes[..1]))?];
-            let is_given = self.asked.get("start").is_some() || !scheme.info().has_first_value();
-            let begins = (!is_given).then(|| Begins { past, samples: firsts() });
+            let samples = has_own_start.then(|| lanes.iter().flat_map(first).collect());
+            let begins = samples.map(|samples| Begins { past, samples });
             return Ok(Fitted::new(scheme, sample, channels, begins, count));
         }
-        let channels: Vec<_> = if is_wide(count, lanes.iter().map(Lane::len).sum()) {
+        let channels: Vec<_> = if is_wide(count, count * samples.length()) {
             lanes.par_chunks(1).enumerate().map(settle).collect::<Result<_>>()?
         } else {
             lanes.chunks(1).enumerate().map(settle).collect::<Result<_>>()?
@@ -207,16 +224,16 @@ impl Coder {
 
     /// With what these samples tell: each channel by itself, or one scheme for all.
     fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
-        let lanes = samples.lanes();
-        let is_wide = is_wide(lanes.len(), lanes.iter().map(Lane::len).sum());
-        if let (Some(0), false) = (samples.shape().last(), lanes.is_empty()) {
+        let samples = samples.view();
+        let (count, length) = (samples.count(), samples.length());
+        if length == 0 && count > 0 {
             return Err(value(anyhow!("channel 0 has no samples")));
         }
-        let whole = samples.in_memory();
-        let fitted = || match array::bad(whole, &lanes, self.sample) {
+        let fitted = || match samples.bad(self.sample) {
             Some((channel, bad)) => Err(told(channel, 0, &bad)),
-            None => self.fitted(&lanes, is_shared),
+            None => self.fitted(&samples, is_shared),
         };
+        let is_wide = is_wide(count, count * length);
         work::detached(py, is_wide, fitted)?.map_err(value)
     }
 
@@ -352,9 +369,11 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
 
-/// Number of channels that a thread codes in one go. Where neighbouring channels are neighbours in memory, they are copied
-/// together: 16 samples of `float32` at one time are a line of the cache.
-const RUN: usize = 16;
+/// Number of channels of this length that a thread codes in one go: their samples stay in the cache.
+fn run_of(length: usize) -> usize {
+    const CACHED: usize = 1 << 13;
+    (CACHED / length.max(1)).clamp(1, CACHED).next_multiple_of(RUN)
+}
 
 /// Returns whether so many channels of so many numbers in all are worth more threads than one.
 pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
@@ -395,26 +414,36 @@ impl Fitted {
         samples: Samples,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        let lanes = samples.lanes();
-        let length = samples.shape().last().copied().unwrap_or_default();
+        let samples = samples.view();
+        let (count, length) = (samples.count(), samples.length());
         let width = self.width().map_err(value)?;
-        let total = length * lanes.len();
+        let total = length * count;
         let output = PyArray1::zeros(py, total * width, false);
         let mut access = output.readwrite();
         let cells = access.as_slice_mut()?;
-        let is_wide = is_wide(lanes.len(), total * width);
-        let whole = samples.in_memory();
+        let is_wide = is_wide(count, total * width);
+        let is_short = RUN * length <= PIECE && self.channels.len() == 1 && self.count == count;
+        let grid = samples.grid().filter(|_| is_short);
+        let lanes = if grid.is_some() { Vec::new() } else { samples.lanes() };
+        let run = if grid.is_some() { run_of(length) } else { 1 };
         let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {
-            let encode = |(run, (lanes, room)): (usize, (&[Lane], &mut [i8]))| {
-                let gathered = Gathered::new(lanes, whole, PIECE);
-                self.encode_run(run * RUN, lanes, &gathered, room, meter)
+            let encode = |bench: &mut Bench, (place, room): (usize, &mut [i8])| {
+                let from = place * run;
+                match &grid {
+                    Some(grid) => {
+                        let channels = from..count.min(from + run);
+                        self.encode_grid(bench, grid, channels, length, room, meter)
+                    }
+                    None => self.encode_lane(bench, &lanes[from], from, room, meter),
+                }
             };
-            let size = (RUN * length * width).max(1);
+            let size = (run * length * width).max(1);
             if is_wide {
-                let rooms = cells.par_chunks_mut(size);
-                lanes.par_chunks(RUN).zip(rooms).enumerate().try_for_each(encode)
+                let rooms = cells.par_chunks_mut(size).enumerate();
+                rooms.try_for_each_init(Bench::default, encode)
             } else {
-                lanes.chunks(RUN).zip(cells.chunks_mut(size)).enumerate().try_for_each(encode)
+                let mut bench = Bench::default();
+                cells.chunks_mut(size).enumerate().try_for_each(|own| encode(&mut bench, own))
             }
         })?;
         done.map_err(value)?;
@@ -508,41 +537,62 @@ impl Fitted {
 }
 
 impl Fitted {
-    /// Encodes neighbouring channels, the first of which has the number `from`. The samples are good, as those that tell
-    /// the settings are.
-    fn encode_run(
+    /// Encodes neighbouring channels, which share their settings. The samples are good, as those that tell the settings are.
+    fn encode_grid(
         &self,
-        from: usize,
-        lanes: &[Lane],
-        gathered: &Gathered,
+        bench: &mut Bench,
+        grid: &Grid,
+        channels: Range<usize>,
+        length: usize,
         room: &mut [i8],
         meter: &Meter,
     ) -> Result<()> {
-        let (width, length) = (self.width()?, lanes.first().map_or(0, Lane::len));
-        let mut kept = None;
-        for (place, room) in room.chunks_mut((length * width).max(1)).enumerate() {
-            let lane = &lanes[place];
-            let copied = gathered.lane(place, length).or(lane.in_memory());
-            let place = from + place;
-            let named = || format!("channel {place}");
-            let started = self.start_on(kept.take(), place).with_context(named)?;
-            let codec = kept.insert(started);
-            let mut made = 0;
-            for start in (0..length).step_by(PIECE) {
-                if meter.is_stopped() {
-                    return Ok(());
-                }
-                let (part, cells) = (start..length.min(start + PIECE), &mut room[made * width..]);
-                made += match copied {
-                    Some(samples) => codec.encode_cells(samples.part(part), cells),
-                    None => lane.part(part).encode(codec, cells),
-                };
-            }
-            codec.finish_cells(&mut room[made * width..]);
+        if meter.is_stopped() {
+            return Ok(());
         }
-        meter.add(lanes.len() * length);
+        let codec = match &mut bench.codec {
+            Some(codec) => codec,
+            none => none.insert(self.start(0)?),
+        };
+        let (first, count) = (channels.start as u64, channels.len());
+        let samples = grid.channels(channels, &mut bench.tile);
+        codec.encode_channels(samples, length, first, room);
+        meter.add(count * length);
         Ok(())
     }
+
+    /// Encodes one channel.
+    fn encode_lane(
+        &self,
+        bench: &mut Bench,
+        lane: &Lane,
+        channel: usize,
+        room: &mut [i8],
+        meter: &Meter,
+    ) -> Result<()> {
+        let width = self.width()?;
+        let started = self.start_on(bench.codec.take(), channel);
+        let started = started.with_context(|| format!("channel {channel}"))?;
+        let codec = bench.codec.insert(started);
+        let mut made = 0;
+        for start in (0..lane.len()).step_by(PIECE) {
+            if meter.is_stopped() {
+                return Ok(());
+            }
+            let part = lane.part(start..lane.len().min(start + PIECE));
+            made += part.encode(codec, &mut room[made * width..]);
+            meter.add(part.len());
+        }
+        codec.finish_cells(&mut room[made * width..]);
+        Ok(())
+    }
+}
+
+/// What a thread encodes channels with, one after the other.
+#[derive(Default)]
+struct Bench {
+    codec: Option<Codec>,
+    tile: Tile,
 }
 
 /// What is bad, of which sample of which channel.

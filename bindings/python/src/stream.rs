@@ -173,7 +173,7 @@ impl Encoder {
 
     /// Takes the next samples of all channels; the cells that are complete, one channel after the other.
     fn encode<'py>(&self, py: Python<'py>, samples: Samples) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        let lanes = samples.lanes();
+        let lanes = samples.view().lanes();
         let mut own = self.taken()?;
         let own = &mut *own;
         if lanes.len() != own.waiting.len() {

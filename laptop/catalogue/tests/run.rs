@@ -4,8 +4,8 @@
 #![cfg(feature = "run")]
 
 use catalogue::run::{
-    Asked, Calibrated, ErrorKind, Event, Known, Needs, Result, RunTime, SampleType, Settings,
-    Worded,
+    Asked, Calibrated, ErrorKind, Event, Known, Needs, Result, RunTime, SampleType, Samples,
+    Settings, Worded,
 };
 use catalogue::{ALL, Found, Kind};
 
@@ -85,6 +85,31 @@ fn a_codec_starts_anew() {
                 (events, values)
             });
             assert!(!expected.0.is_empty() && anew == expected, "{} {sample}", scheme.info().name);
+        }
+    }
+}
+
+/// Channels encoded in one call have the cells of a codec each, codes by chance those of a stream each.
+#[test]
+fn channels_in_one_call() {
+    const LENGTH: usize = 601;
+    for scheme in ALL {
+        for sample in SAMPLES.map(|name| name.parse::<SampleType>().unwrap()) {
+            let settings = resolve(*scheme, &paper(), sample).unwrap();
+            let signal = signal_for(sample);
+            let shape = scheme.shape(&settings).unwrap();
+            let mut cells = vec![0; 3 * LENGTH * shape.neurons * shape.slots];
+            let mut expected = cells.clone();
+            let mut codec = scheme.codec(&settings).unwrap();
+            codec.encode_channels(Samples::F64(&signal[..3 * LENGTH]), LENGTH, 5, &mut cells);
+            let rows = expected.chunks_mut(LENGTH * shape.neurons * shape.slots);
+            for ((samples, rows), channel) in signal.chunks(LENGTH).zip(rows).zip(5..) {
+                let own = settings.beginning(&samples[..settings.first.len()]).with_stream(channel);
+                let mut codec = scheme.codec_from(&own, own.first_value()).unwrap();
+                let made = codec.encode_cells(Samples::F64(samples), rows);
+                codec.finish_cells(&mut rows[made * shape.neurons * shape.slots..]);
+            }
+            assert!(cells.iter().any(|cell| *cell != 0) && cells == expected, "{settings:?}");
         }
     }
 }

@@ -23,7 +23,7 @@ pub fn python() -> Result<()> {
 
     let flight = paths::target().join("flight-log.txt");
     fs::write(&flight, host::flight_log()?)?;
-    let pytest = "-m pytest --quiet -rP --no-header --doctest-modules bindings/python/tests --pyargs spikewire";
+    let pytest = "-m pytest --quiet -rP --no-header --doctest-modules --doctest-ignore-import-errors bindings/python/tests --pyargs spikewire";
     let mut tests = command(&python);
     tests.args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight);
     run(&mut cargo("build --package spikewire-cli"))?;
@@ -53,6 +53,25 @@ pub fn speed() -> Result<()> {
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(packed);
     run(&mut pip)?;
     run(command(&python).args(["bindings/python/examples/speed.py", "--check"]))
+}
+
+/// Trains networks of other libraries on the package's spikes, tests its layer of PyTorch, and writes the pages of its classes.
+pub fn torch() -> Result<()> {
+    let python = environment("python-torch")?;
+    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    install(
+        &python,
+        &["torch==2.15.0", "snntorch==1.0.0", "spikingjelly==2.0.0", "mypy==2.4.1", "pdoc==16.0.0"],
+    )?;
+    package(&python, "dev")?;
+    let tests = "-m pytest --quiet --no-header --doctest-modules bindings/python/tests/test_torch.py bindings/python/tests/test_notebooks.py bindings/python/tests/test_readme.py --pyargs spikewire.torch";
+    run(command(&python).args(tests.split_whitespace()))?;
+    let typed = "-m mypy --strict bindings/python/tests/typed.py";
+    run(command(&python).args(typed.split_whitespace()))?;
+    let pages = paths::target().join("python-pages");
+    let mut pdoc = command(&python);
+    pdoc.args(["-m", "pdoc", "--docformat", "google", "--no-show-source", "--output-directory"]);
+    run(pdoc.arg(pages).args(["spikewire", "spikewire.torch"]))
 }
 
 /// Makes the source package, which must contain all that the package is built from.

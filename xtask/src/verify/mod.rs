@@ -254,6 +254,11 @@ const LONG: &[Step] = &[
         python_package::speed,
     ),
     step(
+        "py-torch",
+        "the layer of PyTorch, notebooks that train with it, and the pages of the Python package",
+        python_package::torch,
+    ),
+    step(
         "all-boards",
         "the other boards' firmware: five flown in emulators, the Pico 2's linked",
         real_boards::more,

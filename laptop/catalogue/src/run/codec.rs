@@ -3,14 +3,23 @@
 //! The code of a sample is a row of cells, one for each neuron in each sub-timestep. A cell holds the number of its
 //! spikes, positive for up and negative for down: -1, 0 or 1, or more if the code has several spikes in a sample.
 
-use std::{any::Any, array, iter, ops::Range};
+use std::{
+    any::{Any, TypeId},
+    array, iter,
+    ops::Range,
+};
 
+use bytemuck::Pod;
+use rand_pcg::Pcg32;
+use spikewire::population::{Probabilistic, ProbabilisticState};
+use spikewire::rate::{Average, Bernoulli, BernoulliState};
 use spikewire::{
     Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme, Spike, timing::PhaseBits,
 };
 
 #[cfg(feature = "states")]
 use super::ErrorKind;
+use super::settings::generator;
 use super::{Result, Runs, Settings, Shape, Visit};
 use crate::State;
 
@@ -89,6 +98,21 @@ impl Codec {
     pub fn restart(&mut self, past: &[f64]) {
         self.running.restart(past);
         (self.coded, self.decoded) = (0, 0);
+    }
+
+    /// Encodes recordings of `length` samples, one after the other, each from its start, into rows of cells, which must
+    /// all be 0. The first recording is that of channel `channel`: a code by chance draws from a stream for each. Unless
+    /// the settings say where a recording begins, its first samples do.
+    ///
+    /// The codec must be started anew before it is used otherwise.
+    pub fn encode_channels(
+        &mut self,
+        samples: Samples,
+        length: usize,
+        channel: u64,
+        cells: &mut [i8],
+    ) {
+        self.running.encode_channels(samples, length, channel, cells);
     }
 
     /// Encodes the next samples into rows of cells, which must all be 0; returns the number of rows written.
@@ -294,6 +318,7 @@ fn step(polarity: Polarity) -> i8 {
 trait Running {
     fn latency(&self) -> usize;
     fn restart(&mut self, past: &[f64]);
+    fn encode_channels(&mut self, samples: Samples, length: usize, channel: u64, cells: &mut [i8]);
     fn encode(&mut self, samples: Samples, sink: &mut Sink);
     fn finish(&mut self, sink: &mut Sink);
     fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), usize>;
@@ -325,8 +350,11 @@ impl<S: Sample> Visit<S> for Start<'_> {
             starts_at_first: settings.starts_at_first(),
             is_first_held: false,
             one: settings.sample.one(),
+            begins_with: settings.begins_with(),
+            seed: settings.seed(),
             shape,
             seen: vec![0; shape.neurons * shape.slots],
+            past: Vec::new(),
             block: Vec::new(),
             outputs: Vec::new(),
             scheme,
@@ -352,9 +380,15 @@ struct Channel<P: Scheme> {
     is_first_held: bool,
     /// The number that represents 1 in the sample type.
     one: f64,
+    /// Number of a recording's own samples from which its encoder starts; `None` if all start alike.
+    begins_with: Option<usize>,
+    /// The seed of a code by chance.
+    seed: Option<u64>,
     shape: Shape,
     /// A row of cells, for comparisons.
     seen: Vec<i8>,
+    /// The samples from which the encoder starts.
+    past: Vec<P::Sample>,
     /// Room for a block of samples and for what becomes of them.
     block: Vec<P::Sample>,
     outputs: Vec<P::Output>,
@@ -365,9 +399,9 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     fn begin(&mut self, past: &[f64], first: Option<f64>) {
         self.encoder.clone_from(&self.start);
         let sample = |value: f64| P::Sample::from_f64(value * self.one);
-        self.block.clear();
-        self.block.extend(past.iter().copied().map(sample));
-        self.scheme.prime(&mut self.encoder, &self.block);
+        self.past.clear();
+        self.past.extend(past.iter().copied().map(sample));
+        self.scheme.prime(&mut self.encoder, &self.past);
         self.decoder = self.scheme.decoder_state();
         if let Some(first) = first {
             self.scheme.resync(&mut self.decoder, sample(first));
@@ -375,27 +409,49 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
         self.is_first_held = self.starts_at_first;
     }
 
+    /// Begins the encoder of a channel that starts with these samples.
+    fn begin_encoder(&mut self, channel: u64, samples: impl Iterator<Item = P::Sample>) {
+        self.encoder.clone_from(&self.start);
+        if let Some(seed) = self.seed {
+            let (generator, state) = (generator(seed, channel), &mut self.encoder as &mut dyn Any);
+            if let Some(state) = state.downcast_mut::<BernoulliState<Pcg32>>() {
+                *state = Bernoulli::<f32, _, Average>::state(generator);
+            } else if let Some(state) = state.downcast_mut::<ProbabilisticState<Pcg32>>() {
+                *state = Probabilistic::<f32, _, 3, 16>::state(generator);
+            }
+        }
+        if let Some(count) = self.begins_with {
+            self.past.clear();
+            self.past.extend(samples.take(count));
+        }
+        self.scheme.prime(&mut self.encoder, &self.past);
+    }
+
     /// Encodes in blocks, for which schemes have faster code.
-    fn encode_all(
+    fn encode_all<T: Pod>(
         &mut self,
-        mut samples: impl ExactSizeIterator<Item = P::Sample>,
+        samples: &[T],
+        sample: impl Fn(T) -> P::Sample,
         sink: &mut Sink,
     ) {
         const BLOCK: usize = 512;
         const KEPT: usize = 64;
-        let Some(first) = samples.next() else { return };
-        // It also stands in the room for the others.
-        let first = self.scheme.encode(&mut self.encoder, first);
-        sink.put(first.code().into_iter());
-        let most = samples.len().min(BLOCK);
-        if self.outputs.len() < most {
-            self.outputs.resize(most, first);
-        }
-        while samples.len() > 0 {
-            self.block.clear();
-            self.block.extend(samples.by_ref().take(most));
-            let (block, outputs) = (&self.block, &mut self.outputs);
-            let count = self.scheme.encode_slice(&mut self.encoder, block, outputs);
+        for samples in samples.chunks(BLOCK) {
+            // Samples of the scheme's own type are taken where they are.
+            let is_own = TypeId::of::<T>() == TypeId::of::<P::Sample>();
+            let block: &[P::Sample] = if is_own && self.one == 1.0 {
+                bytemuck::cast_slice(samples)
+            } else {
+                self.block.clear();
+                self.block.extend(samples.iter().copied().map(&sample));
+                &self.block
+            };
+            if self.outputs.len() < block.len() {
+                // Any output will do to make room for others.
+                let any = self.scheme.encode(&mut self.encoder.clone(), block[0]);
+                self.outputs.resize(block.len(), any);
+            }
+            let count = self.scheme.encode_slice(&mut self.encoder, block, &mut self.outputs);
             if !sink.put_spikes(&self.outputs, count) {
                 sink.put(self.outputs.iter().take(count).filter_map(|output| output.code()));
             }
@@ -403,6 +459,31 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
         // Codes of large populations take too much room to be kept for each channel.
         if size_of::<P::Output>() > KEPT {
             self.outputs = Vec::new();
+        }
+    }
+
+    /// Encodes recordings one after the other; see [`Codec::encode_channels`].
+    fn encode_each<T: Pod>(
+        &mut self,
+        samples: &[T],
+        length: usize,
+        channel: u64,
+        cells: &mut [i8],
+        sample: impl Fn(T) -> P::Sample,
+    ) {
+        let shape = self.shape;
+        let rows = cells.chunks_exact_mut(length * self.seen.len());
+        for ((samples, rows), channel) in samples.chunks_exact(length).zip(rows).zip(channel..) {
+            let mut sink = Sink::Cells { rows, shape, made: 0 };
+            self.begin_encoder(channel, samples.iter().copied().map(&sample));
+            self.encode_all(samples, &sample, &mut sink);
+            self.finish_all(&mut sink);
+        }
+    }
+
+    fn finish_all(&mut self, sink: &mut Sink) {
+        while let Some(code) = self.scheme.finish_next(&mut self.encoder) {
+            sink.put(iter::once(code));
         }
     }
 
@@ -448,6 +529,31 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     }
 }
 
+/// Evaluates an expression with samples, and with the function that brings each to the sample type of `P`.
+macro_rules! in_samples {
+    ($channel:ident, $samples:expr, |$own:ident, $sample:ident| $done:expr) => {{
+        let one = $channel.one;
+        match $samples {
+            Samples::F32($own) if P::Sample::KIND == SampleKind::F32 => {
+                let $sample = |value: f32| P::Sample::from_bits32(value.to_bits());
+                $done
+            }
+            Samples::F32($own) => {
+                let $sample = |value: f32| P::Sample::from_f64(f64::from(value) * one);
+                $done
+            }
+            Samples::F64($own) => {
+                let $sample = |value: f64| P::Sample::from_f64(value * one);
+                $done
+            }
+            Samples::I16($own) => {
+                let $sample = |value: i16| P::Sample::from_f64(f64::from(value) * one);
+                $done
+            }
+        }
+    }};
+}
+
 impl<P: Scheme<EncoderState: State + Clone, DecoderState: State> + 'static> Running for Channel<P> {
     fn latency(&self) -> usize {
         self.scheme.latency()
@@ -458,24 +564,17 @@ impl<P: Scheme<EncoderState: State + Clone, DecoderState: State> + 'static> Runn
         self.begin(past, first);
     }
 
+    fn encode_channels(&mut self, samples: Samples, length: usize, channel: u64, cells: &mut [i8]) {
+        in_samples!(self, samples, |own, sample| self
+            .encode_each(own, length, channel, cells, sample));
+    }
+
     fn encode(&mut self, samples: Samples, sink: &mut Sink) {
-        let one = self.one;
-        let sample = |value: f64| P::Sample::from_f64(value * one);
-        match samples {
-            Samples::F32(own) if P::Sample::KIND == SampleKind::F32 => {
-                let as_is = own.iter().map(|value| P::Sample::from_bits32(value.to_bits()));
-                self.encode_all(as_is, sink);
-            }
-            Samples::F32(own) => self.encode_all(own.iter().map(|own| sample((*own).into())), sink),
-            Samples::F64(own) => self.encode_all(own.iter().map(|own| sample(*own)), sink),
-            Samples::I16(own) => self.encode_all(own.iter().map(|own| sample((*own).into())), sink),
-        }
+        in_samples!(self, samples, |own, sample| self.encode_all(own, sample, sink));
     }
 
     fn finish(&mut self, sink: &mut Sink) {
-        while let Some(code) = self.scheme.finish_next(&mut self.encoder) {
-            sink.put(iter::once(code));
-        }
+        self.finish_all(sink);
     }
 
     fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), usize> {

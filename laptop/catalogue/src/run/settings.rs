@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::SeedableRng;
 use spikewire::{Sample, dynamic, rate};
 
 use super::error::{Error, ErrorKind, Result};
@@ -29,6 +29,12 @@ pub struct Settings {
 /// Key of the first sample in a file, if the decoder starts with the value of that sample. If it starts with the value
 /// before it, the key is the parameter's name.
 const FIRST: &str = "first";
+
+/// Makes the random generator of a seed's stream, which is begun in less time than a sample takes.
+pub(super) fn generator(seed: u64, stream: u64) -> Pcg32 {
+    // Streams far apart, as those of neighbouring numbers are alike.
+    Pcg32::seed_from_u64(seed.wrapping_add(stream.wrapping_mul(0x9E37_79B9_7F4A_7C15)))
+}
 
 impl Settings {
     /// Returns names and values, in the order of a file.
@@ -196,10 +202,19 @@ impl Settings {
     ///
     /// # Errors
     /// Returns an error if the seed is missing or not an integer.
-    pub fn generator(&self) -> Result<ChaCha8Rng> {
-        let mut generator = ChaCha8Rng::seed_from_u64(self.count("seed", 0..=usize::MAX)? as u64);
-        generator.set_stream(self.stream);
-        Ok(generator)
+    pub fn generator(&self) -> Result<Pcg32> {
+        Ok(generator(self.count("seed", 0..=usize::MAX)? as u64, self.stream))
+    }
+
+    /// Returns the seed; `None` if the code draws nothing.
+    pub(super) fn seed(&self) -> Option<u64> {
+        self.get("seed").and_then(|_| self.count("seed", 0..=usize::MAX).ok()).map(|own| own as u64)
+    }
+
+    /// Returns the number of samples from which the encoder of another recording starts; `None` if these settings say
+    /// where it starts, or if it needs none.
+    pub(super) fn begins_with(&self) -> Option<usize> {
+        (self.get("start").is_none() && !self.first.is_empty()).then_some(self.first.len())
     }
 
     /// Returns a word, which must be one of these.

@@ -8,7 +8,7 @@ use spikewire::rate::{Average, Bernoulli};
 use crate::prelude::*;
 
 #[cfg(feature = "run")]
-use {rand_chacha::ChaCha8Rng, spikewire::rate::Window};
+use spikewire::rate::Window;
 
 /// Bernoulli.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +66,7 @@ impl Entry for Scheme {
 #[cfg(feature = "run")]
 impl Build for Scheme {
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
-        type Random<S, A> = Bernoulli<S, ChaCha8Rng, A>;
+        type Random<S, A> = Bernoulli<S, Pcg32, A>;
         let generator = settings.generator()?;
         let range = settings.range()?;
         if settings.takes_window()? {

@@ -1,0 +1,147 @@
+"""The layer of PyTorch, where torch is installed."""
+
+import copy
+import importlib.util
+import json
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import spikewire as sw
+
+torch = pytest.importorskip("torch")
+
+from torch.utils.data import DataLoader
+
+from spikewire.torch import Encode, TinyOdin, Windows
+
+X = torch.sin(torch.linspace(0, 60, 4 * 50 * 6)).reshape(4, 50, 6)  # (batch, time, features)
+SLOTS = sw.Slots(neurons=5, slots=3, min=-1, max=1)
+
+
+@pytest.mark.parametrize("scheme", [sw.StepForward(threshold=0.1), sw.Gaussian(neurons=5, min=-1, max=1), SLOTS])
+@pytest.mark.parametrize("time", [0, 1, -1])
+@pytest.mark.parametrize("split", [False, True])
+def test_cells_are_those_of_encode(scheme, time, split):
+    spikes = Encode(scheme, time=time, split=split)(X)
+    expected = np.moveaxis(scheme.encode(X.numpy(), axis=time).array.reshape(*X.shape, scheme.slots, scheme.neurons), time % 3, 0)
+    steps, batch, features = expected.shape[:3]
+    ups, downs = np.maximum(expected, 0), np.maximum(-expected, 0)
+    signs = np.stack([ups, downs] if split else [expected])  # (signs, time, batch, features, slots, neurons)
+    by_slot = signs.transpose(1, 4, 2, 0, 3, 5).reshape(steps * scheme.slots, batch, -1)
+    assert spikes.dtype == torch.float32
+    assert np.array_equal(spikes.numpy(), by_slot)
+
+
+def test_still_samples_are_drawn_by_step():
+    still = torch.tensor([[0.0, 1.0, 0.5], [1.0, 0.0, 0.5]])
+    spikes = Encode(sw.Bernoulli(min=0, max=1, seed=1), num_steps=400)(still)
+    assert spikes.shape == (400, 2, 3)
+    assert torch.allclose(spikes.mean(0), still, atol=0.08)
+    assert not torch.equal(spikes[:, 0, 2], spikes[:, 1, 2])
+    first = Encode(sw.FirstSpike(min=0, max=1, slots=8), num_steps=1)(still)
+    assert first.shape == (8, 2, 3)
+    assert Encode(sw.StepForward(threshold=0.5))(torch.zeros(7)).shape == (7, 1)
+
+
+@pytest.mark.parametrize("dtype", [torch.bfloat16, torch.float16, torch.float64, torch.int8, torch.bool])
+def test_types(dtype):
+    scheme = sw.StepForward(threshold=0.1)
+    spikes = Encode(scheme, time=1, split=True, dtype=dtype)(X)
+    assert spikes.dtype == dtype
+    assert torch.equal(spikes.float(), Encode(scheme, time=1, split=True)(X))
+    rounded = Encode(scheme, time=1)(X.bfloat16())
+    assert torch.equal(rounded, Encode(scheme, time=1)(X.bfloat16().float()))
+    assert Encode(sw.WeightedPhase(min=0, max=256), num_steps=1)(torch.arange(256, dtype=torch.uint8)).shape == (8, 256)
+
+
+@pytest.mark.parametrize("split", [False, True])
+def test_gradients(split):
+    x = X.clone().requires_grad_()
+    assert not Encode(sw.StepForward(threshold=0.1), time=1)(x).requires_grad
+    weights = torch.arange(50.0)[:, None, None]
+    Encode(SLOTS, time=1, split=split, gradient="straight")(x).unflatten(0, (50, 3)).sum(1).mul(weights).sum().backward()
+    # Ups count 5 neurons' worth in 3 slots, downs the same with the other sign.
+    expected = (15.0 - 15.0 * split) * weights.transpose(0, 1).expand_as(X)
+    assert torch.equal(x.grad, expected)
+    still = X[:, 0].clone().requires_grad_()
+    draws = Encode(sw.Bernoulli(min=-1, max=1), num_steps=9, gradient=lambda x: 1 / (1 + x.abs()))
+    draws(still).sum().backward()
+    assert torch.allclose(still.grad, 9 / (1 + still.detach().abs()))
+    half = X.bfloat16().requires_grad_()
+    Encode(sw.StepForward(threshold=0.1), time=1, gradient="straight", dtype=torch.bfloat16)(half).sum().backward()
+    assert half.grad.dtype == torch.bfloat16
+
+
+def test_compiles_as_one_operator():
+    layer = Encode(sw.StepForward(threshold=0.1), time=1, gradient="straight")
+    torch.library.opcheck(torch.ops.spikewire.encode.default, (X, layer._number))
+    torch.library.opcheck(torch.ops.spikewire.encode.default, (X.clone().requires_grad_(), layer._number))
+    network = torch.nn.Sequential(layer, torch.nn.Linear(6, 2))
+    compiled = torch.compile(network, fullgraph=True, backend="aot_eager")
+    assert torch.equal(compiled(X), network(X))
+
+
+def test_copies_encode_alike():
+    layer = Encode(sw.StepForward(threshold=0.1), time=1)
+    for own in (pickle.loads(pickle.dumps(layer)), copy.deepcopy(layer)):
+        assert own._number != layer._number
+        assert torch.equal(own(X), layer(X))
+    assert repr(layer) == "Encode(StepForward(threshold=0.1), time=1)"
+    with pytest.raises(ValueError, match="num_steps goes without time"):
+        Encode(layer.scheme, 5, time=1)
+    with pytest.raises(ValueError, match="gradient is 'straight'"):
+        Encode(layer.scheme, gradient="through")
+
+
+def test_two_workers_give_windows():
+    recording, labels = np.random.default_rng(1).normal(size=(300, 6)).astype(np.float32), np.arange(300)
+    windows = Windows(recording, labels, length=50, stride=25)
+    batches = list(DataLoader(windows, batch_size=4, num_workers=2))
+    assert [tuple(x.shape) for x, _ in batches] == [(4, 50, 6), (4, 50, 6), (3, 50, 6)]
+    assert batches[1][1].tolist() == [149, 174, 199, 224]
+    assert Encode(sw.StepForward(threshold=0.1), time=1)(batches[0][0]).shape == (50, 4, 6)
+    with pytest.raises(ValueError, match="300 samples have 299 labels"):
+        Windows(recording, labels[:-1], length=50)
+    with pytest.raises(IndexError):
+        windows[11]
+
+
+def test_tiny_odin_is_the_chip():
+    """Potentials, spikes and gradients are those of the example, whose networks `spikewire network` holds against the chip's model."""
+    place = Path(__file__).parents[1] / "examples" / "on_chip.py"
+    spec = importlib.util.spec_from_file_location("on_chip", place)
+    chip = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(chip)
+    random = np.random.default_rng(1)
+    weights = [random.normal(1, 5, shape) for shape in ((chip.INPUTS, chip.HIDDEN), (chip.HIDDEN, chip.OUTPUTS))]
+    inputs = random.integers(0, 2, (40, 8, chip.INPUTS)).astype(float)
+    labels = random.integers(0, chip.OUTPUTS, (40, 8))
+    network = TinyOdin(chip.INPUTS, chip.HIDDEN, chip.OUTPUTS, threshold=chip.THRESHOLD, leak=chip.LEAK).double()
+    for own, wanted in zip(network.weights, weights):
+        own.data = torch.from_numpy(wanted)
+    layers = network.layers(torch.from_numpy(inputs))
+    for own, wanted in zip(layers, chip.run(weights, inputs)):
+        for tensor, array in zip(own, wanted):
+            assert np.array_equal(tensor.detach().numpy(), array)
+    (_, sent), (_, told) = layers
+    assert 0 < sent.mean() < 1 and 0 < told.mean() < 1
+    counts, count = [], 0
+    for step in told:
+        count = chip.FORGET * count + step
+        counts.append(count)
+    loss = torch.nn.functional.cross_entropy(torch.stack(counts).flatten(0, 1), torch.from_numpy(labels).flatten())
+    (loss + 0.01 * sent.sum() / labels.size).backward()
+    for own, wanted in zip(network.weights, chip.gradients(weights, inputs, labels)):
+        assert np.allclose(own.grad.numpy(), wanted, rtol=1e-9, atol=1e-12)
+
+
+def test_tiny_odin_is_saved(tmp_path):
+    network = TinyOdin(2, 3)
+    network.save(tmp_path / "chip.json")
+    (layer,) = json.loads((tmp_path / "chip.json").read_text())["layers"]
+    assert layer["weights"] == network.whole()[0].T.tolist()
+    with pytest.raises(sw.Error, match="tinyODIN's"):
+        sw.Network.from_nir(tmp_path / "chip.json")

@@ -1,0 +1,17 @@
+"""What a user writes, for a checker of types."""
+import numpy as np
+import torch
+from torch import nn
+from torch.utils.data import DataLoader
+
+import spikewire as sw
+from spikewire.torch import Encode, Windows
+
+layer = Encode(sw.StepForward(threshold=0.1), time=1, split=True, gradient="straight")
+own = Encode(sw.Bernoulli(min=0, max=1), 25, dtype=torch.bfloat16, gradient=lambda x: 1 / (1 + x.abs()))
+network = nn.Sequential(layer, nn.Linear(12, 3))
+loader = DataLoader(Windows(np.zeros((100, 6), np.float32), np.zeros(100), 20), batch_size=4)
+for samples, labels in loader:
+    out: torch.Tensor = network(samples)
+    spikes: torch.Tensor = layer(samples)
+    print(spikes.shape, out.shape, labels)
