@@ -28,9 +28,11 @@ const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales are
-/// multiples of the largest scale at which the pair's weights and potentials fit the chip.
-const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
+/// Number of scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales
+/// lie evenly between half of the largest scale at which the pair's weights and potentials fit the chip, and all of it.
+const SCALES: u32 = 200;
+/// Number of scales, those at which rounding changes the potentials least, at which the pair is simulated.
+const SIMULATED: usize = 8;
 /// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
 /// Weight, left shift and decay factor of an output that shows the spikes of one neuron. A decay factor of 64 stands
@@ -113,15 +115,19 @@ impl Change {
     /// Rounds `weight * scale` to an integer, clips it to the range of the chip's weights, and returns it. Adds the
     /// weight and its change to the statistics in `self`.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
-        let rounded = (weight * scale).round();
-        let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
+        let held = clipped(weight * scale) as i8;
+        self.clipped += usize::from(f64::from(held) != (weight * scale).round());
+        self.held(weight, held, scale);
+        held
+    }
+
+    /// Adds a weight to the statistics that the chip holds as the integer `held`.
+    fn held(&mut self, weight: f64, held: i8, scale: f64) {
         self.weights += 1;
-        self.clipped += usize::from(held != rounded);
-        self.vanished += usize::from(held == 0.0 && weight != 0.0);
-        let change = held / scale - weight;
+        self.vanished += usize::from(held == 0 && weight != 0.0);
+        let change = f64::from(held) / scale - weight;
         self.sums[0] += weight * weight;
         self.sums[1] += change * change;
-        held as i8
     }
 }
 
@@ -142,6 +148,11 @@ struct Source {
     recurrent: Vec<(usize, f64)>,
     /// Largest absolute potential that the neuron reaches in double precision, plus the amount [`gate`](Self::gate).
     peak: f64,
+}
+
+/// Rounds a number to an integer in the range of the chip's weights.
+fn clipped(number: f64) -> f64 {
+    number.round().clamp(-LARGEST - 1.0, LARGEST)
 }
 
 fn largest(weights: impl Iterator<Item = f64>) -> f64 {
@@ -229,34 +240,42 @@ pub(super) fn quantise(
     let total: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
     let chosen = pairs.par_iter().map(|pair| {
         let keep = mean_keep(pair, ticks);
-        let candidates = SCALES.map(|part| part * scale(pair, shifts));
-        let distance = |scale: f64| -> f64 {
-            let of = |source: &Source| {
-                Held::new(
-                    source,
-                    keep,
-                    scale,
-                    shifts,
-                    Rule { ticks, resets_to_zero, fires: at },
-                    &places,
-                )
-                .distance(
-                    &drives[source.layer],
-                    &fired[source.layer],
-                    source.neuron,
-                )
-            };
-            pair.iter().map(of).sum()
-        };
-        let tried = candidates
-            .into_iter()
+        let rule = Rule { ticks, resets_to_zero, fires: at };
+        let traces: Vec<Traces> = pair
+            .iter()
+            .map(|source| {
+                let (drives, fired) = (&drives[source.layer], &fired[source.layer]);
+                Traces::new(source, keep, rule, drives, fired, &places)
+            })
+            .collect();
+        let most = scale(pair, shifts);
+        let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
+            .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))
             .filter(|scale| fires_at(*scale, at) <= f64::from(i16::MAX))
-            .map(|scale| (scale, distance(scale)));
-        let best = tried.min_by(|(_, one), (_, other)| one.total_cmp(other));
+            .map(|scale| {
+                let of = |(source, traces): (&Source, &Traces)| {
+                    Rounded::new(source, traces, keep, scale, shifts, ticks)
+                };
+                let all: Vec<Rounded> = pair.iter().zip(&traces).map(of).collect();
+                (all.iter().map(|rounded| rounded.error).sum(), scale, all)
+            })
+            .collect();
+        rounded.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
+        rounded.truncate(SIMULATED);
+        let simulated = rounded.into_iter().map(|(error, scale, all)| {
+            let of = |(source, rounded): (&Source, &Rounded)| {
+                let (drives, fired) = (&drives[source.layer], &fired[source.layer]);
+                let held = Held::new(rounded, keep, scale, shifts, rule, &places);
+                held.distance(drives, fired, source.neuron)
+            };
+            let distance: f64 = pair.iter().zip(&all).map(of).sum();
+            (distance + error, Chosen { keep, scale, rounded: all })
+        });
+        let best = simulated.min_by(|(one, _), (other, _)| one.total_cmp(other));
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
-        (keep, best.map_or(1.0, |(scale, _)| scale))
+        best.map_or(Chosen { keep, scale: 1.0, rounded: vec![] }, |(_, chosen)| chosen)
     });
-    let chosen: Vec<(u16, f64)> = chosen.collect();
+    let chosen: Vec<Chosen> = chosen.collect();
 
     let count = places.neurons.len();
     let mut network = Quantised {
@@ -276,11 +295,11 @@ pub(super) fn quantise(
         shared_keeps: (0, 0.0),
         places,
     };
-    for (pair, &(keep, scale)) in pairs.iter().zip(&chosen) {
-        network.pairs.push(ReckOnPair { keep, threshold: fires_at(scale, at) as i16 });
-        for source in pair {
-            network.put(source, scale, shifts);
-            network.tell_keep(source.keep, (f64::from(keep) / KEEP).powi(ticks as i32), 1e-4);
+    for (pair, Chosen { keep, scale, rounded }) in pairs.iter().zip(&chosen) {
+        network.pairs.push(ReckOnPair { keep: *keep, threshold: fires_at(*scale, at) as i16 });
+        for (source, rounded) in pair.iter().zip(rounded) {
+            network.put(source, rounded, *scale, shifts);
+            network.tell_keep(source.keep, (f64::from(*keep) / KEEP).powi(ticks as i32), 1e-4);
         }
     }
     network.put_bias(&pairs, &chosen, shifts[0]);
@@ -372,25 +391,176 @@ impl Recorded<'_> {
     }
 }
 
+/// Returns the amount that a neuron loses in a step because the chip rounds its potential down at each tick, on
+/// average. `keep` is the chip's integer for the share that the neuron keeps in a tick.
+fn lost(keep: u16, ticks: usize) -> f64 {
+    let kept = f64::from(keep) / KEEP;
+    if kept < 1.0 { (0..ticks as i32).map(|tick| 0.5 * kept.powi(tick)).sum() } else { 0.0 }
+}
+
 /// Returns two amounts: the amount by which gates lower a neuron, and the amount by which they raise the neuron again.
 /// Gates are inputs that keep the neuron from firing before its layer compares again. Between the lowering and the
-/// raising, the neuron leaks in `ticks - 1` ticks. Only the remainder of the first amount must therefore be raised.
+/// raising, the neuron leaks in `ticks - 1` ticks. Only the remainder of the first amount must therefore be raised. In
+/// addition, the gates raise the neuron by `more`.
 ///
-/// Both amounts are multiples of `1 << shift`. The first is at least `gate`, and is chosen so that its remainder is as
-/// near as possible to such a multiple.
-fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
+/// Both amounts are multiples of `1 << shift`. The first is at least `gate`, and is chosen so that the gates together
+/// come as near as possible to `more`.
+fn gates(gate: f64, more: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
     if gate == 0.0 {
         return (0, 0);
     }
-    let unit = 1 << shift;
-    let least = (gate / f64::from(unit)).ceil() as i32;
-    let left = |lowered: i32| {
-        (1..ticks).fold(-lowered * unit, |potential, _| (potential * i32::from(keep)) >> 15)
-    };
-    let raised = |lowered: i32| (f64::from(-left(lowered)) / f64::from(unit)).round() as i32 * unit;
-    let wrong = |lowered: &i32| (left(*lowered) + raised(*lowered)).abs();
-    let lowered = (least..=least + least / 4).min_by_key(wrong).unwrap_or(least);
-    (lowered * unit, raised(lowered))
+    let (unit, kept) = (f64::from(1 << shift), (f64::from(keep) / KEEP).powi(ticks as i32 - 1));
+    let least = (gate / unit).ceil() as i32;
+    let exact = |lowered: i32| f64::from(lowered) * kept + more / unit;
+    let wrong = |lowered: i32| (exact(lowered) - exact(lowered).round()).abs();
+    let all = least..=least + least / 4 + 8;
+    let lowered = all.min_by(|one, other| wrong(*one).total_cmp(&wrong(*other))).unwrap_or(least);
+    (lowered << shift, (exact(lowered).round() as i32) << shift)
+}
+
+/// Products of the traces that spikes leave in a neuron, summed over the steps of the recording. The trace of a weight
+/// is the part of the potential that a weight of 1 contributes when the neuron compares it with its threshold. The
+/// products tell how much the potentials change if the weights change.
+///
+/// The weights are listed in this order: those of the inputs, the bias, and those of [`Source::recurrent`].
+struct Traces {
+    products: Vec<Vec<f64>>,
+    steps: f64,
+}
+
+impl Traces {
+    /// Maximum number of products to sum, by which the steps of long recordings are limited.
+    const WORK: usize = 20_000_000;
+
+    fn new(
+        source: &Source,
+        keep: u16,
+        rule: Rule,
+        drives: &[Drive],
+        fired: &Trains,
+        places: &Places,
+    ) -> Self {
+        let inputs = source.inputs.len();
+        let mut at = vec![None; places.neurons.len()];
+        for (number, (from, _)) in source.recurrent.iter().enumerate() {
+            at[*from] = Some(inputs + 1 + number);
+        }
+        let count = inputs + 1 + source.recurrent.len();
+        let kept = f64::from(keep) / KEEP;
+        let late = kept.powi(rule.ticks as i32 - 1);
+        let (mut traces, mut products) = (vec![0.0; count], vec![vec![0.0; count]; count]);
+        let mut own: &[(usize, usize)] = &[];
+        let steps = drives.len().min((Self::WORK / (count * count)).max(100));
+        for (step, drive) in drives[..steps].iter().enumerate() {
+            let fires = |step: &usize| fired[*step].contains(&(source.neuron as u16));
+            let is_reset = rule.resets_to_zero && step.checked_sub(1).as_ref().is_some_and(fires);
+            let kept = if is_reset { 0.0 } else { kept * late };
+            traces.iter_mut().for_each(|trace| *trace *= kept);
+            let place = |&(layer, neuron): &(usize, usize)| at[places.of(layer, neuron)];
+            own.iter().filter_map(place).for_each(|weight| traces[weight] += late);
+            drive.before.iter().filter_map(place).for_each(|weight| traces[weight] += 1.0);
+            drive.inputs.iter().for_each(|input| traces[usize::from(*input)] += 1.0);
+            traces[inputs] += 1.0;
+            own = &drive.own;
+            for (row, one) in products.iter_mut().zip(&traces) {
+                row.iter_mut().zip(&traces).for_each(|(sum, other)| *sum += one * other);
+            }
+        }
+        // A weight that did not act in the recording may act in another one.
+        for (weight, row) in products.iter_mut().enumerate() {
+            row[weight] += 0.01 * steps as f64;
+        }
+        Self { products, steps: steps as f64 }
+    }
+}
+
+/// A neuron's weights in the chip's integers. They are rounded together, so that the errors of their sum cancel.
+struct Rounded {
+    inputs: Vec<i8>,
+    bias: i8,
+    recurrent: Vec<(usize, i8)>,
+    /// Amounts by which gates lower and raise the neuron. Gates are inputs that keep the neuron from firing before its
+    /// layer compares again. They also make up for the mean error of the other weights, and for the potential that is
+    /// lost because the chip rounds down.
+    gates: (i32, i32),
+    /// Mean squared error of the potential, in units of the threshold.
+    error: f64,
+}
+
+impl Rounded {
+    fn new(
+        source: &Source,
+        traces: &Traces,
+        keep: u16,
+        scale: f64,
+        shifts: [u8; 2],
+        ticks: usize,
+    ) -> Self {
+        let [input_unit, unit] = shifts.map(|shift| f64::from(1 << shift) / scale);
+        let lost = lost(keep, ticks) / scale;
+        let (bias, has_gate) = (source.inputs.len(), source.gate > 0.0);
+        let own = if has_gate || source.bias == 0.0 { source.bias } else { source.bias + lost };
+        let inputs = source.inputs.iter().chain([&own]).map(|weight| (*weight, input_unit));
+        let recurrent = source.recurrent.iter().map(|(_, weight)| (*weight, unit));
+        let weights: Vec<(f64, f64)> = inputs.chain(recurrent).collect();
+        let mut held: Vec<f64> =
+            weights.iter().map(|(weight, unit)| clipped(weight / unit)).collect();
+        let off = |held: &[f64]| -> Vec<f64> {
+            held.iter().zip(&weights).map(|(held, (weight, unit))| held * unit - weight).collect()
+        };
+        // The gates take away the part of the error that is the same in each step.
+        let constant = &traces.products[bias];
+        let product = |one: usize, other: usize| {
+            let all = traces.products[one][other];
+            if has_gate { all - constant[one] * constant[other] / constant[bias] } else { all }
+        };
+        let start = off(&held);
+        let mut slopes: Vec<f64> = (0..weights.len())
+            .map(|one| (0..weights.len()).map(|other| product(one, other) * start[other]).sum())
+            .collect();
+        let mut is_better = true;
+        while is_better {
+            is_better = false;
+            for (at, (weight, unit)) in weights.iter().enumerate() {
+                if *weight == 0.0 || has_gate && at == bias {
+                    continue;
+                }
+                let by = -slopes[at].signum();
+                let moved = held[at] + by;
+                let gain = 2.0 * by * unit * slopes[at] + unit * unit * product(at, at);
+                if gain < -1e-12 && clipped(moved) == moved {
+                    (held[at], is_better) = (moved, true);
+                    for (other, slope) in slopes.iter_mut().enumerate() {
+                        *slope += by * unit * product(other, at);
+                    }
+                }
+            }
+        }
+        let off = off(&held);
+        let error: f64 = off.iter().zip(&slopes).map(|(off, slope)| off * slope).sum();
+        let mean: f64 = off.iter().zip(constant).map(|(off, product)| off * product).sum();
+        let more = (lost - mean / constant[bias]) * scale;
+        let (inputs, recurrent) = held.split_at(bias + 1);
+        Self {
+            inputs: inputs[..bias].iter().map(|weight| *weight as i8).collect(),
+            bias: held[bias] as i8,
+            recurrent: source
+                .recurrent
+                .iter()
+                .zip(recurrent)
+                .map(|((from, _), weight)| (*from, *weight as i8))
+                .collect(),
+            gates: gates(source.gate * scale, more, keep, ticks, shifts[0]),
+            error: error / traces.steps,
+        }
+    }
+}
+
+/// The scale and the leak of a pair, and its neurons' weights in the chip's integers.
+struct Chosen {
+    keep: u16,
+    scale: f64,
+    rounded: Vec<Rounded>,
 }
 
 /// Returns the largest absolute potential that each neuron reaches in double precision, by layer and neuron.
@@ -462,31 +632,24 @@ struct Held<'a> {
 
 impl<'a> Held<'a> {
     fn new(
-        source: &Source,
+        rounded: &Rounded,
         keep: u16,
         scale: f64,
         shifts: [u8; 2],
         rule: Rule,
         places: &'a Places,
     ) -> Self {
-        let mut change = Change::default();
-        let mut held = |weight: f64, shift: u8| {
-            i32::from(change.weight(weight, scale / f64::from(1 << shift))) << shift
-        };
-        let inputs: Vec<i32> =
-            source.inputs.iter().map(|&weight| held(weight, shifts[0])).collect();
         let mut recurrent = vec![0; places.neurons.len()];
-        for &(from, weight) in &source.recurrent {
-            recurrent[from] = held(weight, shifts[1]);
+        for &(from, weight) in &rounded.recurrent {
+            recurrent[from] = i32::from(weight) << shifts[1];
         }
-        let bias = held(source.bias, shifts[0]);
         Self {
             keep: keep.into(),
             threshold: fires_at(scale, rule.fires) as i32,
-            inputs,
+            inputs: rounded.inputs.iter().map(|weight| i32::from(*weight) << shifts[0]).collect(),
             recurrent,
-            bias,
-            gates: gates(source.gate * scale, keep, rule.ticks, shifts[0]),
+            bias: i32::from(rounded.bias) << shifts[0],
+            gates: rounded.gates,
             rule,
             places,
         }
@@ -558,15 +721,16 @@ impl Quantised {
 
     /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of all
     /// layers that compare at this tick, unless these layers have no bias.
-    fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+    fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[Chosen], shift: u8) {
         for tick in 0..self.ticks.len() {
             let mut weights = Vec::new();
-            for (pair, (_, scale)) in pairs.iter().zip(chosen) {
-                let at_tick = |source: &&Source| source.layer % self.ticks.len() == tick;
-                for source in pair.iter().filter(at_tick).filter(|source| source.bias != 0.0) {
-                    let at = self.places.of(source.layer, source.neuron);
-                    let scale = scale / f64::from(1 << shift);
-                    weights.push((at, self.changes[source.layer].weight(source.bias, scale)));
+            for (pair, Chosen { scale, rounded, .. }) in pairs.iter().zip(chosen) {
+                for (source, rounded) in pair.iter().zip(rounded) {
+                    if source.layer % self.ticks.len() == tick && source.bias != 0.0 {
+                        weights.push((self.places.of(source.layer, source.neuron), rounded.bias));
+                        let scale = scale / f64::from(1 << shift);
+                        self.changes[source.layer].held(source.bias, rounded.bias, scale);
+                    }
                 }
             }
             if !weights.is_empty() {
@@ -578,15 +742,17 @@ impl Quantised {
 
     /// Adds the gates of each layer: inputs that lower the layer's neurons after they have compared their potentials
     /// with their thresholds, and raise them when they compare again. The layer then cannot fire at other ticks.
-    fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+    fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[Chosen], shift: u8) {
         let ticks = self.ticks.len();
         for layer in 0..self.layers.len() {
             let mut rests: Vec<(usize, [i32; 2])> = Vec::new();
-            for (pair, (keep, scale)) in pairs.iter().zip(chosen) {
-                for source in pair.iter().filter(|source| source.layer == layer) {
-                    let (lowered, raised) = gates(source.gate * scale, *keep, ticks, shift);
-                    let at = self.places.of(layer, source.neuron);
-                    rests.push((at, [-lowered >> shift, raised >> shift]));
+            for (pair, Chosen { rounded, .. }) in pairs.iter().zip(chosen) {
+                for (source, rounded) in pair.iter().zip(rounded) {
+                    if source.layer == layer {
+                        let (lowered, raised) = rounded.gates;
+                        let at = self.places.of(layer, source.neuron);
+                        rests.push((at, [-lowered >> shift, raised >> shift]));
+                    }
                 }
             }
             for (kind, tick) in [(0, (layer + 1) % ticks), (1, layer % ticks)] {
@@ -605,18 +771,22 @@ impl Quantised {
         }
     }
 
-    fn put(&mut self, source: &Source, scale: f64, shifts: [u8; 2]) {
+    fn put(&mut self, source: &Source, rounded: &Rounded, scale: f64, shifts: [u8; 2]) {
         let at = self.places.of(source.layer, source.neuron);
         let change = &mut self.changes[source.layer];
         let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
-        for (row, &weight) in self.inputs.iter_mut().zip(&source.inputs) {
+        for ((row, &weight), &held) in
+            self.inputs.iter_mut().zip(&source.inputs).zip(&rounded.inputs)
+        {
             if weight != 0.0 {
-                row[at] = change.weight(weight, inputs);
+                change.held(weight, held, inputs);
+                row[at] = held;
             }
         }
-        for &(from, weight) in &source.recurrent {
+        for (&(from, held), &(_, weight)) in rounded.recurrent.iter().zip(&source.recurrent) {
             if weight != 0.0 {
-                self.recurrent[from][at] = change.weight(weight, recurrent);
+                change.held(weight, held, recurrent);
+                self.recurrent[from][at] = held;
             }
         }
     }
