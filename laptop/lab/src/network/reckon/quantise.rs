@@ -3,11 +3,12 @@
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
-use crate::Spot;
 use crate::network::Fires;
 use crate::network::fault::{FitKind, Result, ensure};
 use rayon::prelude::*;
-use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
+use spikewire_chips::{
+    DescribeReckOn, ReckOnOutputs, ReckOnPair, ReckOnShared, ReckOnSteps, ReckOnTick,
+};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
@@ -16,6 +17,8 @@ const KEEP: f64 = 32_768.0;
 /// The integer that stands for a decay factor of 1 of an output. Each tick of the chip multiplies the output's
 /// potential by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
+/// Largest relative error of a leak of the chip's outputs. Beyond it, the driver leaks the outputs.
+const LEAK_TOLERANCE: f64 = 0.02;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
 /// more ticks of the chip.
 const LEAST_KEEP: f64 = 0.875;
@@ -32,17 +35,9 @@ const ROOM: f64 = 0.8 * 32_767.0;
 /// lie evenly between half of the largest scale at which the pair's weights and potentials fit the chip, and all of it.
 const SCALES: u32 = 200;
 /// Number of scales, those at which rounding changes the potentials least, at which the pair is simulated.
-const SIMULATED: usize = 8;
+const SIMULATED: usize = 32;
 /// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
-/// Weight, left shift and decay factor of an output that shows the spikes of one neuron. A decay factor of 64 stands
-/// for 1/2: each tick of the chip halves the output's potential. The bits of the potential therefore show in which of
-/// the last ticks the neuron fired.
-const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// Position of the bit that tells whether a neuron fired in the latest step. The bit belongs to the potential of the
-/// output that reports the neuron's spikes. Bit 0 is the lowest.
-pub(super) const FIRED: u32 = 12;
-
 /// A network in the integers of `ReckOn`.
 #[derive(Clone, Debug)]
 pub(super) struct Quantised {
@@ -51,6 +46,8 @@ pub(super) struct Quantised {
     /// The weights of inputs: one row for each input, with one weight for each neuron of the chip. The bias is the last
     /// input, if the network has a bias.
     pub(super) inputs: Vec<Vec<i8>>,
+    /// Number of inputs of the network itself: all but those of biases and gates.
+    own_inputs: usize,
     /// The weights between neurons: one row for each sending neuron, with one weight for each receiving neuron.
     pub(super) recurrent: Vec<Vec<i8>>,
     /// The weights of outputs: one row for each neuron, with one weight for each output.
@@ -63,6 +60,8 @@ pub(super) struct Quantised {
     /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
     /// outputs report the spikes of neurons.
     pub(super) unit: Option<f64>,
+    /// For each output, the share of its potential that a step keeps. Empty unless the driver leaks the potentials.
+    pub(super) keeps: Vec<f32>,
     /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
     /// weights of the outputs.
     pub(super) changes: Vec<Change>,
@@ -85,10 +84,10 @@ pub(super) struct Quantised {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tick {
     /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
-    pub(super) always: Vec<usize>,
+    pub(super) always: Vec<u8>,
     /// Numbers of the gates that raise neurons before this tick. In the first step, they fire only if this is the last
     /// tick of the step, because the neurons of the other ticks have not been lowered yet.
-    pub(super) raises: Vec<usize>,
+    pub(super) raises: Vec<u8>,
 }
 
 /// How rounding changed the weights of a layer, or those of the outputs.
@@ -281,12 +280,14 @@ pub(super) fn quantise(
     let mut network = Quantised {
         pairs: Vec::new(),
         inputs: vec![vec![0; count]; trained.inputs()],
+        own_inputs: trained.inputs(),
         recurrent: vec![vec![0; count]; count],
         outputs: Vec::new(),
         shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero },
         ticks: vec![Tick::default(); ticks],
         layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
         unit: None,
+        keeps: vec![],
         changes: trained
             .layers
             .iter()
@@ -307,7 +308,10 @@ pub(super) fn quantise(
     let (inputs, most) = (network.inputs.len(), Places::INPUTS);
     ensure!(inputs <= most, FitKind::Inputs { most, inputs, has_bias });
     match &trained.readout {
-        Some(readout) => network.read_out(readout, &trained.potentials(fired))?,
+        Some(readout) => {
+            let last = fired.last().map_or(&[][..], |last| last);
+            network.read_out(readout, &trained.potentials(fired), last);
+        }
         None => network.follow(trained.layers.len() - 1),
     }
     Ok(network)
@@ -424,7 +428,10 @@ fn gates(gate: f64, more: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32)
 ///
 /// The weights are listed in this order: those of the inputs, the bias, and those of [`Source::recurrent`].
 struct Traces {
+    /// If the neuron has gates, without the part that is the same in each step: the gates make up for it.
     products: Vec<Vec<f64>>,
+    /// For each weight, the constant trace that is nearest to its trace, as a share of the trace of the bias.
+    means: Vec<f64>,
     steps: f64,
 }
 
@@ -467,10 +474,18 @@ impl Traces {
             }
         }
         // A weight that did not act in the recording may act in another one.
+        let steps = steps.max(1) as f64;
         for (weight, row) in products.iter_mut().enumerate() {
-            row[weight] += 0.01 * steps as f64;
+            row[weight] += 0.01 * steps;
         }
-        Self { products, steps: steps as f64 }
+        let constant = products[inputs].clone();
+        let means: Vec<f64> = constant.iter().map(|product| product / constant[inputs]).collect();
+        if source.gate > 0.0 {
+            for (row, one) in products.iter_mut().zip(&constant) {
+                row.iter_mut().zip(&means).for_each(|(product, mean)| *product -= one * mean);
+            }
+        }
+        Self { products, means, steps }
     }
 }
 
@@ -488,6 +503,9 @@ struct Rounded {
 }
 
 impl Rounded {
+    /// Maximum number of rounds in which each weight may be moved by 1.
+    const ROUNDS: usize = 100;
+
     fn new(
         source: &Source,
         traces: &Traces,
@@ -508,38 +526,30 @@ impl Rounded {
         let off = |held: &[f64]| -> Vec<f64> {
             held.iter().zip(&weights).map(|(held, (weight, unit))| held * unit - weight).collect()
         };
-        // The gates take away the part of the error that is the same in each step.
-        let constant = &traces.products[bias];
-        let product = |one: usize, other: usize| {
-            let all = traces.products[one][other];
-            if has_gate { all - constant[one] * constant[other] / constant[bias] } else { all }
-        };
         let start = off(&held);
-        let mut slopes: Vec<f64> = (0..weights.len())
-            .map(|one| (0..weights.len()).map(|other| product(one, other) * start[other]).sum())
-            .collect();
-        let mut is_better = true;
-        while is_better {
-            is_better = false;
+        let slope = |products: &Vec<f64>| products.iter().zip(&start).map(|(p, off)| p * off).sum();
+        let mut slopes: Vec<f64> = traces.products.iter().map(slope).collect();
+        let (mut is_better, mut rounds) = (true, 0);
+        while is_better && rounds < Self::ROUNDS {
+            (is_better, rounds) = (false, rounds + 1);
             for (at, (weight, unit)) in weights.iter().enumerate() {
                 if *weight == 0.0 || has_gate && at == bias {
                     continue;
                 }
                 let by = -slopes[at].signum();
                 let moved = held[at] + by;
-                let gain = 2.0 * by * unit * slopes[at] + unit * unit * product(at, at);
-                if gain < -1e-12 && clipped(moved) == moved {
+                let products = &traces.products[at];
+                let change = 2.0 * by * unit * slopes[at] + unit * unit * products[at];
+                if change < -1e-12 && clipped(moved) == moved {
                     (held[at], is_better) = (moved, true);
-                    for (other, slope) in slopes.iter_mut().enumerate() {
-                        *slope += by * unit * product(other, at);
-                    }
+                    slopes.iter_mut().zip(products).for_each(|(slope, p)| *slope += by * unit * p);
                 }
             }
         }
         let off = off(&held);
         let error: f64 = off.iter().zip(&slopes).map(|(off, slope)| off * slope).sum();
-        let mean: f64 = off.iter().zip(constant).map(|(off, product)| off * product).sum();
-        let more = (lost - mean / constant[bias]) * scale;
+        let mean: f64 = off.iter().zip(&traces.means).map(|(off, mean)| off * mean).sum();
+        let more = (lost - mean) * scale;
         let (inputs, recurrent) = held.split_at(bias + 1);
         Self {
             inputs: inputs[..bias].iter().map(|weight| *weight as i8).collect(),
@@ -700,12 +710,14 @@ impl Quantised {
         self.layers.len() + 1
     }
 
-    /// Returns the numbers of the additional inputs that fire before tick `tick` of the recording: biases and gates.
-    /// They fire in addition to the network's own inputs.
-    pub(super) fn beside(&self, tick: usize) -> impl Iterator<Item = usize> {
-        let Tick { always, raises } = &self.ticks[tick % self.ticks.len()];
-        let raises = if tick + 1 >= self.ticks.len() { &raises[..] } else { &[] };
-        always.iter().chain(raises).copied()
+    /// Returns the description of a step for the driver. `ticks` are those of [`ticks`](Self::ticks).
+    pub(super) fn steps<'a>(&'a self, ticks: &'a [ReckOnTick<'a>]) -> ReckOnSteps<'a> {
+        let outputs = match self.unit {
+            None => ReckOnOutputs::Spikes,
+            Some(unit) if self.keeps.is_empty() => ReckOnOutputs::Potentials { unit: unit as f32 },
+            Some(unit) => ReckOnOutputs::Leaky { unit: unit as f32, keeps: &self.keeps },
+        };
+        ReckOnSteps { inputs: self.own_inputs as u16, ticks, late: self.late() as u16, outputs }
     }
 
     /// Adds an input, and returns the number of the input. Each entry of `weights` is the number of a neuron of the
@@ -735,7 +747,7 @@ impl Quantised {
             }
             if !weights.is_empty() {
                 let input = self.add_input(weights);
-                self.ticks[tick].always.push(input);
+                self.ticks[tick].always.push(input as u8);
             }
         }
     }
@@ -765,7 +777,7 @@ impl Quantised {
                     let weights: Vec<(usize, i8)> = rests.iter_mut().map(take).collect();
                     let input = self.add_input(weights);
                     let tick = &mut self.ticks[tick];
-                    if kind == 0 { tick.always.push(input) } else { tick.raises.push(input) }
+                    if kind == 0 { &mut tick.always } else { &mut tick.raises }.push(input as u8);
                 }
             }
         }
@@ -799,27 +811,34 @@ impl Quantised {
     }
 
     /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
-    /// spikes.
-    ///
-    /// # Errors
-    /// Returns an error if the outputs' leak is too strong for the chip: the decay factor of a tick, averaged over all
-    /// outputs, rounds to 0 in the chip's integers.
-    fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
+    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are the
+    /// spikes of the last layer.
+    fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>], fired: &[Vec<u16>]) {
         let Readout { name, weights, keep } = readout;
         let ticks = self.ticks.len();
         let kept = keep.iter().map(|keep| keep.powf(1.0 / ticks as f64));
         let mean = kept.sum::<f64>() / keep.len() as f64;
-        let held = (mean * OUTPUT_KEEP).round();
-        let kind = FitKind::OutputLeak { keep: mean };
-        ensure!(held >= 1.0, kind.at(Spot::Part(name.clone())));
-        for &keep in keep {
-            let held = (held / OUTPUT_KEEP).powi(ticks as i32);
-            self.tell_keep(keep, held, 0.5 * ticks as f64 / OUTPUT_KEEP);
-        }
+        let mut held = (mean * OUTPUT_KEEP).round();
+        let is_near = |keep: &f64| {
+            (keep - (held / OUTPUT_KEEP).powi(ticks as i32)).abs() <= LEAK_TOLERANCE * (1.0 - keep)
+        };
+        let chip_leaks = held >= 1.0 && keep.iter().all(is_near);
         let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
-        let room = ROOM / largest(potentials.iter().flatten().copied()).max(most);
+        let (mut least, mut room) =
+            (0, ROOM / largest(potentials.iter().flatten().copied()).max(most));
+        if !chip_leaks {
+            self.keeps = keep.iter().map(|keep| *keep as f32).collect();
+            held = f64::from(ReckOnOutputs::LEAKY_KEEP);
+            // A potential is at most twice the largest sum.
+            let sum = |fired: &Vec<u16>, row: &Vec<f64>| -> f64 {
+                fired.iter().map(|neuron| row[usize::from(*neuron)]).sum()
+            };
+            let sums =
+                fired.iter().flat_map(|fired| weights.iter().map(move |row| sum(fired, row)));
+            (least, room) = (1, ROOM / 2.0 / largest(sums).max(most));
+        }
         let fits = |shift: &u8| LARGEST * f64::from(1 << shift) / most <= room;
-        let shift = (0..SHIFTS).rev().find(fits).unwrap_or(0);
+        let shift = (least..SHIFTS).rev().find(fits).unwrap_or(least);
         let scale = (LARGEST * f64::from(1 << shift) / most).min(room);
         let mut change = Change { name: name.clone(), ..Change::default() };
         let last = self.layers.len() - 1;
@@ -834,13 +853,12 @@ impl Quantised {
         self.shared.shifts[2] = shift;
         self.shared.keep = held as u8;
         // The chip sends a potential after it has leaked once more.
-        self.unit = Some(OUTPUT_KEEP / held / scale);
-        Ok(())
+        self.unit = Some(if chip_leaks { OUTPUT_KEEP / held / scale } else { 1.0 / scale });
     }
 
     /// Adds, for each neuron of layer `last`, an output that reports the neuron's spikes.
     fn follow(&mut self, last: usize) {
-        let (weight, shift, keep) = FOLLOWS;
+        let (weight, shift, keep) = ReckOnOutputs::SPIKES;
         let outputs = self.layers[last].1;
         self.outputs = vec![vec![0; outputs]; self.places.neurons.len()];
         for output in 0..outputs {
