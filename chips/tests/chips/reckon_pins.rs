@@ -16,8 +16,8 @@ struct RandomNetwork {
     neurons: u16,
 }
 
-/// Returns a random weight that depends only on the arguments. `kind` is 0 for weights from inputs, 1 between neurons,
-/// and 2 to outputs.
+/// Returns a random weight that depends only on the arguments. `kind` is 0 for weights from inputs, 1 for weights
+/// between neurons, and 2 for weights to outputs.
 fn weight(kind: u64, from: u16, to: u16) -> i8 {
     let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
     Pcg32::seed_from_u64(place).next_u32() as i8
@@ -165,9 +165,9 @@ fn sample<'a, 'b>(
 }
 
 /// Checks that calls of the port that take up to 26 clock cycles change no answer of a network of `neurons` neurons.
-/// With up to 10 neurons, the ready pin is low for at most that time in each step, so that the driver may miss it. With
-/// up to 25 neurons, this is so only at the first tick of a sample. Larger networks are tried with 1 and 26 clock
-/// cycles only.
+/// Such calls may be too slow to see that the ready pin is low. With up to 10 neurons, this can happen in every step,
+/// because the pin is low for at most 26 clock cycles. With 11 to 25 neurons, this can happen only at the first tick of
+/// a sample. Networks of 32 neurons and more are tried with calls of 1 and 26 clock cycles only.
 fn read_seldom(neurons: u16) {
     let network = RandomNetwork { neurons };
     let pace = Pace::default();
