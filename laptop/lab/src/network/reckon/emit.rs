@@ -18,7 +18,7 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     });
     let ticks = lines(ticks);
     let ReckOnSteps { inputs: own, late, outputs: shown, .. } = network.steps(&[]);
-    let shown = format!("{shown:?}").replace("[", "&[");
+    let shown = format!("{shown:?}").replace('[', "&[");
     let pairs = lines(network.pairs.iter().map(|ReckOnPair { keep, threshold }| {
         format!("ReckOnPair {{ keep: {keep}, threshold: {threshold} }}")
     }));

@@ -3,6 +3,7 @@
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
+use super::round::{Rounded, Traces, clipped};
 use crate::network::Fires;
 use crate::network::fault::{FitKind, Result, ensure};
 use rayon::prelude::*;
@@ -13,7 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
 /// factor.
-const KEEP: f64 = 32_768.0;
+pub(super) const KEEP: f64 = 32_768.0;
 /// The integer that stands for an output's decay factor of 1. Each tick of the chip multiplies the output's potential
 /// by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
@@ -27,7 +28,7 @@ const MOST_TICKS: u32 = 16;
 /// Safety factor for gates. A gate is an input that lowers a neuron to keep it from firing. It lowers the neuron by
 /// this factor times the amount that suffices in the recording.
 const SPARE: f64 = 1.5;
-const LARGEST: f64 = 127.0;
+pub(super) const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
@@ -132,26 +133,21 @@ impl Change {
 
 /// A neuron of the trained network, and the weights that lead to the neuron. Weights and potentials are in units of the
 /// neuron's threshold.
-struct Source {
-    layer: usize,
-    neuron: usize,
-    keep: f64,
+pub(super) struct Source {
+    pub(super) layer: usize,
+    pub(super) neuron: usize,
+    pub(super) keep: f64,
     /// The weight of each input.
-    inputs: Vec<f64>,
-    bias: f64,
+    pub(super) inputs: Vec<f64>,
+    pub(super) bias: f64,
     /// Amount by which gates lower the neuron; 0 if the neuron needs no gates. Gates are inputs that keep the neuron
     /// from firing at some ticks.
-    gate: f64,
+    pub(super) gate: f64,
     /// The neurons that send spikes to this one. Each entry is the sender's number on the chip, and the weight.
-    recurrent: Vec<(usize, f64)>,
+    pub(super) recurrent: Vec<(usize, f64)>,
     /// Sum of two amounts: the largest absolute potential that the neuron reaches in double precision, and the amount
     /// [`gate`](Self::gate) by which gates lower the neuron.
-    peak: f64,
-}
-
-/// Rounds a number to an integer in the range of the chip's weights.
-fn clipped(number: f64) -> f64 {
-    number.round().clamp(-LARGEST - 1.0, LARGEST)
+    pub(super) peak: f64,
 }
 
 fn largest(weights: impl Iterator<Item = f64>) -> f64 {
@@ -237,42 +233,16 @@ pub(super) fn quantise(
     let drives = drives(trained, inputs, fired);
     let done = AtomicUsize::new(0);
     let total: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
+    let rule = Rule { ticks, resets_to_zero, fires: at };
+    let recorded = |pair: &[Source]| {
+        let layer = pair.first().map_or(0, |source| source.layer);
+        (&drives[layer][..], &fired[layer])
+    };
     let chosen = pairs.par_iter().map(|pair| {
-        let keep = mean_keep(pair, ticks);
-        let rule = Rule { ticks, resets_to_zero, fires: at };
-        let traces: Vec<Traces> = pair
-            .iter()
-            .map(|source| {
-                let (drives, fired) = (&drives[source.layer], &fired[source.layer]);
-                Traces::new(source, keep, rule, drives, fired, &places)
-            })
-            .collect();
-        let most = scale(pair, shifts);
-        let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
-            .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))
-            .filter(|scale| fires_at(*scale, at) <= f64::from(i16::MAX))
-            .map(|scale| {
-                let of = |(source, traces): (&Source, &Traces)| {
-                    Rounded::new(source, traces, keep, scale, shifts, ticks)
-                };
-                let all: Vec<Rounded> = pair.iter().zip(&traces).map(of).collect();
-                (all.iter().map(|rounded| rounded.error).sum(), scale, all)
-            })
-            .collect();
-        rounded.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
-        rounded.truncate(SIMULATED);
-        let simulated = rounded.into_iter().map(|(error, scale, all)| {
-            let of = |(source, rounded): (&Source, &Rounded)| {
-                let (drives, fired) = (&drives[source.layer], &fired[source.layer]);
-                let held = Held::new(rounded, keep, scale, shifts, rule, &places);
-                held.distance(drives, fired, source.neuron)
-            };
-            let distance: f64 = pair.iter().zip(&all).map(of).sum();
-            (distance + error, Chosen { keep, scale, rounded: all })
-        });
-        let best = simulated.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        let (drives, fired) = recorded(pair);
+        let chosen = Chosen::new(pair, drives, fired, shifts, rule, &places);
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
-        best.map_or(Chosen { keep, scale: 1.0, rounded: vec![] }, |(_, chosen)| chosen)
+        chosen
     });
     let chosen: Vec<Chosen> = chosen.collect();
 
@@ -395,182 +365,53 @@ impl Recorded<'_> {
     }
 }
 
-/// Returns the amount that a neuron loses in a step because the chip rounds its potential down at each tick, on
-/// average. `keep` is the chip's integer for the share that the neuron keeps in a tick.
-fn lost(keep: u16, ticks: usize) -> f64 {
-    let kept = f64::from(keep) / KEEP;
-    if kept < 1.0 { (0..ticks as i32).map(|tick| 0.5 * kept.powi(tick)).sum() } else { 0.0 }
-}
-
-/// Returns two amounts: the amount by which gates lower a neuron, and the amount by which they raise the neuron again.
-/// Gates are inputs that keep the neuron from firing at some ticks. Between the lowering and the raising, the neuron
-/// leaks in `ticks - 1` ticks. These leaks undo part of the lowering, and the second amount undoes the rest. In
-/// addition, the gates raise the neuron by `more`.
-///
-/// Both amounts are multiples of `1 << shift`. The first is at least `gate`. It is chosen so that the gates together
-/// come as near as possible to `more`.
-fn gates(gate: f64, more: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
-    if gate == 0.0 {
-        return (0, 0);
-    }
-    let (unit, kept) = (f64::from(1 << shift), (f64::from(keep) / KEEP).powi(ticks as i32 - 1));
-    let least = (gate / unit).ceil() as i32;
-    let exact = |lowered: i32| f64::from(lowered) * kept + more / unit;
-    let wrong = |lowered: i32| (exact(lowered) - exact(lowered).round()).abs();
-    let all = least..=least + least / 4 + 8;
-    let lowered = all.min_by(|one, other| wrong(*one).total_cmp(&wrong(*other))).unwrap_or(least);
-    (lowered << shift, (exact(lowered).round() as i32) << shift)
-}
-
-/// Products of the traces that spikes leave in a neuron, summed over the steps of the recording. The trace of a weight
-/// is the part of the potential that a weight of 1 contributes when the neuron compares it with its threshold. The
-/// products tell how much the potentials change if the weights change.
-///
-/// The weights are listed in this order: those of the inputs, the bias, and those of [`Source::recurrent`].
-struct Traces {
-    /// If the neuron has gates, without the part that is the same in each step: the gates make up for it.
-    products: Vec<Vec<f64>>,
-    /// For each weight, the constant trace that is nearest to its trace, as a share of the trace of the bias.
-    means: Vec<f64>,
-    steps: f64,
-}
-
-impl Traces {
-    /// Maximum number of products to sum, by which the steps of long recordings are limited.
-    const WORK: usize = 20_000_000;
-
-    fn new(
-        source: &Source,
-        keep: u16,
-        rule: Rule,
-        drives: &[Drive],
-        fired: &Trains,
-        places: &Places,
-    ) -> Self {
-        let inputs = source.inputs.len();
-        let mut at = vec![None; places.neurons.len()];
-        for (number, (from, _)) in source.recurrent.iter().enumerate() {
-            at[*from] = Some(inputs + 1 + number);
-        }
-        let count = inputs + 1 + source.recurrent.len();
-        let kept = f64::from(keep) / KEEP;
-        let late = kept.powi(rule.ticks as i32 - 1);
-        let (mut traces, mut products) = (vec![0.0; count], vec![vec![0.0; count]; count]);
-        let mut own: &[(usize, usize)] = &[];
-        let steps = drives.len().min((Self::WORK / (count * count)).max(100));
-        for (step, drive) in drives[..steps].iter().enumerate() {
-            let fires = |step: &usize| fired[*step].contains(&(source.neuron as u16));
-            let is_reset = rule.resets_to_zero && step.checked_sub(1).as_ref().is_some_and(fires);
-            let kept = if is_reset { 0.0 } else { kept * late };
-            traces.iter_mut().for_each(|trace| *trace *= kept);
-            let place = |&(layer, neuron): &(usize, usize)| at[places.of(layer, neuron)];
-            own.iter().filter_map(place).for_each(|weight| traces[weight] += late);
-            drive.before.iter().filter_map(place).for_each(|weight| traces[weight] += 1.0);
-            drive.inputs.iter().for_each(|input| traces[usize::from(*input)] += 1.0);
-            traces[inputs] += 1.0;
-            own = &drive.own;
-            for (row, one) in products.iter_mut().zip(&traces) {
-                row.iter_mut().zip(&traces).for_each(|(sum, other)| *sum += one * other);
-            }
-        }
-        // A weight that did not act in the recording may act in another one.
-        let steps = steps.max(1) as f64;
-        for (weight, row) in products.iter_mut().enumerate() {
-            row[weight] += 0.01 * steps;
-        }
-        let constant = products[inputs].clone();
-        let means: Vec<f64> = constant.iter().map(|product| product / constant[inputs]).collect();
-        if source.gate > 0.0 {
-            for (row, one) in products.iter_mut().zip(&constant) {
-                row.iter_mut().zip(&means).for_each(|(product, mean)| *product -= one * mean);
-            }
-        }
-        Self { products, means, steps }
-    }
-}
-
-/// A neuron's weights in the chip's integers. They are rounded together, so that the errors of their sum cancel.
-struct Rounded {
-    inputs: Vec<i8>,
-    bias: i8,
-    recurrent: Vec<(usize, i8)>,
-    /// Amounts by which gates lower and raise the neuron. Gates are inputs that keep the neuron from firing before its
-    /// layer compares again. They also make up for the mean error of the other weights, and for the potential that is
-    /// lost because the chip rounds down.
-    gates: (i32, i32),
-    /// Mean squared error of the potential, in units of the threshold.
-    error: f64,
-}
-
-impl Rounded {
-    /// Maximum number of rounds in which each weight may be moved by 1.
-    const ROUNDS: usize = 100;
-
-    fn new(
-        source: &Source,
-        traces: &Traces,
-        keep: u16,
-        scale: f64,
-        shifts: [u8; 2],
-        ticks: usize,
-    ) -> Self {
-        let [input_unit, unit] = shifts.map(|shift| f64::from(1 << shift) / scale);
-        let lost = lost(keep, ticks) / scale;
-        let (bias, has_gate) = (source.inputs.len(), source.gate > 0.0);
-        let own = if has_gate || source.bias == 0.0 { source.bias } else { source.bias + lost };
-        let inputs = source.inputs.iter().chain([&own]).map(|weight| (*weight, input_unit));
-        let recurrent = source.recurrent.iter().map(|(_, weight)| (*weight, unit));
-        let weights: Vec<(f64, f64)> = inputs.chain(recurrent).collect();
-        let mut held: Vec<f64> =
-            weights.iter().map(|(weight, unit)| clipped(weight / unit)).collect();
-        let off = |held: &[f64]| -> Vec<f64> {
-            held.iter().zip(&weights).map(|(held, (weight, unit))| held * unit - weight).collect()
-        };
-        let start = off(&held);
-        let slope = |products: &Vec<f64>| products.iter().zip(&start).map(|(p, off)| p * off).sum();
-        let mut slopes: Vec<f64> = traces.products.iter().map(slope).collect();
-        let (mut is_better, mut rounds) = (true, 0);
-        while is_better && rounds < Self::ROUNDS {
-            (is_better, rounds) = (false, rounds + 1);
-            for (at, (weight, unit)) in weights.iter().enumerate() {
-                if *weight == 0.0 || has_gate && at == bias {
-                    continue;
-                }
-                let by = -slopes[at].signum();
-                let moved = held[at] + by;
-                let products = &traces.products[at];
-                let change = 2.0 * by * unit * slopes[at] + unit * unit * products[at];
-                if change < -1e-12 && clipped(moved) == moved {
-                    (held[at], is_better) = (moved, true);
-                    slopes.iter_mut().zip(products).for_each(|(slope, p)| *slope += by * unit * p);
-                }
-            }
-        }
-        let off = off(&held);
-        let error: f64 = off.iter().zip(&slopes).map(|(off, slope)| off * slope).sum();
-        let mean: f64 = off.iter().zip(&traces.means).map(|(off, mean)| off * mean).sum();
-        let more = (lost - mean) * scale;
-        let (inputs, recurrent) = held.split_at(bias + 1);
-        Self {
-            inputs: inputs[..bias].iter().map(|weight| *weight as i8).collect(),
-            bias: held[bias] as i8,
-            recurrent: source
-                .recurrent
-                .iter()
-                .zip(recurrent)
-                .map(|((from, _), weight)| (*from, *weight as i8))
-                .collect(),
-            gates: gates(source.gate * scale, more, keep, ticks, shifts[0]),
-            error: error / traces.steps,
-        }
-    }
-}
-
 /// The scale and the leak of a pair, and its neurons' weights in the chip's integers.
 struct Chosen {
     keep: u16,
     scale: f64,
     rounded: Vec<Rounded>,
+}
+
+impl Chosen {
+    /// Chooses the scale at which a pair's spikes are nearest to those in double precision. The pair belongs to one
+    /// layer: `drives` are the spikes that act on the layer, and `fired` those that it fires. All other neurons are
+    /// assumed to fire as in double precision.
+    fn new(
+        pair: &[Source],
+        drives: &[Drive],
+        fired: &Trains,
+        shifts: [u8; 2],
+        rule: Rule,
+        places: &Places,
+    ) -> Self {
+        let keep = mean_keep(pair, rule.ticks);
+        let of = |source| Traces::new(source, keep, rule, drives, fired, places);
+        let traces: Vec<Traces> = pair.iter().map(of).collect();
+        let most = scale(pair, shifts);
+        let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
+            .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))
+            .filter(|scale| fires_at(*scale, rule.fires) <= f64::from(i16::MAX))
+            .map(|scale| {
+                let of = |(source, traces): (&Source, &Traces)| {
+                    Rounded::new(source, traces, keep, scale, shifts, rule.ticks)
+                };
+                let all: Vec<Rounded> = pair.iter().zip(&traces).map(of).collect();
+                (all.iter().map(|rounded| rounded.error).sum(), scale, all)
+            })
+            .collect();
+        rounded.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
+        rounded.truncate(SIMULATED);
+        let simulated = rounded.into_iter().map(|(error, scale, all)| {
+            let of = |(source, rounded): (&Source, &Rounded)| {
+                let held = Held::new(rounded, keep, scale, shifts, rule, places);
+                held.distance(drives, fired, source.neuron)
+            };
+            let distance: f64 = pair.iter().zip(&all).map(of).sum();
+            (distance + error, Self { keep, scale, rounded: all })
+        });
+        let best = simulated.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        best.map_or(Self { keep, scale: 1.0, rounded: vec![] }, |(_, chosen)| chosen)
+    }
 }
 
 /// Returns the largest absolute potential that each neuron reaches in double precision, by layer and neuron.
@@ -585,15 +426,15 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
 }
 
 /// The spikes that act on a layer in a step, and the spikes that the layer fires in the step.
-struct Drive {
+pub(super) struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
-    inputs: Vec<u16>,
+    pub(super) inputs: Vec<u16>,
     /// Neurons of the preceding layer that fire in the step. Each entry is the index of that layer, then the index of
     /// the neuron in the layer.
-    before: Vec<(usize, usize)>,
+    pub(super) before: Vec<(usize, usize)>,
     /// Neurons of the layer itself that fire in the step. Each entry is the index of the layer, then the index of the
     /// neuron in the layer. These spikes act one tick later.
-    own: Vec<(usize, usize)>,
+    pub(super) own: Vec<(usize, usize)>,
 }
 
 /// Returns the spikes that act on each layer in each step, if all neurons fire as in double precision.
@@ -621,11 +462,11 @@ fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive
 
 /// The rule by which all neurons of the chip fire and reset.
 #[derive(Clone, Copy)]
-struct Rule {
+pub(super) struct Rule {
     /// Number of ticks in a step.
-    ticks: usize,
-    resets_to_zero: bool,
-    fires: Fires,
+    pub(super) ticks: usize,
+    pub(super) resets_to_zero: bool,
+    pub(super) fires: Fires,
 }
 
 /// A neuron in the chip's integers, for a simulation of this neuron alone.
@@ -827,7 +668,7 @@ impl Quantised {
         };
         let chip_leaks = held >= 1.0 && keep.iter().all(is_near);
         let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
-        let (mut least, mut room) =
+        let (mut first, mut room) =
             (0, ROOM / largest(potentials.iter().flatten().copied()).max(most));
         if !chip_leaks {
             self.keeps = keep.iter().map(|keep| *keep as f32).collect();
@@ -838,10 +679,10 @@ impl Quantised {
             };
             let sums =
                 fired.iter().flat_map(|fired| weights.iter().map(move |row| sum(fired, row)));
-            (least, room) = (1, ROOM / 2.0 / largest(sums).max(most));
+            (first, room) = (1, ROOM / 2.0 / largest(sums).max(most));
         }
         let fits = |shift: &u8| LARGEST * f64::from(1 << shift) / most <= room;
-        let shift = (least..SHIFTS).rev().find(fits).unwrap_or(least);
+        let shift = (first..SHIFTS).rev().find(fits).unwrap_or(first);
         let scale = (LARGEST * f64::from(1 << shift) / most).min(room);
         let mut change = Change { name: name.clone(), ..Change::default() };
         let last = self.layers.len() - 1;
