@@ -25,8 +25,9 @@ pub use odin::{
 pub use output_source::OutputSource;
 pub use reckon::{
     DescribeReckOn, Programmed, ReckOn, ReckOnAnswer, ReckOnAnswers, ReckOnBytes, ReckOnLearning,
-    ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings, ReckOnShared, ReckOnStep,
-    ReckOnTarget, ReckOnTask, Started,
+    ReckOnNetwork, ReckOnOutputs, ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings,
+    ReckOnShared, ReckOnStep, ReckOnSteps, ReckOnStepsState, ReckOnTarget, ReckOnTask, ReckOnTick,
+    Started,
 };
 pub use tinyodin::{TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, TinyOdinRegisters};
 pub use xylo::{InputBank, Registers, Xylo, XyloMap, pack_counts};

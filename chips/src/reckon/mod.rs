@@ -6,6 +6,7 @@ mod port;
 mod programmed;
 mod running;
 mod settings;
+mod steps;
 mod wire;
 
 pub use bytes::ReckOnBytes;
@@ -14,6 +15,7 @@ pub use port::ReckOnPort;
 pub use programmed::Programmed;
 pub use running::{ReckOnAnswer, ReckOnSample, ReckOnStep, ReckOnTarget, Started};
 pub use settings::{ReckOnAnswers, ReckOnLearning, ReckOnSettings, ReckOnTask};
+pub use steps::{ReckOnOutputs, ReckOnSteps, ReckOnStepsState, ReckOnTick};
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, SpiDevice};

@@ -13,8 +13,9 @@ use silicon::reckon::{Board, Port, Spi, State};
 use spikewire::{Bank, Tick, population::Position};
 use spikewire_chips::{
     ChipError, DescribeReckOn, FormatError, Phase, ReckOn, ReckOnAnswer, ReckOnBytes,
-    ReckOnLearning, ReckOnNetwork, ReckOnPair, ReckOnPort, ReckOnSample, ReckOnSettings,
-    ReckOnShared, ReckOnStep, ReckOnTarget, ReckOnTask,
+    ReckOnLearning, ReckOnNetwork, ReckOnOutputs, ReckOnPair, ReckOnPort, ReckOnSample,
+    ReckOnSettings, ReckOnShared, ReckOnStep, ReckOnSteps, ReckOnStepsState, ReckOnTarget,
+    ReckOnTask, ReckOnTick,
 };
 
 type Chip = ReckOn<Spi, Port>;
@@ -80,6 +81,52 @@ impl Plain {
         }
         answer
     }
+}
+
+/// The driver leaks outputs whose leaks differ: the chip's answers, which it halves at each tick, must give the exact sum
+/// of the weights of the neurons that fired.
+#[test]
+fn outputs_of_different_leaks_add_up_the_weights_of_the_neurons_that_fired() {
+    let network = ReckOnNetwork {
+        shared: ReckOnShared {
+            shifts: [1, 2, 1],
+            keep: ReckOnOutputs::LEAKY_KEEP,
+            ..NETWORK.shared
+        },
+        ..NETWORK
+    };
+    let (unit, keeps) = (0.25, [0.5, 1.0, 0.9]);
+    let outputs = ReckOnOutputs::Leaky { unit, keeps: &keeps };
+    let ticks = [ReckOnTick { always: &[4], raises: &[] }];
+    let steps = ReckOnSteps { inputs: 4, ticks: &ticks, late: 2, outputs };
+    let board = Board::new(10, 1);
+    let mut chip = on(&board);
+    let mut programmed = chip.reset(&mut board.clone()).unwrap();
+    programmed.load(&network, |_| ()).unwrap();
+    let mut sample = programmed.run(&ReckOnSettings::POTENTIALS).unwrap().begin().unwrap();
+    let (mut state, mut random) = (ReckOnStepsState::REST, Pcg32::seed_from_u64(7));
+    let (mut fired, mut expected, mut spikes): (Vec<u8>, [f32; 3], usize) = (vec![], [0.0; 3], 0);
+    for _ in 0..500 {
+        let inputs = random.next_u32();
+        let inputs = (0..4).filter(|input| inputs >> input & 1 == 1);
+        let values = sample.run(&steps, &mut state, inputs).unwrap();
+        for (output, (value, keep)) in expected.iter_mut().zip(keeps).enumerate() {
+            let weight = |neuron: &u8| 2 * i32::from(network.outputs[usize::from(*neuron)][output]);
+            *value = *value * keep + fired.iter().map(weight).sum::<i32>() as f32 * unit;
+        }
+        assert_eq!(values[..3], expected);
+        fired = std::mem::take(&mut board.pins().chip.fired);
+        spikes += fired.len();
+    }
+    assert!(spikes > 100, "{spikes} spikes");
+
+    let beyond = sample.run(&steps, &mut state, [4]);
+    assert!(matches!(beyond, Err(ChipError::OutOfRange { what: "input", value: 4, .. })));
+    let (_, started) = sample.end().unwrap();
+    let mut sample =
+        started.program().unwrap().run(&ReckOnSettings::LABEL).unwrap().begin().unwrap();
+    let no_answer = sample.run(&steps, &mut { ReckOnStepsState::REST }, []);
+    assert!(matches!(no_answer, Err(ChipError::OutOfRange { what: "answers", .. })));
 }
 
 #[test]

@@ -5,14 +5,14 @@ use crate::{
     rates,
     rig::tenths,
     tape::{Tape, Taped},
-    turns::{LATE, NETWORK, UNIT},
+    turns::{NETWORK, STEPS},
 };
 use board::digest::Digest;
 use board::stopwatch::instructions;
 use core::fmt::{self, Write};
 use silicon::reckon::{Board, Port, Spi};
 use spikewire::{Scheme, population::Position};
-use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSample, ReckOnSettings, ReckOnStep};
+use spikewire_chips::{ReckOn, ReckOnSample, ReckOnSettings, ReckOnStepsState};
 
 /// As `--scheme position --neurons 25 --min=-1.2 --max 1.2`.
 static RATES: Position<f32, 25> = Position::linear(-1.2..=1.2);
@@ -26,6 +26,9 @@ const TURNS: f64 = 0.06;
 /// Clocks of the chip to one of SCK, and to a look at its pins: at 10 MHz, beside an STM32F405, 1 MHz and 34 cycles.
 const RATIO: u32 = 10;
 const LOOK: u32 = 2;
+
+/// Number of steps from an input to the answer that shows its effect.
+const LATE: usize = STEPS.late as usize;
 
 type Chip = ReckOn<Spi, Taped<Port>>;
 
@@ -49,6 +52,7 @@ pub fn fly(out: &mut impl Write) -> fmt::Result {
         bits / 1000
     )?;
     let mut sample = started.begin().map_err(|_| fmt::Error)?;
+    let mut state = ReckOnStepsState::REST;
     let mut encoder = RATES.encoder();
     let mut labels = Labels::new();
     // The labels of the steps whose answers have not come yet.
@@ -63,7 +67,9 @@ pub fn fly(out: &mut impl Write) -> fmt::Result {
         let input = rate.and_then(|rate| encoder.encode(rate));
         let before = board.pins().chip.clocks;
         tape.record();
-        let answer = run(&mut sample, input.map(|neuron| neuron.index()))?;
+        let input = input.map(|neuron| neuron.index());
+        let mut next = state;
+        let answer = run(&mut sample, &mut next, input)?;
         clocks += board.pins().chip.clocks - before;
         let fired = core::mem::take(&mut board.pins().chip.fired).len();
         // What the last inputs make fire comes a tick later; what comes after those no recording has.
@@ -71,7 +77,7 @@ pub fn fly(out: &mut impl Write) -> fmt::Result {
 
         tape.repeat();
         let mut again = Err(fmt::Error);
-        let cost = instructions(|| again = run(&mut sample, input.map(|neuron| neuron.index())));
+        let cost = instructions(|| again = run(&mut sample, &mut state, input));
         if again? != answer || !tape.is_over() {
             return Err(fmt::Error);
         }
@@ -84,7 +90,7 @@ pub fn fly(out: &mut impl Write) -> fmt::Result {
             continue;
         }
         let told = (1..3).fold(0, |best, at| if answer[at] > answer[best] { at } else { best });
-        let [falls, neither, rises] = answer.map(|told| (f32::from(told) * UNIT).to_bits());
+        let [falls, neither, rises] = answer.map(f32::to_bits);
         digest.add([falls, neither]);
         digest.add([rises, told as u32]);
         counts[told] += 1;
@@ -109,15 +115,12 @@ pub fn fly(out: &mut impl Write) -> fmt::Result {
 /// A time step: the input, if there is one, the tick, and the answer.
 fn run(
     sample: &mut ReckOnSample<'_, Spi, Taped<Port>>,
+    state: &mut ReckOnStepsState,
     input: Option<u16>,
-) -> Result<[i16; 3], fmt::Error> {
-    if let Some(input) = input {
-        sample.send(input as u8).map_err(|_| fmt::Error)?;
-    }
-    match sample.step(ReckOnStep::default()).map_err(|_| fmt::Error)? {
-        Some(ReckOnAnswer::Potentials([falls, neither, rises, ..])) => Ok([falls, neither, rises]),
-        _ => Err(fmt::Error),
-    }
+) -> Result<[f32; 3], fmt::Error> {
+    let outputs = sample.run(&STEPS, state, input).map_err(|_| fmt::Error)?;
+    let [falls, neither, rises, ..] = outputs;
+    Ok([falls, neither, rises])
 }
 
 /// What the network should say, by the mean of the last rates.

@@ -149,9 +149,6 @@ kinds! {
              `tau_syn` of a step, or LIF"
         ),
         SilentInside => ("neurons that never fire must be the last"),
-        OutputLeak { keep: f64 } => (
-            "the chip's outputs are read after they have leaked, and these keep {keep:.4} of their potential a step"
-        ),
         NoReadout => ("tinyODIN has no outputs that never fire; ReckOn has"),
         NoRoomToCompare => (
             "the network leaves no room for comparing once a step: one neuron must be free, a row for each layer, and two"

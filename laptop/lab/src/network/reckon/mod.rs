@@ -4,6 +4,7 @@
 mod emit;
 mod place;
 mod quantise;
+mod round;
 mod run;
 
 use super::chip::{Chip, Compare, OnChip, Ran, Remarks, written};

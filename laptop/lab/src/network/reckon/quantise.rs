@@ -3,19 +3,23 @@
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
 use super::place::Places;
-use crate::Spot;
+use super::round::{Rounded, Traces, clipped};
 use crate::network::Fires;
 use crate::network::fault::{FitKind, Result, ensure};
 use rayon::prelude::*;
-use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
+use spikewire_chips::{
+    DescribeReckOn, ReckOnOutputs, ReckOnPair, ReckOnShared, ReckOnSteps, ReckOnTick,
+};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
 /// factor.
-const KEEP: f64 = 32_768.0;
+pub(super) const KEEP: f64 = 32_768.0;
 /// The integer that stands for an output's decay factor of 1. Each tick of the chip multiplies the output's potential
 /// by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
+/// Largest relative error of a leak of the chip's outputs. Beyond it, the driver leaks the outputs.
+const LEAK_TOLERANCE: f64 = 0.02;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
 /// more ticks of the chip.
 const LEAST_KEEP: f64 = 0.875;
@@ -24,23 +28,17 @@ const MOST_TICKS: u32 = 16;
 /// Safety factor for gates. A gate is an input that lowers a neuron to keep it from firing. It lowers the neuron by
 /// this factor times the amount that suffices in the recording.
 const SPARE: f64 = 1.5;
-const LARGEST: f64 = 127.0;
+pub(super) const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales are
-/// multiples of the largest scale at which the pair's weights and potentials fit the chip.
-const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
+/// Number of scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales
+/// lie evenly between half of the largest scale at which the pair's weights and potentials fit the chip, and all of it.
+const SCALES: u32 = 200;
+/// Number of scales, those at which rounding changes the potentials least, at which the pair is simulated.
+const SIMULATED: usize = 32;
 /// Number of left shifts that the chip offers for weights. The chip can shift weights by 0 to 7 bits.
 const SHIFTS: u8 = 8;
-/// Weight, left shift and decay factor of an output that shows the spikes of one neuron. A decay factor of 64 stands
-/// for 1/2: each tick of the chip halves the output's potential. The bits of the potential therefore show in which of
-/// the last ticks the neuron fired.
-const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// Position of the bit that tells whether a neuron fired in the latest step. The bit belongs to the potential of the
-/// output that reports the neuron's spikes. Bit 0 is the lowest.
-pub(super) const FIRED: u32 = 12;
-
 /// A network in the integers of `ReckOn`.
 #[derive(Clone, Debug)]
 pub(super) struct Quantised {
@@ -49,6 +47,8 @@ pub(super) struct Quantised {
     /// The weights of inputs: one row for each input, with one weight for each neuron of the chip. The bias is the last
     /// input, if the network has a bias.
     pub(super) inputs: Vec<Vec<i8>>,
+    /// Number of inputs of the network itself: all but those of biases and gates.
+    own_inputs: usize,
     /// The weights between neurons: one row for each sending neuron, with one weight for each receiving neuron.
     pub(super) recurrent: Vec<Vec<i8>>,
     /// The weights of outputs: one row for each neuron, with one weight for each output.
@@ -61,6 +61,8 @@ pub(super) struct Quantised {
     /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
     /// outputs report the spikes of neurons.
     pub(super) unit: Option<f64>,
+    /// For each output, the share of its potential that a step keeps. Empty unless the driver leaks the potentials.
+    pub(super) keeps: Vec<f32>,
     /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
     /// weights of the outputs.
     pub(super) changes: Vec<Change>,
@@ -83,10 +85,10 @@ pub(super) struct Quantised {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tick {
     /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
-    pub(super) always: Vec<usize>,
+    pub(super) always: Vec<u8>,
     /// Numbers of the gates (which are inputs) that raise neurons before this tick. In the first step, only the gates
     /// of the last tick fire: the neurons that the other gates raise have not been lowered yet.
-    pub(super) raises: Vec<usize>,
+    pub(super) raises: Vec<u8>,
 }
 
 /// How rounding changed the weights of a layer, or those of the outputs.
@@ -113,35 +115,39 @@ impl Change {
     /// Rounds `weight * scale` to an integer, clips it to the range of the chip's weights, and returns it. Adds the
     /// weight and its change to the statistics in `self`.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
-        let rounded = (weight * scale).round();
-        let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
+        let held = clipped(weight * scale) as i8;
+        self.clipped += usize::from(f64::from(held) != (weight * scale).round());
+        self.held(weight, held, scale);
+        held
+    }
+
+    /// Adds a weight to the statistics that the chip holds as the integer `held`.
+    fn held(&mut self, weight: f64, held: i8, scale: f64) {
         self.weights += 1;
-        self.clipped += usize::from(held != rounded);
-        self.vanished += usize::from(held == 0.0 && weight != 0.0);
-        let change = held / scale - weight;
+        self.vanished += usize::from(held == 0 && weight != 0.0);
+        let change = f64::from(held) / scale - weight;
         self.sums[0] += weight * weight;
         self.sums[1] += change * change;
-        held as i8
     }
 }
 
 /// A neuron of the trained network, and the weights that lead to the neuron. Weights and potentials are in units of the
 /// neuron's threshold.
-struct Source {
-    layer: usize,
-    neuron: usize,
-    keep: f64,
+pub(super) struct Source {
+    pub(super) layer: usize,
+    pub(super) neuron: usize,
+    pub(super) keep: f64,
     /// The weight of each input.
-    inputs: Vec<f64>,
-    bias: f64,
+    pub(super) inputs: Vec<f64>,
+    pub(super) bias: f64,
     /// Amount by which gates lower the neuron; 0 if the neuron needs no gates. Gates are inputs that keep the neuron
     /// from firing at some ticks.
-    gate: f64,
+    pub(super) gate: f64,
     /// The neurons that send spikes to this one. Each entry is the sender's number on the chip, and the weight.
-    recurrent: Vec<(usize, f64)>,
+    pub(super) recurrent: Vec<(usize, f64)>,
     /// Sum of two amounts: the largest absolute potential that the neuron reaches in double precision, and the amount
     /// [`gate`](Self::gate) by which gates lower the neuron.
-    peak: f64,
+    pub(super) peak: f64,
 }
 
 fn largest(weights: impl Iterator<Item = f64>) -> f64 {
@@ -227,47 +233,31 @@ pub(super) fn quantise(
     let drives = drives(trained, inputs, fired);
     let done = AtomicUsize::new(0);
     let total: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
+    let rule = Rule { ticks, resets_to_zero, fires: at };
+    let recorded = |pair: &[Source]| {
+        let layer = pair.first().map_or(0, |source| source.layer);
+        (&drives[layer][..], &fired[layer])
+    };
     let chosen = pairs.par_iter().map(|pair| {
-        let keep = mean_keep(pair, ticks);
-        let candidates = SCALES.map(|part| part * scale(pair, shifts));
-        let distance = |scale: f64| -> f64 {
-            let of = |source: &Source| {
-                Held::new(
-                    source,
-                    keep,
-                    scale,
-                    shifts,
-                    Rule { ticks, resets_to_zero, fires: at },
-                    &places,
-                )
-                .distance(
-                    &drives[source.layer],
-                    &fired[source.layer],
-                    source.neuron,
-                )
-            };
-            pair.iter().map(of).sum()
-        };
-        let tried = candidates
-            .into_iter()
-            .filter(|scale| fires_at(*scale, at) <= f64::from(i16::MAX))
-            .map(|scale| (scale, distance(scale)));
-        let best = tried.min_by(|(_, one), (_, other)| one.total_cmp(other));
+        let (drives, fired) = recorded(pair);
+        let chosen = Chosen::new(pair, drives, fired, shifts, rule, &places);
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
-        (keep, best.map_or(1.0, |(scale, _)| scale))
+        chosen
     });
-    let chosen: Vec<(u16, f64)> = chosen.collect();
+    let chosen: Vec<Chosen> = chosen.collect();
 
     let count = places.neurons.len();
     let mut network = Quantised {
         pairs: Vec::new(),
         inputs: vec![vec![0; count]; trained.inputs()],
+        own_inputs: trained.inputs(),
         recurrent: vec![vec![0; count]; count],
         outputs: Vec::new(),
         shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero },
         ticks: vec![Tick::default(); ticks],
         layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
         unit: None,
+        keeps: vec![],
         changes: trained
             .layers
             .iter()
@@ -276,11 +266,11 @@ pub(super) fn quantise(
         shared_keeps: (0, 0.0),
         places,
     };
-    for (pair, &(keep, scale)) in pairs.iter().zip(&chosen) {
-        network.pairs.push(ReckOnPair { keep, threshold: fires_at(scale, at) as i16 });
-        for source in pair {
-            network.put(source, scale, shifts);
-            network.tell_keep(source.keep, (f64::from(keep) / KEEP).powi(ticks as i32), 1e-4);
+    for (pair, Chosen { keep, scale, rounded }) in pairs.iter().zip(&chosen) {
+        network.pairs.push(ReckOnPair { keep: *keep, threshold: fires_at(*scale, at) as i16 });
+        for (source, rounded) in pair.iter().zip(rounded) {
+            network.put(source, rounded, *scale, shifts);
+            network.tell_keep(source.keep, (f64::from(*keep) / KEEP).powi(ticks as i32), 1e-4);
         }
     }
     network.put_bias(&pairs, &chosen, shifts[0]);
@@ -288,7 +278,10 @@ pub(super) fn quantise(
     let (inputs, most) = (network.inputs.len(), Places::INPUTS);
     ensure!(inputs <= most, FitKind::Inputs { most, inputs, has_bias });
     match &trained.readout {
-        Some(readout) => network.read_out(readout, &trained.potentials(fired))?,
+        Some(readout) => {
+            let last = fired.last().map_or(&[][..], |last| last);
+            network.read_out(readout, &trained.potentials(fired), last);
+        }
         None => network.follow(trained.layers.len() - 1),
     }
     Ok(network)
@@ -372,25 +365,53 @@ impl Recorded<'_> {
     }
 }
 
-/// Returns two amounts: the amount by which gates lower a neuron, and the amount by which they raise the neuron again.
-/// Gates are inputs that keep the neuron from firing at some ticks. Between the lowering and the raising, the neuron
-/// leaks in `ticks - 1` ticks. These leaks undo part of the lowering, and the second amount undoes the rest.
-///
-/// Both amounts are multiples of `1 << shift`. The first is at least `gate`. It is chosen so that the rest after the
-/// leaks is as near as possible to a multiple of `1 << shift`.
-fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
-    if gate == 0.0 {
-        return (0, 0);
+/// The scale and the leak of a pair, and its neurons' weights in the chip's integers.
+struct Chosen {
+    keep: u16,
+    scale: f64,
+    rounded: Vec<Rounded>,
+}
+
+impl Chosen {
+    /// Chooses the scale at which a pair's spikes are nearest to those in double precision. The pair belongs to one
+    /// layer: `drives` are the spikes that act on the layer, and `fired` those that it fires. All other neurons are
+    /// assumed to fire as in double precision.
+    fn new(
+        pair: &[Source],
+        drives: &[Drive],
+        fired: &Trains,
+        shifts: [u8; 2],
+        rule: Rule,
+        places: &Places,
+    ) -> Self {
+        let keep = mean_keep(pair, rule.ticks);
+        let of = |source| Traces::new(source, keep, rule, drives, fired, places);
+        let traces: Vec<Traces> = pair.iter().map(of).collect();
+        let most = scale(pair, shifts);
+        let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
+            .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))
+            .filter(|scale| fires_at(*scale, rule.fires) <= f64::from(i16::MAX))
+            .map(|scale| {
+                let of = |(source, traces): (&Source, &Traces)| {
+                    Rounded::new(source, traces, keep, scale, shifts, rule.ticks)
+                };
+                let all: Vec<Rounded> = pair.iter().zip(&traces).map(of).collect();
+                (all.iter().map(|rounded| rounded.error).sum(), scale, all)
+            })
+            .collect();
+        rounded.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
+        rounded.truncate(SIMULATED);
+        let simulated = rounded.into_iter().map(|(error, scale, all)| {
+            let of = |(source, rounded): (&Source, &Rounded)| {
+                let held = Held::new(rounded, keep, scale, shifts, rule, places);
+                held.distance(drives, fired, source.neuron)
+            };
+            let distance: f64 = pair.iter().zip(&all).map(of).sum();
+            (distance + error, Self { keep, scale, rounded: all })
+        });
+        let best = simulated.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        best.map_or(Self { keep, scale: 1.0, rounded: vec![] }, |(_, chosen)| chosen)
     }
-    let unit = 1 << shift;
-    let least = (gate / f64::from(unit)).ceil() as i32;
-    let left = |lowered: i32| {
-        (1..ticks).fold(-lowered * unit, |potential, _| (potential * i32::from(keep)) >> 15)
-    };
-    let raised = |lowered: i32| (f64::from(-left(lowered)) / f64::from(unit)).round() as i32 * unit;
-    let wrong = |lowered: &i32| (left(*lowered) + raised(*lowered)).abs();
-    let lowered = (least..=least + least / 4).min_by_key(wrong).unwrap_or(least);
-    (lowered * unit, raised(lowered))
 }
 
 /// Returns the largest absolute potential that each neuron reaches in double precision, by layer and neuron.
@@ -405,15 +426,15 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
 }
 
 /// The spikes that act on a layer in a step, and the spikes that the layer fires in the step.
-struct Drive {
+pub(super) struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
-    inputs: Vec<u16>,
+    pub(super) inputs: Vec<u16>,
     /// Neurons of the preceding layer that fire in the step. Each entry is the index of that layer, then the index of
     /// the neuron in the layer.
-    before: Vec<(usize, usize)>,
+    pub(super) before: Vec<(usize, usize)>,
     /// Neurons of the layer itself that fire in the step. Each entry is the index of the layer, then the index of the
     /// neuron in the layer. These spikes act one tick later.
-    own: Vec<(usize, usize)>,
+    pub(super) own: Vec<(usize, usize)>,
 }
 
 /// Returns the spikes that act on each layer in each step, if all neurons fire as in double precision.
@@ -441,11 +462,11 @@ fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive
 
 /// The rule by which all neurons of the chip fire and reset.
 #[derive(Clone, Copy)]
-struct Rule {
+pub(super) struct Rule {
     /// Number of ticks in a step.
-    ticks: usize,
-    resets_to_zero: bool,
-    fires: Fires,
+    pub(super) ticks: usize,
+    pub(super) resets_to_zero: bool,
+    pub(super) fires: Fires,
 }
 
 /// A neuron in the chip's integers, for a simulation of this neuron alone.
@@ -464,31 +485,24 @@ struct Held<'a> {
 
 impl<'a> Held<'a> {
     fn new(
-        source: &Source,
+        rounded: &Rounded,
         keep: u16,
         scale: f64,
         shifts: [u8; 2],
         rule: Rule,
         places: &'a Places,
     ) -> Self {
-        let mut change = Change::default();
-        let mut held = |weight: f64, shift: u8| {
-            i32::from(change.weight(weight, scale / f64::from(1 << shift))) << shift
-        };
-        let inputs: Vec<i32> =
-            source.inputs.iter().map(|&weight| held(weight, shifts[0])).collect();
         let mut recurrent = vec![0; places.neurons.len()];
-        for &(from, weight) in &source.recurrent {
-            recurrent[from] = held(weight, shifts[1]);
+        for &(from, weight) in &rounded.recurrent {
+            recurrent[from] = i32::from(weight) << shifts[1];
         }
-        let bias = held(source.bias, shifts[0]);
         Self {
             keep: keep.into(),
             threshold: fires_at(scale, rule.fires) as i32,
-            inputs,
+            inputs: rounded.inputs.iter().map(|weight| i32::from(*weight) << shifts[0]).collect(),
             recurrent,
-            bias,
-            gates: gates(source.gate * scale, keep, rule.ticks, shifts[0]),
+            bias: i32::from(rounded.bias) << shifts[0],
+            gates: rounded.gates,
             rule,
             places,
         }
@@ -539,12 +553,14 @@ impl Quantised {
         self.layers.len() + 1
     }
 
-    /// Returns the numbers of the additional inputs that fire before tick `tick` of the recording: biases and gates.
-    /// They fire in addition to the network's own inputs.
-    pub(super) fn beside(&self, tick: usize) -> impl Iterator<Item = usize> {
-        let Tick { always, raises } = &self.ticks[tick % self.ticks.len()];
-        let raises = if tick + 1 >= self.ticks.len() { &raises[..] } else { &[] };
-        always.iter().chain(raises).copied()
+    /// Returns the description of a step for the driver. `ticks` are those of [`ticks`](Self::ticks).
+    pub(super) fn steps<'a>(&'a self, ticks: &'a [ReckOnTick<'a>]) -> ReckOnSteps<'a> {
+        let outputs = match self.unit {
+            None => ReckOnOutputs::Spikes,
+            Some(unit) if self.keeps.is_empty() => ReckOnOutputs::Potentials { unit: unit as f32 },
+            Some(unit) => ReckOnOutputs::Leaky { unit: unit as f32, keeps: &self.keeps },
+        };
+        ReckOnSteps { inputs: self.own_inputs as u16, ticks, late: self.late() as u16, outputs }
     }
 
     /// Adds an input, and returns the number of the input. Each entry of `weights` is the number of a neuron of the
@@ -560,20 +576,21 @@ impl Quantised {
 
     /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of the
     /// layers that may fire at this tick. There is no such input if all these biases are 0.
-    fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+    fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[Chosen], shift: u8) {
         for tick in 0..self.ticks.len() {
             let mut weights = Vec::new();
-            for (pair, (_, scale)) in pairs.iter().zip(chosen) {
-                let at_tick = |source: &&Source| source.layer % self.ticks.len() == tick;
-                for source in pair.iter().filter(at_tick).filter(|source| source.bias != 0.0) {
-                    let at = self.places.of(source.layer, source.neuron);
-                    let scale = scale / f64::from(1 << shift);
-                    weights.push((at, self.changes[source.layer].weight(source.bias, scale)));
+            for (pair, Chosen { scale, rounded, .. }) in pairs.iter().zip(chosen) {
+                for (source, rounded) in pair.iter().zip(rounded) {
+                    if source.layer % self.ticks.len() == tick && source.bias != 0.0 {
+                        weights.push((self.places.of(source.layer, source.neuron), rounded.bias));
+                        let scale = scale / f64::from(1 << shift);
+                        self.changes[source.layer].held(source.bias, rounded.bias, scale);
+                    }
                 }
             }
             if !weights.is_empty() {
                 let input = self.add_input(weights);
-                self.ticks[tick].always.push(input);
+                self.ticks[tick].always.push(input as u8);
             }
         }
     }
@@ -581,15 +598,17 @@ impl Quantised {
     /// Adds the gates of each layer. Gates are inputs that keep a layer from firing except at its own tick of a step.
     /// Some gates lower the layer's neurons before the tick after the layer's own. The others raise the neurons again
     /// before the layer's own tick comes again.
-    fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+    fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[Chosen], shift: u8) {
         let ticks = self.ticks.len();
         for layer in 0..self.layers.len() {
             let mut rests: Vec<(usize, [i32; 2])> = Vec::new();
-            for (pair, (keep, scale)) in pairs.iter().zip(chosen) {
-                for source in pair.iter().filter(|source| source.layer == layer) {
-                    let (lowered, raised) = gates(source.gate * scale, *keep, ticks, shift);
-                    let at = self.places.of(layer, source.neuron);
-                    rests.push((at, [-lowered >> shift, raised >> shift]));
+            for (pair, Chosen { rounded, .. }) in pairs.iter().zip(chosen) {
+                for (source, rounded) in pair.iter().zip(rounded) {
+                    if source.layer == layer {
+                        let (lowered, raised) = rounded.gates;
+                        let at = self.places.of(layer, source.neuron);
+                        rests.push((at, [-lowered >> shift, raised >> shift]));
+                    }
                 }
             }
             for (kind, tick) in [(0, (layer + 1) % ticks), (1, layer % ticks)] {
@@ -602,24 +621,28 @@ impl Quantised {
                     let weights: Vec<(usize, i8)> = rests.iter_mut().map(take).collect();
                     let input = self.add_input(weights);
                     let tick = &mut self.ticks[tick];
-                    if kind == 0 { tick.always.push(input) } else { tick.raises.push(input) }
+                    if kind == 0 { &mut tick.always } else { &mut tick.raises }.push(input as u8);
                 }
             }
         }
     }
 
-    fn put(&mut self, source: &Source, scale: f64, shifts: [u8; 2]) {
+    fn put(&mut self, source: &Source, rounded: &Rounded, scale: f64, shifts: [u8; 2]) {
         let at = self.places.of(source.layer, source.neuron);
         let change = &mut self.changes[source.layer];
         let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
-        for (row, &weight) in self.inputs.iter_mut().zip(&source.inputs) {
+        for ((row, &weight), &held) in
+            self.inputs.iter_mut().zip(&source.inputs).zip(&rounded.inputs)
+        {
             if weight != 0.0 {
-                row[at] = change.weight(weight, inputs);
+                change.held(weight, held, inputs);
+                row[at] = held;
             }
         }
-        for &(from, weight) in &source.recurrent {
+        for (&(from, held), &(_, weight)) in rounded.recurrent.iter().zip(&source.recurrent) {
             if weight != 0.0 {
-                self.recurrent[from][at] = change.weight(weight, recurrent);
+                change.held(weight, held, recurrent);
+                self.recurrent[from][at] = held;
             }
         }
     }
@@ -632,27 +655,34 @@ impl Quantised {
     }
 
     /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
-    /// spikes.
-    ///
-    /// # Errors
-    /// Returns an error if the outputs' leak is too strong for the chip: the decay factor of a tick, averaged over all
-    /// outputs, rounds to 0 in the chip's integers.
-    fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
+    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are the
+    /// spikes of the last layer.
+    fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>], fired: &[Vec<u16>]) {
         let Readout { name, weights, keep } = readout;
         let ticks = self.ticks.len();
         let kept = keep.iter().map(|keep| keep.powf(1.0 / ticks as f64));
         let mean = kept.sum::<f64>() / keep.len() as f64;
-        let held = (mean * OUTPUT_KEEP).round();
-        let kind = FitKind::OutputLeak { keep: mean };
-        ensure!(held >= 1.0, kind.at(Spot::Part(name.clone())));
-        for &keep in keep {
-            let held = (held / OUTPUT_KEEP).powi(ticks as i32);
-            self.tell_keep(keep, held, 0.5 * ticks as f64 / OUTPUT_KEEP);
-        }
+        let mut held = (mean * OUTPUT_KEEP).round();
+        let is_near = |keep: &f64| {
+            (keep - (held / OUTPUT_KEEP).powi(ticks as i32)).abs() <= LEAK_TOLERANCE * (1.0 - keep)
+        };
+        let chip_leaks = held >= 1.0 && keep.iter().all(is_near);
         let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
-        let room = ROOM / largest(potentials.iter().flatten().copied()).max(most);
+        let (mut first, mut room) =
+            (0, ROOM / largest(potentials.iter().flatten().copied()).max(most));
+        if !chip_leaks {
+            self.keeps = keep.iter().map(|keep| *keep as f32).collect();
+            held = f64::from(ReckOnOutputs::LEAKY_KEEP);
+            // A potential is at most twice the largest sum.
+            let sum = |fired: &Vec<u16>, row: &Vec<f64>| -> f64 {
+                fired.iter().map(|neuron| row[usize::from(*neuron)]).sum()
+            };
+            let sums =
+                fired.iter().flat_map(|fired| weights.iter().map(move |row| sum(fired, row)));
+            (first, room) = (1, ROOM / 2.0 / largest(sums).max(most));
+        }
         let fits = |shift: &u8| LARGEST * f64::from(1 << shift) / most <= room;
-        let shift = (0..SHIFTS).rev().find(fits).unwrap_or(0);
+        let shift = (first..SHIFTS).rev().find(fits).unwrap_or(first);
         let scale = (LARGEST * f64::from(1 << shift) / most).min(room);
         let mut change = Change { name: name.clone(), ..Change::default() };
         let last = self.layers.len() - 1;
@@ -667,13 +697,12 @@ impl Quantised {
         self.shared.shifts[2] = shift;
         self.shared.keep = held as u8;
         // The chip sends a potential after it has leaked once more.
-        self.unit = Some(OUTPUT_KEEP / held / scale);
-        Ok(())
+        self.unit = Some(if chip_leaks { OUTPUT_KEEP / held / scale } else { 1.0 / scale });
     }
 
     /// Adds, for each neuron of layer `last`, an output that reports the neuron's spikes.
     fn follow(&mut self, last: usize) {
-        let (weight, shift, keep) = FOLLOWS;
+        let (weight, shift, keep) = ReckOnOutputs::SPIKES;
         let outputs = self.layers[last].1;
         self.outputs = vec![vec![0; outputs]; self.places.neurons.len()];
         for output in 0..outputs {

@@ -3,10 +3,10 @@
 use super::super::Trains;
 use super::super::chip::{Ran, refused};
 use super::Quantised;
-use super::quantise::FIRED;
+use super::quantise::Tick;
 use crate::network::fault::{ModelKind, Result};
 use silicon::reckon::{Board, Port, Spi};
-use spikewire_chips::{ReckOn, ReckOnAnswer, ReckOnSettings, ReckOnStep};
+use spikewire_chips::{ReckOn, ReckOnSettings, ReckOnStepsState, ReckOnTick};
 
 type Chip = ReckOn<Spi, Port>;
 
@@ -43,52 +43,42 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
     let read_out = if network.unit.is_some() { layers } else { layers - 1 };
     let late = network.late();
     board.pins().chip.fired.clear();
+    let ticks: Vec<ReckOnTick> =
+        network.ticks.iter().map(|Tick { always, raises }| ReckOnTick { always, raises }).collect();
+    let steps = network.steps(&ticks);
+    let mut state = ReckOnStepsState::REST;
     let silent = vec![];
-    let ticks = network.ticks.len();
-    for tick in 0..inputs.len() * ticks + late {
+    for step in 0..inputs.len() + late.div_ceil(ticks.len()) {
         let before = board.pins().chip.clocks;
-        if tick.is_multiple_of(ticks) {
-            let mut sent: Vec<u16> = inputs.get(tick / ticks).unwrap_or(&silent).clone();
-            sent.sort_unstable();
-            let all = sent.len();
-            sent.dedup();
-            ran.lost += (all - sent.len()) as u32;
-            for input in sent {
-                sample.send(input as u8).map_err(refused)?;
-            }
-        }
-        for input in network.beside(tick) {
-            sample.send(input as u8).map_err(refused)?;
-        }
-        let answer = sample.step(ReckOnStep::default()).map_err(refused)?;
-        let Some(ReckOnAnswer::Potentials(answer)) = answer else {
-            return Err(ModelKind::Answer { answer }.into());
-        };
-        let clocks = board.pins().chip.clocks - before;
-        match ran.clocks.last_mut() {
-            Some(step) if !tick.is_multiple_of(ticks) => *step += clocks,
-            _ if tick < inputs.len() * ticks => ran.clocks.push(clocks),
-            _ => {}
+        let mut sent: Vec<u16> = inputs.get(step).unwrap_or(&silent).clone();
+        sent.sort_unstable();
+        let all = sent.len();
+        sent.dedup();
+        ran.lost += (all - sent.len()) as u32;
+        let values = sample.run(&steps, &mut state, sent).map_err(refused)?;
+        if step < inputs.len() {
+            ran.clocks.push(board.pins().chip.clocks - before);
         }
         for neuron in std::mem::take(&mut board.pins().chip.fired) {
             let Some((layer, place)) = network.places.neurons[usize::from(neuron)] else {
                 return Err(ModelKind::StrayNeuron { neuron }.into());
             };
-            if let Some(tick) = tick.checked_sub(layer + 1).filter(|_| layer < read_out)
-                && let Some(step) = ran.fired[layer].get_mut(tick / ticks)
+            if let Some(step) = step.checked_sub((layer + 1) / ticks.len())
+                && layer < read_out
+                && let Some(step) = ran.fired[layer].get_mut(step)
             {
                 step.push(place as u16);
             }
         }
-        let Some(tick) = tick.checked_sub(late).filter(|tick| tick.is_multiple_of(ticks)) else {
+        let Some(step) = step.checked_sub(late / ticks.len()).filter(|step| *step < inputs.len())
+        else {
             continue;
         };
-        let step = tick / ticks;
-        let outputs = &answer[..network.outputs[0].len()];
-        if let Some(unit) = network.unit {
-            ran.potentials.push(outputs.iter().map(|&answer| f64::from(answer) * unit).collect());
+        let values = &values[..network.outputs[0].len()];
+        if network.unit.is_some() {
+            ran.potentials.push(values.iter().map(|value| f64::from(*value)).collect());
         } else {
-            let fired = (0..).zip(outputs).filter(|(_, answer)| *answer >> FIRED & 1 == 1);
+            let fired = (0..).zip(values).filter(|(_, value)| **value > 0.0);
             ran.fired[layers - 1][step] = fired.map(|(output, _)| output).collect();
         }
     }

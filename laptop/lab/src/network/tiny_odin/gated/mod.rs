@@ -12,6 +12,7 @@ mod shape;
 use super::super::bring::agreement;
 use super::super::chip::{OnChip, Ran, Remarks, Stepped, written};
 use super::super::costs::Cost;
+use super::super::trained::Layer;
 use super::super::{Trained, Trains};
 use crate::network::fault::Result;
 use neuron::{Added, GatedNeuron};
@@ -75,9 +76,11 @@ pub(super) fn quantise(
         .zip(fired)
         .map(|(layer, fired)| targets(fired, layer.neurons.len()))
         .collect();
+    let potentials = potentials(trained, inputs, fired);
+    let goal = Goal { targets: &targets, potentials: &potentials, fired };
     let (drive, threshold) = sizes(trained, inputs, fired);
     let shapes = shapes(trained, has_bias, drive, threshold);
-    let find = |shape, climbs| Gated::find(trained, inputs, &targets, fired, shape, climbs);
+    let find = |shape, climbs| Gated::find(trained, inputs, goal, shape, climbs);
     let rate = |network: &Gated| {
         let agrees = fired.last().and_then(|fired| agreement(fired, &network.outputs(inputs)));
         agrees.unwrap_or(1.0) - PRICE * network.shape.events(trained.layers.len()) as f64
@@ -151,27 +154,39 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
     all
 }
 
+/// Returns, for each layer and neuron, the potential that the neuron compares with its threshold in each step.
+fn potentials(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Vec<f64>>> {
+    let of_layer = |(layer, before): (&Layer, &Trains)| {
+        let mut all = vec![Vec::with_capacity(before.len()); layer.neurons.len()];
+        layer.follow(before, |neuron, potential| all[neuron].push(potential));
+        all
+    };
+    trained.layers.iter().zip(std::iter::once(inputs).chain(fired)).map(of_layer).collect()
+}
+
+/// What the network should do in the recording, by layer.
+#[derive(Clone, Copy)]
+struct Goal<'a> {
+    /// For each neuron, whether it fires in each step.
+    targets: &'a [Vec<Vec<bool>>],
+    /// For each neuron, the potential that it compares with its threshold in each step.
+    potentials: &'a [Vec<Vec<f64>>],
+    fired: &'a [Trains],
+}
+
 impl Gated {
     /// Quantises the network with the shape `shape`, layer by layer. The inputs of each further layer are the spikes of
-    /// the quantised layer before it. `fired` contains the spikes that the original fires, by layer and step. `targets`
-    /// contains the same spikes: for each layer and neuron, whether the neuron fires in each step. The search for each
-    /// neuron improves the `climbs` best initial choices of parameters. If `climbs` is 0, the search takes the best
-    /// initial choice as it is.
-    fn find(
-        trained: &Trained,
-        inputs: &Trains,
-        targets: &[Vec<Vec<bool>>],
-        fired: &[Trains],
-        shape: Shape,
-        climbs: usize,
-    ) -> Self {
+    /// the quantised layer before it. The search for each neuron improves the `climbs` best initial choices of
+    /// parameters. If `climbs` is 0, the search takes the best initial choice as it is.
+    fn find(trained: &Trained, inputs: &Trains, goal: Goal, shape: Shape, climbs: usize) -> Self {
         let mut network = Self { shape, layers: Vec::new(), inputs: trained.inputs() };
         let mut before = inputs.clone();
         for (at, layer) in trained.layers.iter().enumerate() {
-            let drive = Drive::new(&before, layer, &fired[at]);
+            let drive = Drive::new(&before, layer, &goal.fired[at]);
             let of = |neuron: usize| {
-                let aim =
-                    Aim { drive: &drive, target: &targets[at][neuron], shape: &network.shape };
+                let (target, potentials) =
+                    (&goal.targets[at][neuron], &goal.potentials[at][neuron]);
+                let aim = Aim { drive: &drive, target, potentials, shape: &network.shape };
                 search(layer, neuron, &aim, climbs).1
             };
             let neurons = (0..layer.neurons.len()).into_par_iter().map(of).collect();

@@ -48,6 +48,8 @@ pub(super) struct Aim<'a> {
     pub drive: &'a Drive,
     /// For each step, whether the neuron should fire.
     pub target: &'a [bool],
+    /// For each step, the potential that the neuron should compare with its threshold, in units of the trained network.
+    pub potentials: &'a [f64],
     pub shape: &'a Shape,
 }
 
@@ -71,7 +73,10 @@ struct Choice {
 /// distance between the spikes and the target, and the neuron. `climbs` is the number of initial choices of parameters
 /// that the search improves. If `climbs` is 0, the search takes the best initial choice as it is.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
-    let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
+    let threshold = layer.neurons[at].threshold;
+    let distance = |choice: Choice, most| {
+        made(layer, at, aim.shape, choice).distance(aim, choice.unit / threshold, threshold, most)
+    };
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
     let mut first = choices(layer, at, aim.shape);
     if climbs == 0 {
@@ -221,10 +226,13 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
 
 impl GatedNeuron {
     /// Runs the neuron on the spikes that act on it in `aim`, and returns the distance between the neuron's spikes and
-    /// the target of `aim`. Returns infinity as soon as the distance reaches `most`.
-    fn distance(&self, aim: &Aim, most: f64) -> f64 {
+    /// the target of `aim`, plus the squared errors of its potentials in units of its threshold. (Of several neurons
+    /// with the same spikes, that with the nearest potentials is the most likely to suit other recordings.) `unit`
+    /// converts the chip's potentials to those units, and `threshold` is the trained one. Returns infinity as soon as
+    /// the result reaches `most`.
+    fn distance(&self, aim: &Aim, unit: f64, threshold: f64, most: f64) -> f64 {
         let mut distance = Distance::default();
-        let (mut potential, mut first) = (0_i32, 0);
+        let (mut potential, mut first, mut errors) = (0_i32, 0, 0.0);
         let ends = aim.drive.ends.iter().zip(aim.target);
         for (step, (&end, &target)) in ends.enumerate() {
             let mut added = Added::default();
@@ -233,12 +241,14 @@ impl GatedNeuron {
                 added.add(self.weights[usize::from(spike)]);
             }
             first = end;
+            let error = f64::from(potential + added.all) * unit - aim.potentials[step] / threshold;
+            errors += error.powi(2).min(1.0);
             let fires = self.step(aim.shape, aim.shape.turn(step), &mut potential, added);
             distance.step(fires.into(), target.into());
-            if fires != target && distance.so_far() >= most {
+            if distance.so_far() + errors >= most {
                 return f64::INFINITY;
             }
         }
-        distance.value()
+        distance.value() + errors
     }
 }
