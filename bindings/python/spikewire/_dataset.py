@@ -76,7 +76,9 @@ def dataset(
     futures = []
     try:
         with _progress.bar(progress, "dataset") as tell:
-            futures = [executor.submit(_encoded, keywords, str(log)) for log in left]
+            # A task names its log alone.
+            of_task = {**keywords, "logs": []}
+            futures = [executor.submit(_encoded, of_task, str(log)) for log in left]
             for done, future in enumerate(as_completed(futures), 1):
                 run.add(future.result())
                 if tell:

@@ -1,10 +1,12 @@
 //! Options that choose the recording and its channels, and options for converting events between formats.
 
-use anyhow::Result;
-use clap::Args;
+use anyhow::{Context, Result};
 use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
 use flight_logs::{Kind, Packing};
+use lab::dataset::{self, ChannelsOf, Split};
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
+use std::fs;
 use std::io::{self, BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -24,7 +26,7 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and
+    /// Table (CSV, JSON lines, Parquet, Feather, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and
     /// `.log`, telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is standard
     /// input
     pub input: PathBuf,
@@ -83,6 +85,106 @@ pub(crate) struct ChannelOptions {
     accept_cut: bool,
 }
 
+/// Options that name many logs.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LogList {
+    /// Logs and tables of all kinds, directories, and patterns such as 'logs/**/*.ulg'. In a directory, logs are
+    /// recognised by their content, and tables by their file extensions, such as .csv and .parquet
+    #[arg(value_name = "LOG", required_unless_present = "list")]
+    logs: Vec<PathBuf>,
+    /// File that lists further logs, directories and patterns, one on each line; `-` is standard input
+    #[arg(long, value_name = "FILE")]
+    list: Option<PathBuf>,
+}
+
+/// Options that choose many logs, or the logs of a data set.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LogOptions {
+    #[command(flatten)]
+    list: LogList,
+    /// Flights to take from a data set of `dataset`, which is given by its directory or its `manifest.jsonl`
+    #[arg(long, value_enum, default_value_t = Side::Train, value_name = "SIDE", help_heading = "Input")]
+    split: Side,
+}
+
+/// The value of `--split`: a side of a data set's split.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Side {
+    /// The flights for training
+    Train,
+    /// The flights for testing
+    Test,
+    /// All flights
+    All,
+}
+
+/// Options that choose the channels of many logs.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ManyChannels {
+    /// Channels to read from logs of one kind, in place of those that other options name. KIND is table, ulog,
+    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. If the option is given several times for a kind, each log is
+    /// read with the first NAMES that are all in the log
+    #[arg(long, value_name = "KIND=NAMES", help_heading = "Input")]
+    pub channels_of: Vec<ChannelsOf>,
+    #[command(flatten)]
+    pub channel: ChannelOptions,
+}
+
+impl LogList {
+    /// Returns the logs, directories and patterns as they are given.
+    ///
+    /// # Errors
+    /// Returns an error if the file of `--list` cannot be read.
+    pub(crate) fn given(&self) -> Result<Vec<PathBuf>> {
+        let Some(list) = &self.list else { return Ok(self.logs.clone()) };
+        let text = if list == Path::new("-") {
+            io::read_to_string(io::stdin())
+        } else {
+            fs::read_to_string(list)
+        };
+        let text = text.with_context(|| list.display().to_string())?;
+        let listed = text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from);
+        Ok(self.logs.iter().cloned().chain(listed).collect())
+    }
+}
+
+impl LogOptions {
+    /// Returns the path of each log.
+    ///
+    /// # Errors
+    /// Returns an error if a file cannot be found, or if a list or a manifest cannot be read.
+    pub(crate) fn paths(&self) -> Result<Vec<PathBuf>> {
+        let split = match self.split {
+            Side::Train => Some(Split::Train),
+            Side::Test => Some(Split::Test),
+            Side::All => None,
+        };
+        Ok(dataset::expand(&self.list.given()?, split)?)
+    }
+}
+
+impl ManyChannels {
+    /// Calls `read` with the options for reading one of the logs. Of several logs, each is read without the options
+    /// that do not apply to its kind; a single one is refused if there are any.
+    ///
+    /// # Errors
+    /// Returns an error if the log cannot be read.
+    pub(crate) fn read<T>(
+        &self,
+        log: &Path,
+        is_single: bool,
+        mut read: impl FnMut(&input::InputOptions) -> lab::Result<T>,
+    ) -> Result<T> {
+        let file = as_file(log)?;
+        let options = self.channel.of(&file);
+        if is_single && self.channels_of.is_empty() {
+            return Ok(read(&options)?);
+        }
+        let kind = if options.is_stdin() { None } else { Kind::of(&file)? };
+        Ok(dataset::read(&file, kind, &options.channel, &self.channels_of, read)?)
+    }
+}
+
 /// Returns a parser of a unit of time: `s`, `ms`, `us` or `ns`.
 fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
     PossibleValuesParser::new(["s", "ms", "us", "ns"]).map(|name| match name.as_str() {
@@ -130,15 +232,15 @@ impl ChannelOptions {
 /// Temporary copy of standard input; `None` if no copy was needed.
 static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 
-/// Returns the path from which a recording can be read. A log, a `NumPy` archive or a Parquet file on standard input is
+/// Returns the path from which a recording can be read. A log, a `NumPy` archive, a Parquet or a Feather file on standard input is
 /// copied to a temporary file, because readers need random access to it; the result is then the path of the copy.
 /// Otherwise the result is `input` itself.
 ///
 /// # Errors
 /// Returns an error if standard input cannot be read or copied.
 pub(crate) fn as_file(input: &Path) -> Result<PathBuf> {
-    /// First bytes of the tables that are copied: `NumPy`'s `.npz` archives, and Parquet files.
-    const TABLES: [&[u8]; 2] = [b"PK\x03\x04", b"PAR1"];
+    /// First bytes of the tables that are copied: `NumPy`'s `.npz` archives, Parquet and Feather files.
+    const TABLES: [&[u8]; 3] = [b"PK\x03\x04", b"PAR1", b"ARROW1"];
     if input != Path::new("-") {
         return Ok(input.to_owned());
     }

@@ -20,7 +20,7 @@ fn table(times: impl Iterator<Item = i64>) -> String {
 /// number of spikes a second.
 fn spikes_a_second(path: &str) -> (String, f64) {
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
-    let rows: serde_json::Value = ran.json();
+    let rows = ran.schemes();
     (ran.stderr, rows[0]["spikes_per_second"].as_f64().unwrap())
 }
 
@@ -61,7 +61,7 @@ fn no_code_joins_two_segments() {
     }
     let (directory, path) = file("x.csv", text);
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
-    let rows: serde_json::Value = ran.json();
+    let rows = ran.schemes();
     assert!(rows[0]["rmse"].as_f64().unwrap() < 0.2, "{}", ran.output);
     assert_eq!(rows[0]["slope"]["steps_above_threshold"], 0, "{}", ran.output);
 

@@ -4,6 +4,7 @@ use crate::common::{cargo, command, output, paths, run};
 use crate::products::c_library;
 use crate::programs::host;
 use crate::programs::python::{environment, install, package, pip};
+use crate::setup;
 use anyhow::{Result, ensure};
 use std::{
     fs,
@@ -31,6 +32,30 @@ pub fn python() -> Result<()> {
     run(tests.env("FLIGHTS", c_library::write_flights()?))?;
     run(command(&python).arg("bindings/python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
     source_package(&python).map(drop)
+}
+
+/// Encodes a thousand logs with the program and with Dask, each killed on the way, and trains a network on logs.
+///
+/// The distribution has torch without the libraries of graphics cards, and that for its own Python alone.
+pub fn fleet() -> Result<()> {
+    let python = environment("python-fleet")?;
+    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    package(&python, "release")?;
+    let thousand =
+        "test --release --package spikewire-cli --test dataset a_thousand -- --ignored --nocapture";
+    run(cargo(thousand).env("FLEET_PYTHON", &python))?;
+
+    setup::packages("torch, for the system's Python", &["python3-torch", "python3-venv"])?;
+    let place = paths::target().join("python-torch");
+    let torch = place.join("bin/python");
+    if !torch.is_file() {
+        run(command("/usr/bin/python3")
+            .args(["-m", "venv", "--system-site-packages"])
+            .arg(&place))?;
+    }
+    install(&torch, &["--no-deps", "snntorch==1.0.0", "maturin==1.16.0"])?;
+    package(&torch, "release")?;
+    run(command(&torch).arg("bindings/python/examples/fleet.py"))
 }
 
 /// Writes the type stub of the schemes' classes.

@@ -254,6 +254,11 @@ const LONG: &[Step] = &[
         python_package::speed,
     ),
     step(
+        "fleet",
+        "a thousand logs, by the program and by Dask, killed on the way; a network trained on logs",
+        python_package::fleet,
+    ),
+    step(
         "all-boards",
         "the other boards' firmware: five flown in emulators, the Pico 2's linked",
         real_boards::more,

@@ -1,7 +1,8 @@
 //! `spikewire tune`: finds the parameters of a scheme that suit flight logs best.
 
-use crate::inputs::{ChannelOptions, as_file};
+use crate::inputs::{LogOptions, ManyChannels};
 use crate::options::{FREE, answer, augment, given, option_group, whole};
+use crate::report::{Log, Report};
 use crate::stop::Stop;
 use crate::words::{option, tell};
 use anyhow::{Context, Result, bail};
@@ -20,6 +21,9 @@ use lab::tune::report::{Cut, Row, print};
 use lab::tune::stretch::HoldOut;
 use lab::tune::{Goal, Limits, Stretch, TuneRequest, Tuned, costs, emit, tune};
 use lab::watch::{Progress, Watch};
+use serde::Serialize;
+use serde_json::json;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -29,8 +33,9 @@ use std::time::Instant;
 ///
 /// The spiking efficiency is 100 less the number of spikes for every 100 samples. Some blocks of each log are held out,
 /// and the settings found are scored on these blocks too. Settings are scored with the encoder and decoder that run on
-/// the drone, in the sample type of --sample. Parameters that are given stay fixed; the others are searched. The
-/// default goal is the least RMSE at the efficiency that the settings of Dupeyroux et al. (2022) reach.
+/// the drone, in the sample type of --sample. Settings are tuned on all logs together. Parameters that are given stay
+/// fixed; the others are searched. The default goal is the least RMSE at the efficiency that the settings of Dupeyroux
+/// et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -40,9 +45,8 @@ Examples:
   spikewire tune flight.csv --scheme sod --spikes 8 --max-rmse 0.1 --emit flight -o flight.toml
   spikewire tune flight.csv --channel gyro_x,gyro_y --scheme all --front front.svg")]
 pub(crate) struct Tune {
-    /// Flight logs or CSV tables; the settings are tuned on all of them together
-    #[arg(required = true, value_name = "LOG")]
-    inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    logs: LogOptions,
     /// Scheme to tune, or `all`
     #[arg(long, value_parser = schemes)]
     scheme: Schemes,
@@ -50,7 +54,7 @@ pub(crate) struct Tune {
     #[arg(long, default_value_t)]
     sample: SampleType,
     #[command(flatten)]
-    channel: ChannelOptions,
+    channels: ManyChannels,
     #[command(flatten)]
     parameters: Fixed,
     /// Goal: least RMSE, with at least this percentage of samples without a spike
@@ -166,7 +170,8 @@ fn is_fixable(parameter: &Parameter) -> bool {
 pub(crate) fn run(options: &Tune) -> Result<()> {
     let mut request = options.request()?;
     request.check()?;
-    request.logs = options.logs()?;
+    let paths = options.logs.paths()?;
+    request.logs = options.recordings(&paths)?;
     let stop = Stop::new(None)?;
     let start = Instant::now();
     let bar = ProgressBar::new(BAR)
@@ -199,15 +204,18 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
         results.push((channel, rows));
     }
     if let Some(picture) = &options.front {
-        draw_fronts(picture, &options.inputs[0], &panels)?;
+        draw_fronts(picture, &paths[0], &panels)?;
         return Ok(());
+    }
+    if options.json {
+        return print_json(&paths, &request, &results);
     }
     options.tell(&results)?;
     if options.emit == Some(Emit::Flight) {
         emitted = options.flight(&request, &results)?;
     }
     if options.emit.is_some() {
-        let mut output = Output::open(options.output.as_deref(), &options.inputs[0])?;
+        let mut output = Output::open(options.output.as_deref(), &paths[0])?;
         output.write_all(emitted.as_bytes())?;
         output.finish()?;
     }
@@ -258,10 +266,10 @@ impl Tune {
     }
 
     /// Reads the chosen channels of each log: an entry for each log, with a recording for each channel.
-    fn logs(&self) -> Result<Vec<Vec<Recording>>> {
+    fn recordings(&self, paths: &[PathBuf]) -> Result<Vec<Vec<Recording>>> {
         let mut logs = Vec::new();
-        for input in &lab::dataset::expand(&self.inputs)? {
-            let recordings = Recording::read_all(&self.channel.of(&as_file(input)?))?;
+        for path in paths {
+            let recordings = self.channels.read(path, paths.len() == 1, Recording::read_all)?;
             if let Some(first) = recordings.first() {
                 tell(&first.notes());
             }
@@ -309,19 +317,9 @@ impl Tune {
         Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
     }
 
-    /// Prints a table of the tuned settings for each channel, or JSON with `--json`. The tables go to standard output.
-    /// They go to standard error if `--emit` writes the settings to standard output.
+    /// Prints a table of the tuned settings for each channel. The tables go to standard output, or to standard error if
+    /// `--emit` writes the settings to standard output.
     fn tell(&self, results: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
-        if self.json {
-            let channels: serde_json::Map<String, serde_json::Value> = results
-                .iter()
-                .map(|(cut, rows)| {
-                    let rows: Vec<&Row> = rows.iter().map(|(_, row)| row).collect();
-                    (cut.name.clone(), serde_json::json!(rows))
-                })
-                .collect();
-            return answer(format_args!("{:#}\n", serde_json::Value::Object(channels)));
-        }
         let is_to_stdout =
             self.emit.is_some() && self.output.as_deref().is_none_or(|path| path == Path::new("-"));
         for (cut, rows) in results {
@@ -334,6 +332,45 @@ impl Tune {
         }
         Ok(())
     }
+}
+
+/// Names of the channels that were read from a log.
+#[derive(Debug, Serialize)]
+struct Channels {
+    channels: Vec<String>,
+}
+
+/// Settings found on all logs together: rows of figures and parameters, by channel.
+#[derive(Debug, Serialize)]
+struct Summary {
+    channels: BTreeMap<String, Vec<serde_json::Value>>,
+}
+
+/// Prints the report of `--json`: the notes on each log, and for each channel a row of figures and parameters for each
+/// scheme.
+fn print_json(
+    paths: &[PathBuf],
+    request: &TuneRequest,
+    results: &[(Cut, Vec<(Scheme, Row)>)],
+) -> Result<()> {
+    let log = |(path, recordings): (&PathBuf, &Vec<Recording>)| {
+        let notes = recordings.first().map(Recording::notes).unwrap_or_default();
+        Log {
+            log: path.display().to_string(),
+            refused: None,
+            notes: notes.iter().map(|note| note.spelled(option).to_string()).collect(),
+            content: Some(Channels {
+                channels: recordings.iter().map(|own| own.name.clone()).collect(),
+            }),
+        }
+    };
+    let logs: Vec<_> = paths.iter().zip(&request.logs).map(log).collect();
+    let rows = |(cut, rows): &(Cut, Vec<(Scheme, Row)>)| {
+        let rows = rows.iter().map(|(_, row)| json!(row)).collect();
+        (cut.name.clone(), rows)
+    };
+    let summary = Summary { channels: results.iter().map(rows).collect() };
+    Report { command: "tune", logs: &logs, summary }.print()
 }
 
 /// Length of the progress bar in steps.

@@ -244,13 +244,13 @@ impl Run {
 }
 
 /// Returns the recordings among files, directories and patterns. The directory or the manifest of a data set is
-/// replaced by the sample files of its training flights. Standard input and names of missing files are returned
-/// unchanged.
+/// replaced by the sample files of the flights on one side of its split, or of all flights if `split` is `None`.
+/// Standard input and names of missing files are returned unchanged.
 ///
 /// # Errors
 /// Returns an error if a directory cannot be read, if a directory or a pattern gives no recordings, or if a manifest is
 /// invalid.
-pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
+pub fn expand(given: &[PathBuf], split: Option<Split>) -> Result<Vec<PathBuf>> {
     let mut all = Vec::new();
     for path in given {
         let directory = if path.file_name().is_some_and(|own| own == manifest::MANIFEST) {
@@ -259,8 +259,9 @@ pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
             Some(path.as_path()).filter(|own| own.join(manifest::MANIFEST).is_file())
         };
         if let Some(directory) = directory {
-            let train = rows(directory)?.into_iter().filter(|row| row.split == Some(Split::Train));
-            all.extend(train.filter_map(|row| row.values).map(|own| directory.join(own)));
+            let rows = rows(directory)?.into_iter();
+            let chosen = rows.filter(|row| split.is_none_or(|own| row.split == Some(own)));
+            all.extend(chosen.filter_map(|row| row.values).map(|own| directory.join(own)));
             continue;
         }
         let is_pattern = !path.exists() && path.display().to_string().contains(['*', '?', '[']);
@@ -277,6 +278,36 @@ pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
         }
     }
     Ok(all)
+}
+
+/// Calls `read` with the options for reading a log of a kind, one of many: without the options that do not apply to the
+/// kind. Of `channels_of`, the entries of this kind are tried in order until the log contains all channels of an entry.
+///
+/// # Errors
+/// Returns an error if the log lacks channels of each entry, or if `read` does.
+pub fn read<T>(
+    log: &Path,
+    kind: Option<Kind>,
+    channel: &ChannelOptions,
+    channels_of: &[ChannelsOf],
+    mut read: impl FnMut(&InputOptions) -> Result<T>,
+) -> Result<T> {
+    let mut channel = channel.clone();
+    if kind.is_some() {
+        (channel.delimiter, channel.rate) = (None, None);
+    }
+    if kind == Some(Kind::Ulog) {
+        (channel.time, channel.time_unit) = (None, None);
+    }
+    let of = |channel| InputOptions { input: log.to_owned(), channel };
+    let mut choices = channels_of.iter().filter(|own| own.kind == name(kind)).peekable();
+    while let Some(own) = choices.next() {
+        match read(&of(channel.clone().with_names(own.names.clone()))) {
+            Err(error) if choices.peek().is_some() && is_channel_missing(&error) => {}
+            other => return other,
+        }
+    }
+    read(&of(channel))
 }
 
 impl Request {
@@ -350,56 +381,12 @@ impl Request {
         let kind = Kind::of(log)?;
         name(kind).clone_into(&mut row.kind);
         row.hash(log)?;
-        let mut choices: Vec<Option<&[String]>> = self
-            .channels_of
-            .iter()
-            .filter(|own| own.kind == row.kind)
-            .map(|own| Some(&own.names[..]))
-            .collect();
-        if choices.is_empty() {
-            choices.push(None);
-        }
-        let mut last = None;
-        for names in choices {
-            match self.encoded_from(&self.input(log, kind, names), row) {
-                Err(error) if is_channel_missing(&error) => last = Some(error),
-                other => return other,
-            }
-        }
-        last.map_or(Ok(()), Err)
-    }
-
-    /// Returns the options for reading a log, without options that do not apply to its kind.
-    fn input(&self, log: &Path, kind: Option<Kind>, names: Option<&[String]>) -> InputOptions {
         let mut channel = self.channel.clone();
-        let own;
-        let names = match (names, &self.code) {
-            (None, Code::Flight(flight)) => {
-                own = flight.channels.iter().map(|own| own.source.clone()).collect::<Vec<_>>();
-                Some(&own[..])
-            }
-            (names, _) => names,
-        };
-        if let Some(names) = names {
-            let (time, time_unit) = (channel.time, channel.time_unit);
-            channel = ChannelOptions {
-                columns: names.to_vec(),
-                time,
-                time_unit,
-                column: Vec::new(),
-                topic: None,
-                field: Vec::new(),
-                fields: Vec::new(),
-                ..channel
-            };
+        if let Code::Flight(flight) = &self.code {
+            let names = flight.channels.iter().map(|own| own.source.clone());
+            channel = channel.with_names(names.collect());
         }
-        if kind.is_some() {
-            (channel.delimiter, channel.rate) = (None, None);
-        }
-        if kind == Some(Kind::Ulog) {
-            (channel.time, channel.time_unit) = (None, None);
-        }
-        InputOptions { input: log.to_owned(), channel }
+        read(log, kind, &channel, &self.channels_of, |input| self.encoded_from(input, row))
     }
 
     fn encoded_from(&self, input: &InputOptions, row: &mut Row) -> Result<()> {

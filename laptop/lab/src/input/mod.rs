@@ -110,6 +110,15 @@ impl Default for ChannelOptions {
     }
 }
 
+impl ChannelOptions {
+    /// Returns the options with other channels: columns of a table, or fields of a log in the form `TOPIC.FIELD`.
+    #[must_use]
+    pub fn with_names(self, names: Vec<String>) -> Self {
+        let (column, field, fields) = (Vec::new(), Vec::new(), Vec::new());
+        Self { columns: names, column, topic: None, field, fields, ..self }
+    }
+}
+
 /// The delimiter of a table's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Delimiter(pub u8);

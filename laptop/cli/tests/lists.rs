@@ -1,0 +1,171 @@
+//! `info`, `score`, `tune` and `advise` with many logs: directories, patterns, lists and data sets; and the shape of the
+//! reports of `--json`.
+
+mod common;
+
+use common::{flight, good, most_memory, ran, spikewire, table};
+use flight_logs::made::Kind;
+use serde_json::Value;
+use std::fs;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+const SF: &str = "--scheme sf --threshold 0.1";
+const CHANNELS: &str = "--channels-of table=x --channels-of mcap=imu.rate";
+
+/// Writes three tables, a log of another kind, and a table that cannot be read.
+fn logs(directory: &Path) {
+    fs::create_dir(directory).unwrap();
+    for log in 1..4 {
+        let wave = (0..400).map(|sample| (f64::from(sample * log) * 0.03).sin());
+        fs::write(directory.join(format!("{log}.csv")), table(&wave.collect::<Vec<_>>())).unwrap();
+    }
+    fs::write(directory.join("log.mcap"), Kind::Mcap.of(0..400)).unwrap();
+    fs::write(directory.join("names.csv"), "x\none\n").unwrap();
+}
+
+/// Returns the names of the logs in a report, without their directories.
+fn names(report: &Value) -> Vec<String> {
+    let logs = report["logs"].as_array().unwrap().iter();
+    logs.map(|own| own["log"].as_str().unwrap().rsplit('/').next().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn a_score_of_many_logs_has_a_row_each_and_a_sum() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name).display().to_string();
+    logs(&directory.path().join("logs"));
+    let all = at("logs");
+    let scored = spikewire(&format!("score {SF} {CHANNELS} {all} --json"), "");
+    assert_eq!(scored.status, 2);
+    assert!(scored.stderr.contains("1 of 5 logs cannot be processed"), "{}", scored.stderr);
+    let report = scored.json();
+    assert_eq!(names(&report), ["1.csv", "2.csv", "3.csv", "log.mcap", "names.csv"]);
+    assert!(report["logs"][4]["refused"].as_str().unwrap().contains("value `one`"));
+    let (mut spikes, mut squares, mut samples) = (0, 0.0, 0.0);
+    for own in &report["logs"].as_array().unwrap()[..4] {
+        let channel = own["channel"].as_str().unwrap();
+        let log = own["log"].as_str().unwrap();
+        let name = if log.ends_with("mcap") { "imu.rate" } else { channel };
+        let alone = ran!("score {SF} --columns {name} {log} --json").log();
+        assert_eq!(&alone, own);
+        let figures = &own["schemes"][0];
+        let rmse = figures["rmse"].as_f64().unwrap();
+        spikes += figures["spikes"].as_u64().unwrap();
+        squares += rmse * rmse * figures["samples"].as_f64().unwrap();
+        samples += figures["samples"].as_f64().unwrap();
+    }
+    let total = &report["summary"]["schemes"][0];
+    assert_eq!((&report["summary"]["logs"], &report["summary"]["refused"]), (&5.into(), &1.into()));
+    assert_eq!((&total["logs"], &total["spikes"]), (&4.into(), &spikes.into()));
+    assert!((total["rmse"].as_f64().unwrap() - (squares / samples).sqrt()).abs() < 1e-12);
+    assert!(total["worst_rmse"].as_f64() >= total["rmse"].as_f64());
+
+    // In the table as well, whether the logs are given by a pattern or by a list.
+    fs::write(directory.path().join("list"), format!("{all}/1.csv\n\n{all}/[23].csv\n")).unwrap();
+    let listed = ran!("score {SF} --list {}", at("list")).output;
+    assert_eq!(listed, ran!("score {SF} {all}/?.csv").output);
+    let rows: Vec<&str> = listed.lines().collect();
+    assert!(rows[0].starts_with("| log ") && rows[4].contains("/3.csv"), "{listed}");
+    assert!(rows[5].starts_with("| all 3 logs ") && rows[5].contains("worst RMSE"), "{listed}");
+    assert_eq!(rows.len(), 6);
+}
+
+#[test]
+fn each_command_takes_a_side_of_a_data_set() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name).display().to_string();
+    logs(&directory.path().join("logs"));
+    ran!("dataset {SF} --rate 200 --test 0.34 {}/?.csv -o {}", at("logs"), at("set"));
+    for command in [
+        format!("score {SF} --rate 200"),
+        "info".to_owned(),
+        "tune --scheme sf --min-efficiency 50 --evaluations 20 --anyway --rate 200".to_owned(),
+        "advise --max-rmse 0.4 --evaluations 10 --rate 200".to_owned(),
+    ] {
+        let [train, test, all] = ["train", "test", "all"].map(|split| {
+            let asked = if command.starts_with("advise") { "set/manifest.jsonl" } else { "set" };
+            let ran = spikewire(&format!("{command} --split {split} {} --json", at(asked)), "");
+            names(&ran.json())
+        });
+        assert_eq!((train.len(), test.len(), all.len()), (2, 1, 3), "{command}");
+        assert!(test.iter().all(|own| all.contains(own) && !train.contains(own)), "{command}");
+    }
+}
+
+/// The log that `score` reads in pieces is scored as it is in memory, by every code, also where its clock starts anew.
+#[test]
+fn a_score_in_pieces_is_that_of_the_whole() {
+    let text = fs::read_to_string(flight("hexarotor.csv")).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let rows: Vec<&str> = rows.lines().collect();
+    // Three flights of 2500, 7 and 12 000 samples, of which some are missing.
+    let flights = [2500, 7, 12_000].into_iter().flat_map(|samples| {
+        (0..samples).map(|sample| {
+            let (_, values) = rows[sample % rows.len()].split_once(',').unwrap();
+            let values = if sample % 997 == 5 { "NA,NA,NA,NA,NA,NA" } else { values };
+            format!("{},{values}\n", sample * 5000)
+        })
+    });
+    let text = format!("{header}\n{}", flights.collect::<String>());
+    let (_directory, path) = common::file("flights.csv", &text);
+    for options in ["", "--scheme mw --threshold 0.1 --window 99", "--sample q8.8"] {
+        let asked = format!("score {options} --column gyro_x --skip-non-finite --json");
+        let read = good(&format!("{asked} {path}"), "");
+        let held = good(&format!("{asked} -"), &text);
+        assert_eq!(read.schemes(), held.schemes(), "{options}");
+        assert_eq!(read.log()["notes"], held.log()["notes"], "{options}");
+    }
+}
+
+/// `score` takes as little memory for a long log as for a short one. Runs on Linux only: `cargo test --release -p
+/// spikewire-cli --test lists -- --ignored --nocapture`. `SAMPLES` sets the length of the log.
+#[test]
+#[ignore = "a measurement"]
+fn a_long_log_is_scored_in_constant_memory() {
+    let samples: u64 =
+        std::env::var("SAMPLES").map_or(20_000_000, |samples| samples.parse().unwrap());
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("long.npy");
+    let mut file = BufWriter::new(fs::File::create(&path).unwrap());
+    let about = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({samples},), }}");
+    // The array begins at a multiple of 64 bytes.
+    file.write_all(b"\x93NUMPY\x01\x00\x76\x00").unwrap();
+    write!(file, "{about:117}\n").unwrap();
+    for sample in 0..samples {
+        let value = (sample as f64 * 0.01).sin() as f32;
+        file.write_all(&value.to_le_bytes()).unwrap();
+    }
+    file.flush().unwrap();
+    let most = most_memory(&format!("score {SF} --rate 1000 {}", path.display()), || false);
+    println!("{samples} samples, {most:.1} MB");
+    assert!((1.0..100.0).contains(&most));
+}
+
+/// Each report has the command, an entry for each log, and a summary.
+#[test]
+fn all_reports_have_one_shape() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("out").display().to_string();
+    let log = flight("hexarotor.csv");
+    for (command, logs) in [
+        (format!("info {log} {log}"), 2),
+        (format!("score {SF} --column gyro_x {log}"), 1),
+        (format!("tune --scheme sf --channel gyro_x --evaluations 20 {log}"), 1),
+        (format!("advise --channel gyro_x --evaluations 10 {log}"), 1),
+        (format!("dataset {SF} --columns gyro_x {log} -o {out}"), 1),
+        ("bench --tests 40 --cases 1".to_owned(), 0),
+    ] {
+        let report = spikewire(&format!("{command} --json"), "").json();
+        let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
+        assert_eq!(keys, ["command", "logs", "summary"], "{command}");
+        assert_eq!(report["command"], command.split(' ').next().unwrap());
+        assert!(report["summary"].is_object(), "{command}");
+        let entries = report["logs"].as_array().unwrap();
+        assert_eq!(entries.len(), logs, "{command}");
+        for entry in entries {
+            assert!(entry["log"].as_str().unwrap().ends_with("hexarotor.csv"), "{command}");
+            assert!(entry["refused"].is_null() && entry["notes"].is_array(), "{command}");
+        }
+    }
+}
