@@ -49,7 +49,9 @@ STEPS, FLIES = 50, 0.05
 def seconds(row):
     """The seconds of a log: spikes (steps, seconds, 6), and whether it flies in each."""
     roll = sw.read(place / "spikes" / row["values"]).x[0]
-    index, channel, polarity = sw.read(place / "spikes" / row["events"], "index", "channel", "polarity").x.astype(int)
+    index, channel, polarity = np.empty((3, 0), int)
+    if any(row["spikes"]):
+        index, channel, polarity = sw.read(place / "spikes" / row["events"], "index", "channel", "polarity").x.astype(int)
     second = round(row["rate"])
     starts = range(0, len(roll) - second + 1, second // 4)
     spikes = np.zeros((STEPS, len(starts), 6), np.float32)

@@ -148,6 +148,7 @@ fn all_reports_have_one_shape() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out").display().to_string();
     let log = flight("hexarotor.csv");
+    let network = "tests/peers/on_chip.json";
     for (command, logs) in [
         (format!("info {log} {log}"), 2),
         (format!("score {SF} --column gyro_x {log}"), 1),
@@ -155,6 +156,12 @@ fn all_reports_have_one_shape() {
         (format!("advise --channel gyro_x --evaluations 10 {log}"), 1),
         (format!("dataset {SF} --columns gyro_x {log} -o {out}"), 1),
         ("bench --tests 40 --cases 1".to_owned(), 0),
+        (
+            format!(
+                "network {network} --scheme sf --threshold 0.05 --columns gyro_x,gyro_y,gyro_z {log} -o {out}.rs"
+            ),
+            1,
+        ),
     ] {
         let report = spikewire(&format!("{command} --json"), "").json();
         let keys: Vec<&String> = report.as_object().unwrap().keys().collect();

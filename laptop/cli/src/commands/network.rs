@@ -4,9 +4,10 @@
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes};
+use crate::report::{Counts, Log, Report};
 use crate::words;
 use anyhow::{Context, Result, ensure};
-use catalogue::run::{Calibrated, Known, SampleType, Settings, Words};
+use catalogue::run::{Calibrated, Known, SampleType, Settings, Worded, Words};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -21,7 +22,9 @@ use lab::network::{
 use lab::output::Output;
 use lab::scheme::Scheme;
 use lab::trial::Recording;
+use serde::Serialize;
 use spikewire::Polarity;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, BufRead, Write, stdin};
@@ -104,6 +107,20 @@ pub(crate) struct Network {
     /// and the numbers of the outputs that fired. The Rust file is not written unless -o is given
     #[arg(long)]
     live: bool,
+    /// Print the comparisons as JSON; needs -o
+    #[arg(long, requires = "output", conflicts_with = "live")]
+    json: bool,
+}
+
+/// The comparisons of a network on a recording.
+#[derive(Serialize)]
+struct Content<'a> {
+    tuned: &'a Figures,
+    held_out: Option<&'a Figures>,
+    /// Share of active steps in which the outputs fire as in the training framework.
+    reading: Option<f64>,
+    /// Share of active steps that each part of the chip's arithmetic alone leaves as they were.
+    costs: BTreeMap<String, f64>,
 }
 
 /// Name by which `--on` selects the flight controller rather than a chip.
@@ -239,6 +256,24 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         let mut output = Output::open(Some(path), &input.input)?;
         output.write_all(&brought.network.bytes()?)?;
         output.finish()?;
+    }
+    if options.json {
+        let notes = driven.notes.iter().map(|note| note.spelled(words::option).to_string());
+        let Brought { network, tuned, held_out, costs, reading } = &brought;
+        let content = Content {
+            tuned,
+            held_out: held_out.as_ref(),
+            reading: *reading,
+            costs: costs.iter().map(|(cost, left)| (cost.to_string(), *left)).collect(),
+        };
+        let log = Log {
+            log: input.input.display().to_string(),
+            refused: None,
+            notes: notes.chain(network.notes()).collect(),
+            content: Some(content),
+        };
+        let logs = [log];
+        return Report { command: "network", logs: &logs, summary: Counts::of(&logs) }.print();
     }
     words::tell(&driven.notes);
     report(&brought);
