@@ -26,9 +26,9 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// Table (CSV, JSON lines, Parquet, Feather, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and
-    /// `.log`, telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is standard
-    /// input
+    /// Table (CSV, JSON lines, Parquet, Feather, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s
+    /// `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is
+    /// standard input
     pub input: PathBuf,
     #[command(flatten)]
     channel: ChannelOptions,
@@ -232,9 +232,9 @@ impl ChannelOptions {
 /// Temporary copy of standard input; `None` if no copy was needed.
 static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 
-/// Returns the path from which a recording can be read. A log, a `NumPy` archive, a Parquet or a Feather file on standard input is
-/// copied to a temporary file, because readers need random access to it; the result is then the path of the copy.
-/// Otherwise the result is `input` itself.
+/// Returns the path from which a recording can be read. A log, a `NumPy` archive, a Parquet or a Feather file on
+/// standard input is copied to a temporary file, because readers need random access to it; the result is then the path
+/// of the copy. Otherwise the result is `input` itself.
 ///
 /// # Errors
 /// Returns an error if standard input cannot be read or copied.

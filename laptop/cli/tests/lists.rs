@@ -1,5 +1,5 @@
-//! `info`, `score`, `tune` and `advise` with many logs: directories, patterns, lists and data sets; and the shape of the
-//! reports of `--json`.
+//! `info`, `score`, `tune` and `advise` with many logs: directories, patterns, lists and data sets; and the shape of
+//! the reports of `--json`.
 
 mod common;
 

@@ -53,8 +53,8 @@ pub(crate) struct Sums {
 type Take<'a> = dyn FnMut(&[Event], &[f64]) + 'a;
 
 impl<'a> Measure<'a> {
-    /// Makes a measurement of a recording without samples yet. `mean` and `calibrated` are those of the whole recording,
-    /// and `first` holds its first samples.
+    /// Makes a measurement of a recording without samples yet. `mean` and `calibrated` are those of the whole
+    /// recording, and `first` holds its first samples.
     ///
     /// # Errors
     /// Returns an error if a parameter is invalid.

@@ -90,7 +90,7 @@ pub struct Scored {
 }
 
 /// Scores schemes on one channel of a recording. The file is read twice, in constant memory: the first pass finds mean,
-/// range and quantiles. Standard input is held in memory instead.
+/// range and quantiles. Standard input and pipes, which can be read only once, are held in memory.
 ///
 /// # Errors
 /// Returns an error if the input cannot be read, has several channels, or has no finite sample.
@@ -100,7 +100,8 @@ pub fn score(
     asked: &Asked,
     sample: SampleType,
 ) -> Result<Scored> {
-    if input.is_stdin() {
+    let is_pipe = input.input.metadata().is_ok_and(|own| !own.is_file() && !own.is_dir());
+    if input.is_stdin() || is_pipe {
         let recording = Recording::read(input)?;
         let figures = |scheme: &Scheme| {
             let trial = Trial::new(*scheme, asked, sample, &recording);
@@ -181,7 +182,7 @@ impl First {
             if chunk.is_empty() {
                 break;
             }
-            let own = chunk.kept(&chunk.finite_rows()).swap_remove(0);
+            let own = chunk.kept(&chunk.finite_rows()).into_iter().next().unwrap_or_default();
             calibrated.observe(&own);
             sum = own.iter().fold(sum, |sum, value| sum + value);
             let missing = count.max(CHUNK).saturating_sub(values.len());

@@ -83,8 +83,8 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// Makes the comparison for a recording that has no samples yet. Returns `None` if the decoded value of the code can
-    /// move by more than one step from sample to sample.
+    /// Makes the comparison for a recording that has no samples yet. Returns `None` if the decoded value of the code
+    /// can move by more than one step from sample to sample.
     pub(crate) fn new(scheme: Scheme, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;
         Some(Self { scheme, threshold, previous: None, samples: 0, above: 0, largest: 0.0 })

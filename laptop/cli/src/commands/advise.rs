@@ -70,12 +70,12 @@ pub(crate) struct Advise {
     /// Seed of the search
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Picture to draw, as `.svg` or `.png`: signal, spikes and reconstruction with the advised scheme; needs one log of
-    /// one channel, or --channel
+    /// Picture to draw, as `.svg` or `.png`: signal, spikes and reconstruction with the advised scheme; needs one log
+    /// of one channel, or --channel
     #[arg(long)]
     picture: Option<PathBuf>,
-    /// Write the advised bank of encoders, one for each channel of one log, as a flight file (`flight.toml`). It is read
-    /// by `emit`, `encode`, `listen`, Python and a firmware's build script
+    /// Write the advised bank of encoders, one for each channel of one log, as a flight file (`flight.toml`). It is
+    /// read by `emit`, `encode`, `listen`, Python and a firmware's build script
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print the whole report as JSON
@@ -254,8 +254,8 @@ impl Summary {
     }
 }
 
-/// Draws the recording of a log, its spikes and its reconstruction, and writes the picture to `picture`. Spikes and reconstruction
-/// are those of the scheme in `advice`; without such a scheme, nothing is written.
+/// Draws the recording of a log, its spikes and its reconstruction, and writes the picture to `picture`. Spikes and
+/// reconstruction are those of the scheme in `advice`; without such a scheme, nothing is written.
 fn draw_advised(
     options: &Advise,
     (picture, log): (&Path, &Path),

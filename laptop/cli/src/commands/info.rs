@@ -18,8 +18,8 @@ use std::path::Path;
 /// List the content of logs and tables: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, telemetry `.tlog`, bags of ROS 1
 /// and 2, MCAP, Betaflight's blackbox; CSV, JSON lines, Parquet, Feather, `NumPy`'s arrays; also compressed.
 ///
-/// For a log: its topics with their fields, rates and gaps, and the data that the logger lost. For a table: its columns,
-/// rows, rate and gaps. Each of several files is listed under its name.
+/// For a log: its topics with their fields, rates and gaps, and the data that the logger lost. For a table: its
+/// columns, rows, rate and gaps. Each of several files is listed under its name.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -220,7 +220,8 @@ pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Asked)
     }
 }
 
-/// Prints a table with a row for each log and scheme, and for each scheme a row over all logs. A single log has no name.
+/// Prints a table with a row for each log and scheme, and for each scheme a row over all logs. A single log has no
+/// name.
 fn print_table(logs: &[(&str, &[Outcome])], totals: &[Total]) -> Result<()> {
     let all = format!("all {} logs", logs.len());
     let names = logs.iter().map(|(log, _)| *log).chain((!totals.is_empty()).then_some(&*all));

@@ -92,8 +92,9 @@ fn quote(own: &str, text: &mut Vec<u8>) {
     text.push(b'"');
 }
 
-/// Returns the table in an `.npz` archive, a Parquet or a Feather file as CSV. These formats need random access. Returns `None` if
-/// the first bytes of the file belong to none of these formats.
+/// Returns the table in an `.npz` archive, a Parquet or a Feather file as CSV. These formats need random access.
+/// Returns
+/// `None` if the first bytes of the file belong to none of these formats.
 ///
 /// # Errors
 /// Returns an error if the file is damaged, or holds no table.
