@@ -18,6 +18,7 @@ pub(crate) struct Report<'a, L, S> {
 
 /// The entry of a log.
 #[derive(Debug, Serialize)]
+#[allow(clippy::struct_field_names, reason = "the members of the report")]
 pub(crate) struct Log<T> {
     /// Path of the log, as given or found.
     pub log: String,

@@ -131,7 +131,7 @@ fn a_long_log_is_scored_in_constant_memory() {
     let about = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({samples},), }}");
     // The array begins at a multiple of 64 bytes.
     file.write_all(b"\x93NUMPY\x01\x00\x76\x00").unwrap();
-    write!(file, "{about:117}\n").unwrap();
+    writeln!(file, "{about:117}").unwrap();
     for sample in 0..samples {
         let value = (sample as f64 * 0.01).sin() as f32;
         file.write_all(&value.to_le_bytes()).unwrap();

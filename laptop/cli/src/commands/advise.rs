@@ -124,7 +124,9 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         match advised {
             Ok((notes, advised)) => {
                 if !options.json {
-                    notes.iter().for_each(|note| eprintln!("{log}: {note}"));
+                    for note in &notes {
+                        eprintln!("{log}: {note}");
+                    }
                     answer(format_args!("{log}\n{}\n", advised.page()))?;
                 }
                 all.push(Log { log, refused: None, notes, content: Some(advised) });
@@ -151,7 +153,9 @@ impl Advise {
         if self.picture.is_some() && request.recordings.len() > 1 {
             bail!("--picture draws one channel; --channel says which");
         }
-        notes.iter().for_each(|note| eprintln!("{note}"));
+        for note in &notes {
+            eprintln!("{note}");
+        }
         let log = path.display().to_string();
         let content = Some(self.advised(&request)?);
         let all = [Log { log, refused: None, notes, content }];

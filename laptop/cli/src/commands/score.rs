@@ -102,7 +102,9 @@ pub(crate) fn run(options: &Score) -> Result<()> {
         let of = if is_single { String::new() } else { format!("{log}: ") };
         match scored.and_then(content) {
             Ok((notes, content)) => {
-                notes.iter().for_each(|note| eprintln!("{of}{note}"));
+                for note in &notes {
+                    eprintln!("{of}{note}");
+                }
                 content.tell(&of);
                 all.push(Log { log, refused: None, notes, content: Some(content) });
             }
@@ -226,7 +228,7 @@ fn print_table(logs: &[(&str, &[Outcome])], totals: &[Total]) -> Result<()> {
     let all = format!("all {} logs", logs.len());
     let names = logs.iter().map(|(log, _)| *log).chain((!totals.is_empty()).then_some(&*all));
     let width = names.map(|name| name.chars().count()).max().unwrap_or(0);
-    let named = |name: &str| match width {
+    let first = |name: &str| match width {
         0 => String::new(),
         width => format!("| {name:width$} "),
     };
@@ -234,7 +236,7 @@ fn print_table(logs: &[(&str, &[Outcome])], totals: &[Total]) -> Result<()> {
     writeln!(
         output,
         "{}| scheme              |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters |",
-        named("log")
+        first("log")
     )?;
     let line = if width == 0 { String::new() } else { format!("|{}", "-".repeat(width + 2)) };
     writeln!(
@@ -243,7 +245,7 @@ fn print_table(logs: &[(&str, &[Outcome])], totals: &[Total]) -> Result<()> {
     )?;
     let empty = "-";
     for (log, outcome) in logs.iter().flat_map(|(log, own)| own.iter().map(move |own| (log, own))) {
-        let log = named(log);
+        let log = first(log);
         let Figures { scheme, spikes, efficiency, rmse, snr, spikes_per_second, brief, .. } =
             match outcome {
                 Outcome::Figures(figures) => figures.as_ref(),
@@ -265,7 +267,7 @@ fn print_table(logs: &[(&str, &[Outcome])], totals: &[Total]) -> Result<()> {
         writeln!(
             output,
             "{}| {scheme:19} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {empty:>7} | {empty:>8} | worst RMSE {worst_rmse:.5} in {worst_log} |",
-            named(&all)
+            first(&all)
         )?;
     }
     Ok(output.finish()?)
