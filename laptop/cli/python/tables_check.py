@@ -31,9 +31,6 @@ def write(directory, recording):
     for packing in ("none", "snappy", "lz4", "gzip"):
         table.to_parquet(at(f"{packing}.parquet"), compression=packing, index=False)
         yield at(f"{packing}.parquet"), []
-    for packing in ("uncompressed", "lz4"):
-        table.to_feather(at(f"{packing}.feather"), compression=packing)
-        yield at(f"{packing}.feather"), []
     table.to_json(at("lines.jsonl"), orient="records", lines=True, double_precision=15)
     if pd.read_json(at("lines.jsonl"), lines=True, precise_float=True).equals(table):
         yield at("lines.jsonl"), []

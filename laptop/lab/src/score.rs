@@ -44,7 +44,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Computes the figures of a trial. The trial's decoded values are compared with the samples of the recording.
+    /// Returns the figures of a trial, with the recording's length and largest slope.
     pub fn of(recording: &Recording, trial: &Trial) -> Self {
         let slope = Slope::new(trial.scheme, recording, &trial.settings);
         let notes = trial.notes.clone();
@@ -90,7 +90,9 @@ pub struct Scored {
 }
 
 /// Scores schemes on one channel of a recording. The file is read twice, in constant memory: the first pass finds mean,
-/// range and quantiles. Standard input and pipes, which can be read only once, are held in memory.
+/// range and quantiles. Standard input and pipes, which can be read only once, are held in memory. The figures are the
+/// same. In both cases the usual step of the times, by which gaps and restarts of the clock are found, is that of the
+/// first [`CHUNK`] samples, as for [`encode`](crate::encode).
 ///
 /// # Errors
 /// Returns an error if the input cannot be read, has several channels, or has no finite sample.

@@ -1,8 +1,7 @@
 //! Encodes and decodes recordings in memory, in order to draw and score the results.
 
 use crate::Result;
-use crate::input::TableKind;
-use crate::input::{CHUNK, Clock, InputOptions, Kind};
+use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind};
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
@@ -50,15 +49,20 @@ impl Recording {
         Self::read_all(input)?.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
     }
 
-    /// Reads a recording of every chosen channel. Rows in which any channel is not finite are left out.
+    /// Reads a recording of every chosen channel. Rows in which any channel is not finite are left out. The usual step
+    /// of the times is that of the first [`CHUNK`] samples.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read, or if no row is finite in all columns.
     pub fn read_all(input: &InputOptions) -> Result<Vec<Self>> {
         let mut source = input.open()?;
-        let all = source.rest()?;
+        let mut all = Chunk::default();
+        source.next(&mut all)?;
+        // As in files that are read in pieces, the first piece tells the usual step.
+        let first = all.times.len();
+        all.append(&mut source.rest()?);
         let rows = all.finite_rows();
-        let mut clock = Clock::new(&all.times, input.rate, input.gap);
+        let mut clock = Clock::new(&all.times[..first], input.rate, input.gap);
         let steps = clock.observe(&all.times);
         let restarts = steps.iter().filter(|step| step.kind == Kind::Restart);
         let starts = restarts.map(|step| step.after as usize + 1);
@@ -182,6 +186,7 @@ pub struct Trial {
     pub events: Vec<Event>,
     /// The decoded values, one for each sample.
     pub decoded: Vec<f64>,
+    /// Numbers of samples and spikes, and sums of the errors.
     pub(crate) sums: Sums,
 }
 

@@ -167,7 +167,7 @@ impl Chunk {
 
     /// Moves the samples and times of `other` to the end of this chunk.
     pub fn append(&mut self, other: &mut Self) {
-        self.columns.resize(other.columns.len(), Vec::new());
+        self.columns.resize(self.columns.len().max(other.columns.len()), Vec::new());
         for (column, more) in self.columns.iter_mut().zip(&mut other.columns) {
             column.append(more);
         }

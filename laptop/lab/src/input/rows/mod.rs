@@ -1,10 +1,8 @@
-//! Converts tables in other formats (JSON lines, `NumPy` arrays, Parquet and Feather) to the lines of a CSV table.
+//! Converts tables in other formats (JSON lines, `NumPy` arrays and Parquet) to the lines of a CSV table.
 //!
 //! The same rules for columns, times and missing values thus apply to all tables. A number that the file stores as text
 //! keeps its digits. A binary number becomes the shortest text that reads back as the same number.
 
-#[cfg(feature = "datasets")]
-mod feather;
 mod json;
 mod numpy;
 #[cfg(feature = "datasets")]
@@ -23,9 +21,6 @@ const NPZ: &[u8] = b"PK\x03\x04";
 /// First bytes of a Parquet file.
 #[cfg(feature = "datasets")]
 const PARQUET: &[u8] = b"PAR1";
-/// First bytes of a Feather file.
-#[cfg(feature = "datasets")]
-const FEATHER: &[u8] = b"ARROW1";
 
 /// A table in a format other than CSV. Its rows are converted to lines of CSV.
 trait Rows {
@@ -92,9 +87,8 @@ fn quote(own: &str, text: &mut Vec<u8>) {
     text.push(b'"');
 }
 
-/// Returns the table in an `.npz` archive, a Parquet or a Feather file as CSV. These formats need random access.
-/// Returns
-/// `None` if the first bytes of the file belong to none of these formats.
+/// Returns the table in an `.npz` archive or a Parquet file as CSV. These formats need random access. Returns `None` if
+/// the first bytes of the file belong to neither format.
 ///
 /// # Errors
 /// Returns an error if the file is damaged, or holds no table.
@@ -109,10 +103,6 @@ pub(super) fn of_file(path: &Path, name: &str) -> Result<Option<Box<dyn Read>>> 
     #[cfg(feature = "datasets")]
     if start.starts_with(PARQUET) {
         return parquet::open(file).map(Some).map_err(|error| error.at(name));
-    }
-    #[cfg(feature = "datasets")]
-    if start.starts_with(FEATHER) {
-        return feather::open(file).map(Some).map_err(|error| error.at(name));
     }
     Ok(None)
 }

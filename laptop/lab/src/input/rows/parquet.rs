@@ -5,7 +5,6 @@ use crate::Result;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use parquet::record::reader::RowIter;
-use std::borrow::Borrow;
 use std::fs::File;
 use std::io::{self, Read};
 
@@ -37,24 +36,19 @@ impl Rows for Table {
     fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool> {
         let Some(row) = self.0.next() else { return Ok(false) };
         let row = row.map_err(io::Error::other)?;
-        write_row(row.get_column_iter().map(|(_, field)| field), text);
+        let is_single = row.len() == 1;
+        for (_, field) in row.get_column_iter() {
+            write(field, text);
+            text.push(b',');
+        }
+        // An empty line would be passed over.
+        if is_single && text.ends_with(b"\n,") || text.as_slice() == b"," {
+            text.pop();
+            text.extend(b"NA,");
+        }
+        end(text);
         Ok(true)
     }
-}
-
-/// Appends a row to `text` as a line of CSV.
-pub(super) fn write_row<F: Borrow<Field>>(fields: impl Iterator<Item = F>, text: &mut Vec<u8>) {
-    let start = text.len();
-    for field in fields {
-        write(field.borrow(), text);
-        text.push(b',');
-    }
-    // An empty line would be passed over.
-    if text.get(start..) == Some(b",") {
-        text.pop();
-        text.extend(b"NA,");
-    }
-    end(text);
 }
 
 /// Appends a value to `text`. A time is written as a whole number in the file's unit.
