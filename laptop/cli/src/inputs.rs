@@ -1,10 +1,10 @@
 //! Options that choose the recording and its channels, and options for converting events between formats.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use flight_logs::{Kind, Packing};
-use lab::dataset::{self, ChannelsOf, Split};
+use lab::dataset::{self, ChannelsOf, Found, Split};
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
 use std::fs;
 use std::io::{self, BufRead, Cursor, Read};
@@ -26,9 +26,9 @@ pub(crate) struct StreamOptions {
 /// The recording, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InputOptions {
-    /// Table (CSV, JSON lines, Parquet, Feather, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s
-    /// `.bin` and `.log`, telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is
-    /// standard input
+    /// Table (CSV, JSON lines, Parquet, `NumPy`'s `.npy` and `.npz`) or log (PX4's `ULog`, `ArduPilot`'s `.bin` and
+    /// `.log`, telemetry `.tlog`, bag of ROS 1 or 2, MCAP, Betaflight's blackbox), also compressed; `-` is standard
+    /// input
     pub input: PathBuf,
     #[command(flatten)]
     channel: ChannelOptions,
@@ -102,9 +102,10 @@ pub(crate) struct LogList {
 pub(crate) struct LogOptions {
     #[command(flatten)]
     list: LogList,
-    /// Flights to take from a data set of `dataset`, which is given by its directory or its `manifest.jsonl`
-    #[arg(long, value_enum, default_value_t = Side::Train, value_name = "SIDE", help_heading = "Input")]
-    split: Side,
+    /// Flights to take from a data set of `dataset`, which is given by its directory or its `manifest.jsonl`; default:
+    /// train
+    #[arg(long, value_enum, value_name = "SIDE", help_heading = "Input")]
+    split: Option<Side>,
 }
 
 /// The value of `--split`: a side of a data set's split.
@@ -134,14 +135,15 @@ impl LogList {
     /// Returns the logs, directories and patterns as they are given.
     ///
     /// # Errors
-    /// Returns an error if the file of `--list` cannot be read.
+    /// Returns an error if the file of `--list` cannot be read, or if standard input is both the list and a log.
     pub(crate) fn given(&self) -> Result<Vec<PathBuf>> {
         let Some(list) = &self.list else { return Ok(self.logs.clone()) };
-        let text = if list == Path::new("-") {
-            io::read_to_string(io::stdin())
-        } else {
-            fs::read_to_string(list)
-        };
+        let is_stdin = list == Path::new("-");
+        if is_stdin && self.logs.contains(list) {
+            bail!("standard input cannot be both the list and a log");
+        }
+        let text =
+            if is_stdin { io::read_to_string(io::stdin()) } else { fs::read_to_string(list) };
         let text = text.with_context(|| list.display().to_string())?;
         let listed = text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from);
         Ok(self.logs.iter().cloned().chain(listed).collect())
@@ -149,23 +151,28 @@ impl LogList {
 }
 
 impl LogOptions {
-    /// Returns the path of each log.
+    /// Finds the logs. A file that is missing is found too, and refused when it is read.
     ///
     /// # Errors
-    /// Returns an error if a file cannot be found, or if a list or a manifest cannot be read.
-    pub(crate) fn paths(&self) -> Result<Vec<PathBuf>> {
-        let split = match self.split {
+    /// Returns an error if there are no logs, if a list or a manifest cannot be read, or if `--split` is given without a
+    /// data set.
+    pub(crate) fn find(&self) -> Result<Found> {
+        let split = match self.split.unwrap_or(Side::Train) {
             Side::Train => Some(Split::Train),
             Side::Test => Some(Split::Test),
             Side::All => None,
         };
-        Ok(dataset::expand(&self.list.given()?, split)?)
+        let found = dataset::expand(&self.list.given()?, split)?;
+        if self.split.is_some() && !found.has_set {
+            bail!("--split chooses flights of a data set, and none of the logs is one");
+        }
+        Ok(found)
     }
 }
 
 impl ManyChannels {
-    /// Calls `read` with the options for reading one of the logs. Of several logs, each is read without the options
-    /// that do not apply to its kind; a single one is refused if there are any.
+    /// Calls `read` with the options for reading one of the logs. An option that does not apply to the log's kind is
+    /// ignored. If `is_single` is set and `--channels-of` is not given, such an option is an error instead.
     ///
     /// # Errors
     /// Returns an error if the log cannot be read.
@@ -232,15 +239,15 @@ impl ChannelOptions {
 /// Temporary copy of standard input; `None` if no copy was needed.
 static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 
-/// Returns the path from which a recording can be read. A log, a `NumPy` archive, a Parquet or a Feather file on
-/// standard input is copied to a temporary file, because readers need random access to it; the result is then the path
-/// of the copy. Otherwise the result is `input` itself.
+/// Returns the path from which a recording can be read. A log, a `NumPy` archive or a Parquet file on standard input is
+/// copied to a temporary file, because readers need random access to it; the result is then the path of the copy.
+/// Otherwise the result is `input` itself.
 ///
 /// # Errors
 /// Returns an error if standard input cannot be read or copied.
 pub(crate) fn as_file(input: &Path) -> Result<PathBuf> {
-    /// First bytes of the tables that are copied: `NumPy`'s `.npz` archives, Parquet and Feather files.
-    const TABLES: [&[u8]; 3] = [b"PK\x03\x04", b"PAR1", b"ARROW1"];
+    /// First bytes of the tables that are copied: `NumPy`'s `.npz` archives, and Parquet files.
+    const TABLES: [&[u8]; 2] = [b"PK\x03\x04", b"PAR1"];
     if input != Path::new("-") {
         return Ok(input.to_owned());
     }

@@ -22,11 +22,11 @@ pub(crate) struct Report<'a, L, S> {
 pub(crate) struct Log<T> {
     /// Path of the log, as given or found.
     pub log: String,
-    /// Reason that the log could not be processed; `None` if it was.
+    /// Reason that the log could not be processed, or that nothing was found for it.
     pub refused: Option<String>,
-    /// Notes for the user on the log, as other reports print them on standard error.
+    /// Notes for the user on the log, which are printed on standard error without `--json`.
     pub notes: Vec<String>,
-    /// Results; `None` if the log was refused.
+    /// Results; `None` if the log could not be processed.
     #[serde(flatten)]
     pub content: Option<T>,
 }
@@ -52,7 +52,8 @@ impl<T> Log<T> {
     /// Makes the entry of a log that cannot be processed, and prints the reason on standard error.
     pub(crate) fn refused(log: String, why: &anyhow::Error) -> Self {
         let words = words::of(why);
-        let of = if words.starts_with(&log) { String::new() } else { format!("{log}: ") };
+        let is_named = words.strip_prefix(&log).is_some_and(|rest| rest.starts_with(':'));
+        let of = if is_named { String::new() } else { format!("{log}: ") };
         eprintln!("error: {of}{words}");
         Self { log, refused: Some(words), notes: Vec::new(), content: None }
     }

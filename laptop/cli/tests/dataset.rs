@@ -316,11 +316,13 @@ parameters = { threshold = 20, spikes = 4 }
 #[test]
 fn what_cannot_be_asked_is_refused() {
     let directory = tempfile::tempdir().unwrap();
-    let out = directory.path().join("out");
+    let (out, list) = (directory.path().join("out"), directory.path().join("list"));
+    fs::write(&list, "").unwrap();
     let table = flight("hexarotor.csv");
     let sf = "dataset --scheme sf --threshold 1";
     for (asked, words) in [
         (format!("{sf} -o {}", out.display()), "were not provided"),
+        (format!("{sf} --list {} -o {}", list.display(), out.display()), "no logs: name files"),
         (format!("{sf} missing.csv -o {}", out.display()), "missing.csv: no file of this name"),
         (format!("{sf} --test 2 {table} -o {}", out.display()), "--test 2 must be from 0 to 1"),
         (

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{flight, good, most_memory, ran, spikewire, table};
+use common::{flight, good, most_memory, ran, refused, spikewire, table};
 use flight_logs::made::Kind;
 use serde_json::Value;
 use std::fs;
@@ -99,23 +99,108 @@ fn a_score_in_pieces_is_that_of_the_whole() {
     let text = fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
     let rows: Vec<&str> = rows.lines().collect();
-    // Three flights of 2500, 7 and 12 000 samples, of which some are missing.
-    let flights = [2500, 7, 12_000].into_iter().flat_map(|samples| {
-        (0..samples).map(|sample| {
-            let (_, values) = rows[sample % rows.len()].split_once(',').unwrap();
-            let values = if sample % 997 == 5 { "NA,NA,NA,NA,NA,NA" } else { values };
-            format!("{},{values}\n", sample * 5000)
-        })
+    let row = |sample: usize, time: usize| {
+        let (_, values) = rows[sample % rows.len()].split_once(',').unwrap();
+        let values = if sample % 997 == 5 { "NA,NA,NA,NA,NA,NA" } else { values };
+        format!("{time},{values}\n")
+    };
+    // Flights of 8192 samples, which are read at once, and of 2500, 7 and 12 000. Some samples are missing.
+    let flights = [8192, 2500, 7, 12_000].into_iter();
+    let flights = flights.flat_map(|samples| (0..samples).map(|own| row(own, own * 5000)));
+    // A flight whose rate changes at sample 8192, and whose samples are out of order from sample 9000 on.
+    let one = (0..12_000_usize).map(|sample| {
+        let place = if sample < 9000 { sample } else { sample + 100 - sample % 100 * 2 };
+        row(sample, if sample < 8192 { place * 5000 } else { 8192 * 5000 + (place - 8192) * 1000 })
     });
-    let text = format!("{header}\n{}", flights.collect::<String>());
-    let (_directory, path) = common::file("flights.csv", &text);
-    for options in ["", "--scheme mw --threshold 0.1 --window 99", "--sample q8.8"] {
-        let asked = format!("score {options} --column gyro_x --skip-non-finite --json");
-        let read = good(&format!("{asked} {path}"), "");
-        let held = good(&format!("{asked} -"), &text);
-        assert_eq!(read.schemes(), held.schemes(), "{options}");
-        assert_eq!(read.log()["notes"], held.log()["notes"], "{options}");
+    for flights in [flights.collect::<String>(), one.collect()] {
+        let text = format!("{header}\n{flights}");
+        let (_directory, path) = common::file("flights.csv", &text);
+        for options in ["", "--scheme mw --threshold 0.1 --window 99", "--sample q8.8"] {
+            let asked = format!("score {options} --column gyro_x --skip-non-finite --json");
+            let read = good(&format!("{asked} {path}"), "");
+            for pipe in ["-", "/dev/stdin"] {
+                let held = good(&format!("{asked} {pipe}"), &text);
+                assert_eq!(read.schemes(), held.schemes(), "{options}");
+                assert_eq!(read.log()["notes"], held.log()["notes"], "{options}");
+            }
+        }
     }
+}
+
+#[test]
+fn what_holds_no_log_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name).display().to_string();
+    logs(&directory.path().join("logs"));
+    fs::create_dir(directory.path().join("none")).unwrap();
+    fs::write(directory.path().join("list"), "\n").unwrap();
+    ran!("dataset {SF} --rate 200 --test 0 {}/?.csv -o {}", at("logs"), at("set"));
+    let score = format!("score {SF} --rate 200");
+    refused(&format!("{score} --list {}", at("list")), "", &["no logs: name files"]);
+    refused(&format!("{score} {}", at("none")), "", &["no logs in this directory", ".parquet"]);
+    refused(&format!("{score} --split test {}", at("set")), "", &["no flight for testing"]);
+    refused(&format!("{score} --split test {}", at("logs")), "", &["--split chooses"]);
+    refused(&format!("{score} --list - -"), "", &["both the list and a log"]);
+
+    // Patterns find data sets. A file that is given several times is read once.
+    let read = |logs: &str| names(&ran!("{score} {logs} --json").json()).len();
+    assert_eq!(read(&at("s*t")), 3);
+    assert_eq!(read(&format!("{0}/1.csv {0}/../logs/1.csv {0}/[12].csv", at("logs"))), 2);
+
+    // The manifest of a run that was killed: a log that was encoded again, and half a line.
+    let manifest = directory.path().join("set/manifest.jsonl");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let line = text.lines().next().unwrap();
+    fs::write(&manifest, format!("{text}{line}\n{}", &line[..40])).unwrap();
+    assert_eq!(read(&at("set")), 3);
+    fs::write(&manifest, text.replace("\"split\":\"train\"", "\"split\":null")).unwrap();
+    refused(&format!("{score} --split all {}", at("set")), "", &["not complete"]);
+}
+
+/// A report lists a log that is refused also if it is the only one.
+#[test]
+fn a_report_does_not_depend_on_the_number_of_logs() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name).display().to_string();
+    logs(&directory.path().join("logs"));
+    fs::create_dir(directory.path().join("one")).unwrap();
+    fs::copy(at("logs/log.mcap"), at("one/log.mcap")).unwrap();
+    for asked in [
+        format!("score {SF} --column x {}", at("logs/names.csv")),
+        format!("info {}", at("missing.csv")),
+        format!("advise --max-rmse 1e-9 --evaluations 5 --rate 200 {}", at("logs/1.csv")),
+    ] {
+        let ran = spikewire(&format!("{asked} --json"), "");
+        assert_eq!(ran.status, 2, "{asked}");
+        assert!(ran.log()["refused"].is_string(), "{asked}");
+        assert_eq!(ran.json()["summary"]["refused"], 1, "{asked}");
+    }
+    // An option that does not apply to a log is left out if a directory is given.
+    ran!("score {SF} --rate 200 {CHANNELS} {}", at("one"));
+    refused(&format!("score {SF} --rate 200 {}", at("one/log.mcap")), "", &["--rate"]);
+
+    // Every log has an error of 0.
+    for name in ["0.csv", "00.csv"] {
+        fs::write(directory.path().join(name), table(&[0.0; 99])).unwrap();
+    }
+    let report = ran!("score {SF} {} {} --json", at("0.csv"), at("00.csv")).json();
+    assert_eq!(report["summary"]["schemes"][0]["worst_log"], at("0.csv"));
+}
+
+#[test]
+fn logs_of_several_kinds_are_tuned_together() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join("logs").join(name).display().to_string();
+    logs(&directory.path().join("logs"));
+    let tune = "tune --scheme sf --min-efficiency 50 --evaluations 20 --anyway --rate 200";
+    let report = ran!("{tune} {CHANNELS} {} {} --json", at("1.csv"), at("log.mcap")).json();
+    let channels: Vec<_> =
+        report["logs"].as_array().unwrap().iter().map(|own| &own["channels"][0]).collect();
+    assert_eq!(channels, ["x", "imu.rate"]);
+    assert!(report["summary"]["channels"]["x"].is_array());
+    fs::write(at("y.csv"), "y\n1\n2\n").unwrap();
+    let words = ["other channels: x in ", "1.csv, y in "];
+    refused(&format!("{tune} {} {}", at("1.csv"), at("y.csv")), "", &words);
 }
 
 /// `score` takes as little memory for a long log as for a short one. Runs on Linux only: `cargo test --release -p
@@ -148,9 +233,11 @@ fn all_reports_have_one_shape() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out").display().to_string();
     let log = flight("hexarotor.csv");
+    let copy = directory.path().join("copy-of-hexarotor.csv");
+    fs::copy(&log, &copy).unwrap();
     let network = "tests/peers/on_chip.json";
     for (command, logs) in [
-        (format!("info {log} {log}"), 2),
+        (format!("info {log} {}", copy.display()), 2),
         (format!("score {SF} --column gyro_x {log}"), 1),
         (format!("tune --scheme sf --channel gyro_x --evaluations 20 {log}"), 1),
         (format!("advise --channel gyro_x --evaluations 10 {log}"), 1),
@@ -167,9 +254,12 @@ fn all_reports_have_one_shape() {
         let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
         assert_eq!(keys, ["command", "logs", "summary"], "{command}");
         assert_eq!(report["command"], command.split(' ').next().unwrap());
-        assert!(report["summary"].is_object(), "{command}");
+        let summary = report["summary"].as_object().unwrap();
         let entries = report["logs"].as_array().unwrap();
         assert_eq!(entries.len(), logs, "{command}");
+        if !command.starts_with("bench") {
+            assert_eq!((&summary["logs"], &summary["refused"]), (&logs.into(), &0.into()));
+        }
         for entry in entries {
             assert!(entry["log"].as_str().unwrap().ends_with("hexarotor.csv"), "{command}");
             assert!(entry["refused"].is_null() && entry["notes"].is_array(), "{command}");

@@ -226,3 +226,43 @@ fn resolved(
     let settings = scheme.resolve(sample, asked, &known);
     settings.map_err(|error| explained(error.into(), sample, first))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Measure, resolved};
+    use crate::scheme::Scheme;
+    use catalogue::run::{Asked, Calibrated, Event, SampleType};
+
+    /// A recording that comes in pieces has the events and values that one codec gives for the whole.
+    #[test]
+    fn pieces_are_measured_as_the_whole() {
+        let values: Vec<f64> = (0..1500).map(|sample| (f64::from(sample) * 0.05).sin()).collect();
+        let (sample, asked) = (SampleType::F32, Asked { paper: true, ..Asked::default() });
+        let mut calibrated = Calibrated::of(sample, &asked);
+        calibrated.observe(&values);
+        for scheme in Scheme::all() {
+            let own = asked.channel(scheme.info(), 0, 1).unwrap();
+            let settings = resolved(scheme, sample, &own, &calibrated, &values).unwrap();
+            let mut codec = scheme.codec(&settings).unwrap();
+            let (mut events, mut decoded) = (Vec::new(), Vec::new());
+            codec.encode(&values, &mut events);
+            codec.finish(&mut events);
+            codec.decode(values.len(), &events, &mut decoded).unwrap();
+            for length in [1, 7, values.len()] {
+                let known = (&calibrated, 0.0);
+                let mut measure = Measure::new(scheme, &asked, sample, known, &values).unwrap();
+                let (mut all, mut follows) = (Vec::new(), Vec::new());
+                let mut take = |new: &[Event], values: &[f64]| {
+                    all.extend_from_slice(new);
+                    follows.extend_from_slice(values);
+                };
+                for piece in values.chunks(length) {
+                    measure.observe(piece, &mut take).unwrap();
+                }
+                measure.end_segment(&mut take).unwrap();
+                assert_eq!(all, events, "{} {length}", scheme.name());
+                assert_eq!(follows, decoded, "{} {length}", scheme.name());
+            }
+        }
+    }
+}

@@ -4,12 +4,13 @@ use crate::inputs::{LogOptions, ManyChannels};
 use crate::options::{answer, whole};
 use crate::report::{Counts, Log, Report};
 use crate::stop::Stop;
-use crate::words::option;
+use crate::words::{self, tell_of};
 use anyhow::{Result, bail};
-use catalogue::run::{SampleType, Worded};
+use catalogue::run::SampleType;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::advise::{Advice, AdviseRequest, BankAdvice, advise};
+use lab::dataset::Found;
 use lab::look::known_unit;
 use lab::output::Output;
 use lab::plot::{Picture, draw};
@@ -61,7 +62,7 @@ pub(crate) struct Advise {
     /// Core for which the report counts instructions: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
-    /// Stop after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
+    /// Stop the search on a log after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
     #[arg(long, value_parser = lab::input::above_zero)]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel
@@ -102,35 +103,38 @@ struct Summary {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if a log or the options are invalid, or if no channel of a log has a scheme that can be advised. If
-/// several logs are given, advice on the others comes first. With `-o`, also returns an error if no scheme suits all
-/// channels, or if the output cannot be written.
+/// Returns an error if a log or the options are invalid, or if no channel of a log has a scheme that can be advised.
+/// Advice on the other logs comes first. With `-o`, also returns an error if no scheme suits all channels, or if the
+/// output cannot be written. After Ctrl-C, returns an error if logs are left.
 pub(crate) fn run(options: &Advise) -> Result<()> {
-    let paths = options.logs.paths()?;
-    if let [path] = &paths[..] {
-        return options.on_one(path);
+    let Found { logs, is_single, .. } = options.logs.find()?;
+    if (options.output.is_some() || options.picture.is_some()) && logs.len() > 1 {
+        bail!("-o and --picture take one log; there are {}", logs.len());
     }
-    if options.output.is_some() || options.picture.is_some() {
-        bail!("-o and --picture take one log; there are {}", paths.len());
-    }
-    let mut all = Vec::new();
-    for path in &paths {
+    let stop = Stop::new(None)?;
+    let (mut all, mut last) = (Vec::new(), None);
+    for path in &logs {
+        if stop.is_due() {
+            break;
+        }
         let log = path.display().to_string();
-        let advised = options.request(path, false).and_then(|(request, notes)| {
-            let advised = options.advised(&request)?;
-            advised.check()?;
-            Ok((notes, advised))
-        });
-        match advised {
-            Ok((notes, advised)) => {
+        match options.advised(path, is_single, &stop) {
+            Ok((request, notes, advised)) => {
+                let why = advised.check().err();
                 if !options.json {
-                    for note in &notes {
-                        eprintln!("{log}: {note}");
-                    }
-                    answer(format_args!("{log}\n{}\n", advised.page()))?;
+                    tell_of((!is_single).then_some(&*log), &notes);
+                    let page = advised.page();
+                    answer(if is_single { page } else { format!("{log}\n{page}\n") })?;
                 }
-                all.push(Log { log, refused: None, notes, content: Some(advised) });
+                let entry = match why {
+                    None => Log { log, refused: None, notes, content: Some(advised) },
+                    Some(why) if is_single && !options.json => return Err(why),
+                    Some(why) => Log { notes, content: Some(advised), ..Log::refused(log, &why) },
+                };
+                all.push(entry);
+                last = Some(request);
             }
+            Err(error) if is_single && !options.json => return Err(error),
             Err(error) => all.push(Log::refused(log, &error)),
         }
     }
@@ -138,40 +142,31 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     let counts = summary.counts;
     if options.json {
         Report { command: "advise", logs: &all, summary }.print()?;
-    } else {
+    } else if !is_single {
         let advised = summary.advised.iter().map(|(scheme, count)| format!("{scheme} {count}"));
         let advised = advised.collect::<Vec<_>>().join(", ");
         answer(format_args!("channels by advised scheme: {advised}\n"))?;
     }
-    counts.check()
+    if all.len() < logs.len() {
+        bail!("stopped: {} of {} logs are left", logs.len() - all.len(), logs.len());
+    }
+    counts.check()?;
+    if let ([Log { content: Some(advised), .. }], [path], Some(request)) =
+        (&all[..], &logs[..], last)
+    {
+        options.write(path, &request, advised)?;
+    }
+    Ok(())
 }
 
 impl Advise {
-    /// Advises on the only log.
-    fn on_one(&self, path: &Path) -> Result<()> {
-        let (request, notes) = self.request(path, true)?;
-        if self.picture.is_some() && request.recordings.len() > 1 {
-            bail!("--picture draws one channel; --channel says which");
-        }
-        for note in &notes {
-            eprintln!("{note}");
-        }
-        let log = path.display().to_string();
-        let content = Some(self.advised(&request)?);
-        let all = [Log { log, refused: None, notes, content }];
-        let [Log { content: Some(advised), .. }] = &all else { return Ok(()) };
-        if self.json {
-            let summary = Summary::of(&all);
-            Report { command: "advise", logs: &all, summary }.print()?;
-        } else {
-            answer(advised.page())?;
-        }
+    /// Writes the picture and the flight file of the only log, if they are asked for.
+    fn write(&self, path: &Path, request: &AdviseRequest, advised: &Advised) -> Result<()> {
         if let (Some(picture), [advice], [recording]) =
             (&self.picture, &advised.channels[..], &request.recordings[..])
         {
             draw_advised(self, (picture, path), advice, recording)?;
         }
-        advised.check()?;
         if let (Some(output), Some(bank)) = (&self.output, &advised.bank) {
             let Some(flight) = bank.flight() else {
                 bail!("no scheme suits all channels: no flight is written")
@@ -183,10 +178,18 @@ impl Advise {
         Ok(())
     }
 
-    /// Reads a log; returns the request for advice on it, and notes for the user.
-    fn request(&self, path: &Path, is_single: bool) -> Result<(AdviseRequest, Vec<String>)> {
+    /// Reads a log and advises on it. Returns the request that was made, notes for the user on the log, and the advice.
+    fn advised(
+        &self,
+        path: &Path,
+        is_single: bool,
+        stop: &Stop,
+    ) -> Result<(AdviseRequest, Vec<String>, Advised)> {
         let recordings =
             self.channels.read(path, is_single, |input| Recording::read_all(&input.or_all()?))?;
+        if self.picture.is_some() && recordings.len() > 1 {
+            bail!("--picture draws one channel; --channel says which");
+        }
         let notes = recordings.first().map(Recording::notes).unwrap_or_default();
         let request = AdviseRequest {
             recordings,
@@ -200,12 +203,12 @@ impl Advise {
             seconds: self.seconds,
             seed: self.seed,
         };
-        Ok((request, notes.iter().map(|note| note.spelled(option).to_string()).collect()))
+        let advised = self.searched(&request, stop)?;
+        Ok((request, words::notes(&notes), advised))
     }
 
-    /// Advises on a log, and shows the progress.
-    fn advised(&self, request: &AdviseRequest) -> Result<Advised> {
-        let stop = Stop::new(None)?;
+    /// Searches for the advice, and shows the progress.
+    fn searched(&self, request: &AdviseRequest, stop: &Stop) -> Result<Advised> {
         let bar = ProgressBar::no_length()
             .with_style(ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}")?);
         let tell = |progress: &Progress| {

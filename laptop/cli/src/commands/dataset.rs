@@ -67,7 +67,7 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
     let bar = ProgressBar::no_length().with_style(ProgressStyle::with_template(
         "{bar:40} {pos} of {len} logs, {eta} left; {msg}",
     )?);
-    let outcome = dataset::run(&options.request()?, &mut |progress: &Progress| {
+    let (outcome, rows) = dataset::run(&options.request()?, &mut |progress: &Progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
         bar.set_message(progress.words.clone());
@@ -75,7 +75,6 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
     bar.finish_and_clear();
     let Outcome { logs, done_before, refused, passed_over, samples, events, train, test } = outcome;
     if options.json {
-        let rows = dataset::rows(&options.output)?;
         Report { command: "dataset", logs: &rows, summary: outcome }.print()?;
     } else {
         let encoded = logs - refused;
@@ -94,7 +93,6 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
         answer(text)?;
     }
     if refused == logs {
-        let rows = dataset::rows(&options.output)?;
         let why = rows.iter().find_map(|row| row.refused.as_deref()).unwrap_or("no logs");
         bail!("no log can be encoded: {why}");
     }

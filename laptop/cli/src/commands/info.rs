@@ -2,12 +2,11 @@
 
 use crate::inputs::{LogOptions, as_file};
 use crate::report::{Counts, Log, Report};
-use crate::words::option;
+use crate::words;
 use anyhow::Result;
-use catalogue::run::Worded;
 use clap::Args;
 use flight_logs::Kind;
-use lab::dataset;
+use lab::dataset::{self, Found};
 use lab::input::messages::{Overview, overview};
 use lab::input::{ChannelOptions, Clock, InputOptions, Rollover, Summary, above_zero, summary};
 use lab::output::Output;
@@ -16,7 +15,7 @@ use std::io::Write;
 use std::path::Path;
 
 /// List the content of logs and tables: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, telemetry `.tlog`, bags of ROS 1
-/// and 2, MCAP, Betaflight's blackbox; CSV, JSON lines, Parquet, Feather, `NumPy`'s arrays; also compressed.
+/// and 2, MCAP, Betaflight's blackbox; CSV, JSON lines, Parquet, `NumPy`'s arrays; also compressed.
 ///
 /// For a log: its topics with their fields, rates and gaps, and the data that the logger lost. For a table: its
 /// columns, rows, rate and gaps. Each of several files is listed under its name.
@@ -48,17 +47,16 @@ enum Content {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if a log cannot be read. If several logs are given, the readable ones are listed first.
+/// Returns an error if a log cannot be read. The readable ones are listed first.
 pub(crate) fn run(options: &Info) -> Result<()> {
-    let logs = options.logs.paths()?;
-    let is_single = logs.len() == 1;
+    let Found { logs, is_single, .. } = options.logs.find()?;
     let mut output = Output::to(None)?;
     let mut all = Vec::new();
     for path in &logs {
         let log = path.display().to_string();
         let content = match as_file(path).and_then(|own| options.content(&own)) {
             Ok(content) => content,
-            Err(error) if is_single => return Err(error),
+            Err(error) if is_single && !options.json => return Err(error),
             Err(error) => {
                 all.push(Log::refused(log, &error));
                 continue;
@@ -111,9 +109,7 @@ impl Content {
     fn notes(&self) -> Vec<String> {
         match self {
             Self::Log(_, _, notes) => notes.clone(),
-            Self::Table(table) => {
-                table.notes.iter().map(|own| own.spelled(option).to_string()).collect()
-            }
+            Self::Table(table) => words::notes(&table.notes),
         }
     }
 

@@ -7,7 +7,7 @@ use crate::options::{SchemeOptions, schemes};
 use crate::report::{Counts, Log, Report};
 use crate::words;
 use anyhow::{Context, Result, ensure};
-use catalogue::run::{Calibrated, Known, SampleType, Settings, Worded, Words};
+use catalogue::run::{Calibrated, Known, SampleType, Settings, Words};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -24,7 +24,6 @@ use lab::scheme::Scheme;
 use lab::trial::Recording;
 use serde::Serialize;
 use spikewire::Polarity;
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, BufRead, Write, stdin};
@@ -119,8 +118,15 @@ struct Content<'a> {
     held_out: Option<&'a Figures>,
     /// Share of active steps in which the outputs fire as in the training framework.
     reading: Option<f64>,
-    /// Share of active steps that each part of the chip's arithmetic alone leaves as they were.
-    costs: BTreeMap<String, f64>,
+    costs: Vec<CostLeft>,
+}
+
+/// A part of the chip's arithmetic, and the share of active steps that it alone leaves as they were.
+#[derive(Serialize)]
+struct CostLeft {
+    #[serde(flatten)]
+    cost: Cost,
+    left: f64,
 }
 
 /// Name by which `--on` selects the flight controller rather than a chip.
@@ -258,18 +264,17 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         output.finish()?;
     }
     if options.json {
-        let notes = driven.notes.iter().map(|note| note.spelled(words::option).to_string());
         let Brought { network, tuned, held_out, costs, reading } = &brought;
         let content = Content {
             tuned,
             held_out: held_out.as_ref(),
             reading: *reading,
-            costs: costs.iter().map(|(cost, left)| (cost.to_string(), *left)).collect(),
+            costs: costs.iter().map(|&(cost, left)| CostLeft { cost, left }).collect(),
         };
         let log = Log {
             log: input.input.display().to_string(),
             refused: None,
-            notes: notes.chain(network.notes()).collect(),
+            notes: words::notes(&driven.notes).into_iter().chain(network.notes()).collect(),
             content: Some(content),
         };
         let logs = [log];

@@ -4,13 +4,15 @@
 use crate::inputs::{LogOptions, ManyChannels};
 use crate::options::Coding;
 use crate::report::{Counts, Log, Report};
-use crate::words::{of_lab, option};
+use crate::words::{self, of_lab, tell_of};
 use anyhow::{Result, bail};
-use catalogue::run::{Asked, SampleType, Worded};
+use catalogue::run::{Asked, SampleType};
 use clap::Args;
+use lab::dataset::Found;
 use lab::output::Output;
 use lab::scheme::Scheme;
 use lab::score::{Figures, Scored, score};
+use lab::slope::Slope;
 use serde::Serialize;
 use std::io::Write;
 
@@ -87,28 +89,26 @@ struct Summary {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if a recording or the parameters are invalid. If several logs are given, the others are scored
-/// first.
+/// Returns an error if a recording or the parameters are invalid. The other logs are scored first.
 pub(crate) fn run(options: &Score) -> Result<()> {
     let Score { coding, logs, channels, json } = options;
     let (schemes, sample, parameters) = chosen(coding)?;
-    let paths = logs.paths()?;
-    let is_single = paths.len() == 1;
+    let Found { logs, is_single, .. } = logs.find()?;
     let mut all = Vec::new();
-    for path in &paths {
+    for path in &logs {
         let log = path.display().to_string();
         let scored =
             channels.read(path, is_single, |input| score(input, &schemes, &parameters, sample));
-        let of = if is_single { String::new() } else { format!("{log}: ") };
         match scored.and_then(content) {
             Ok((notes, content)) => {
-                for note in &notes {
-                    eprintln!("{of}{note}");
+                if !json {
+                    let of = (!is_single).then_some(&*log);
+                    tell_of(of, &notes);
+                    tell_of(of, &content.notes());
                 }
-                content.tell(&of);
                 all.push(Log { log, refused: None, notes, content: Some(content) });
             }
-            Err(error) if is_single => return Err(error),
+            Err(error) if is_single && !json => return Err(error),
             Err(error) => all.push(Log::refused(log, &error)),
         }
     }
@@ -116,11 +116,11 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     let summary = Summary { counts, schemes: totals(&schemes, &all) };
     if *json {
         Report { command: "score", logs: &all, summary }.print()?;
-    } else if let [Log { content: Some(content), .. }] = &all[..] {
-        print_table(&[("", &content.schemes)], &[])?;
+    } else if let ([Log { content: Some(content), .. }], true) = (&all[..], is_single) {
+        print_table(&[("", &content.schemes)], &summary, false)?;
     } else {
         let rows = all.iter().filter_map(|own| Some((&*own.log, &*own.content.as_ref()?.schemes)));
-        print_table(&rows.collect::<Vec<_>>(), &summary.schemes)?;
+        print_table(&rows.collect::<Vec<_>>(), &summary, true)?;
     }
     counts.check()
 }
@@ -147,8 +147,7 @@ fn content(scored: Scored) -> Result<(Vec<String>, Content)> {
     {
         bail!("no scheme takes this recording: {refused}");
     }
-    let notes = notes.iter().map(|note| note.spelled(option).to_string()).collect();
-    Ok((notes, Content { channel, schemes: outcomes }))
+    Ok((words::notes(&notes), Content { channel, schemes: outcomes }))
 }
 
 impl Content {
@@ -159,16 +158,14 @@ impl Content {
         })
     }
 
-    /// Prints the notes of each scheme on standard error, each after `of`.
-    fn tell(&self, of: &str) {
+    /// Returns the notes of each scheme, after its name.
+    fn notes(&self) -> Vec<String> {
+        let mut all = Vec::new();
         for Figures { scheme, slope, notes, .. } in self.figures() {
-            for note in notes {
-                eprintln!("{of}{scheme}: {note}");
-            }
-            if let Some(slope) = slope {
-                eprintln!("{of}{}", slope.words());
-            }
+            all.extend(notes.iter().map(|note| format!("{scheme}: {note}")));
+            all.extend(slope.as_ref().map(Slope::words));
         }
+        all
     }
 }
 
@@ -184,7 +181,7 @@ fn totals(schemes: &[Scheme], logs: &[Log<Content>]) -> Vec<Total> {
                 total.samples += figures.samples;
                 total.spikes += figures.spikes;
                 squares += figures.rmse * figures.rmse * figures.samples as f64;
-                if figures.rmse > total.worst_rmse {
+                if total.logs == 1 || figures.rmse > total.worst_rmse {
                     (total.worst_rmse, total.worst_log) = (figures.rmse, log.clone());
                 }
             }
@@ -222,11 +219,19 @@ pub(crate) fn chosen(coding: &Coding) -> Result<(Vec<Scheme>, SampleType, Asked)
     }
 }
 
-/// Prints a table with a row for each log and scheme, and for each scheme a row over all logs. A single log has no
-/// name.
-fn print_table(logs: &[(&str, &[Outcome])], totals: &[Total]) -> Result<()> {
-    let all = format!("all {} logs", logs.len());
-    let names = logs.iter().map(|(log, _)| *log).chain((!totals.is_empty()).then_some(&*all));
+/// Prints a table with a row for each log and scheme. If `is_list` is set, the rows begin with the logs' names, and each
+/// scheme has a row over all logs that it encoded. Prints nothing if there are no rows.
+fn print_table(logs: &[(&str, &[Outcome])], summary: &Summary, is_list: bool) -> Result<()> {
+    if logs.is_empty() {
+        return Ok(());
+    }
+    let requested = summary.counts.logs;
+    let label = |total: &Total| match total.logs {
+        logs if logs == requested => format!("all {logs} logs"),
+        logs => format!("{logs} of {requested} logs"),
+    };
+    let totals = if is_list { &summary.schemes[..] } else { &[] };
+    let names = logs.iter().map(|(log, _)| (*log).to_owned()).chain(totals.iter().map(label));
     let width = names.map(|name| name.chars().count()).max().unwrap_or(0);
     let first = |name: &str| match width {
         0 => String::new(),
@@ -263,11 +268,12 @@ fn print_table(logs: &[(&str, &[Outcome])], totals: &[Total]) -> Result<()> {
             "{log}| {scheme:19} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {snr:7.2} | {rate:>8} | {brief} |"
         )?;
     }
-    for Total { scheme, spikes, efficiency, rmse, worst_rmse, worst_log, .. } in totals {
+    for total in totals {
+        let Total { scheme, spikes, efficiency, rmse, worst_rmse, worst_log, .. } = total;
         writeln!(
             output,
             "{}| {scheme:19} | {spikes:7} | {efficiency:12.2} | {rmse:10.5} | {empty:>7} | {empty:>8} | worst RMSE {worst_rmse:.5} in {worst_log} |",
-            first(&all)
+            first(&label(total))
         )?;
     }
     Ok(output.finish()?)

@@ -2,14 +2,15 @@
 
 use crate::inputs::{LogOptions, ManyChannels};
 use crate::options::{FREE, answer, augment, given, option_group, whole};
-use crate::report::{Log, Report};
+use crate::report::{Counts, Log, Report};
 use crate::stop::Stop;
-use crate::words::{option, tell};
+use crate::words::{self, option, tell_of};
 use anyhow::{Context, Result, bail};
 use catalogue::Parameter;
 use catalogue::run::{Asked, SampleType, Worded};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use lab::dataset::Found;
 use lab::flight::of_rows;
 use lab::look::known_unit;
 use lab::output::Output;
@@ -170,8 +171,9 @@ fn is_fixable(parameter: &Parameter) -> bool {
 pub(crate) fn run(options: &Tune) -> Result<()> {
     let mut request = options.request()?;
     request.check()?;
-    let paths = options.logs.paths()?;
-    request.logs = options.recordings(&paths)?;
+    let Found { logs: paths, is_single, .. } = options.logs.find()?;
+    let logs;
+    (logs, request.logs) = options.recordings(&paths, is_single)?;
     let stop = Stop::new(None)?;
     let start = Instant::now();
     let bar = ProgressBar::new(BAR)
@@ -208,7 +210,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
         return Ok(());
     }
     if options.json {
-        return print_json(&paths, &request, &results);
+        return print_json(&logs, &results);
     }
     options.tell(&results)?;
     if options.emit == Some(Emit::Flight) {
@@ -265,20 +267,43 @@ impl Tune {
         })
     }
 
-    /// Reads the chosen channels of each log: an entry for each log, with a recording for each channel.
-    fn recordings(&self, paths: &[PathBuf]) -> Result<Vec<Vec<Recording>>> {
-        let mut logs = Vec::new();
+    /// Reads the chosen channels of each log. Returns the entry of each log in a report, and its recordings, one for
+    /// each channel. With `--channels-of`, the channels of all logs have the names of the first log's, in order.
+    ///
+    /// # Errors
+    /// Returns an error if a log cannot be read, or if its channels are not those of the first log.
+    fn recordings(&self, paths: &[PathBuf], is_single: bool) -> Result<Read> {
+        let (mut logs, mut all): (Vec<Log<Channels>>, Vec<Vec<Recording>>) = Default::default();
+        let by_place = !self.channels.channels_of.is_empty();
         for path in paths {
-            let recordings = self.channels.read(path, paths.len() == 1, Recording::read_all)?;
-            if let Some(first) = recordings.first() {
-                tell(&first.notes());
+            let log = path.display().to_string();
+            let mut recordings = self.channels.read(path, is_single, Recording::read_all)?;
+            let notes = recordings.first().map(Recording::notes).unwrap_or_default();
+            let notes = words::notes(&notes);
+            if !self.json {
+                tell_of((!is_single).then_some(&*log), &notes);
             }
-            logs.push(recordings);
+            let channels: Vec<_> = recordings.iter().map(|own| own.name.clone()).collect();
+            if let (Some(first), Some(Log { log: name, content: Some(own), .. })) =
+                (all.first(), logs.first())
+            {
+                if own.channels != channels && !(by_place && own.channels.len() == channels.len()) {
+                    let (own, other) = (own.channels.join(", "), channels.join(", "));
+                    bail!(
+                        "the logs have other channels: {own} in {name}, {other} in {log}; --channels-of names those of each kind"
+                    );
+                }
+                for (recording, first) in recordings.iter_mut().zip(first) {
+                    recording.name.clone_from(&first.name);
+                }
+            }
+            logs.push(Log { log, refused: None, notes, content: Some(Channels { channels }) });
+            all.push(recordings);
         }
-        if self.emit == Some(Emit::Toml) && logs.first().is_some_and(|log| log.len() > 1) {
-            bail!("--emit toml writes one channel; there are {}", logs[0].len());
+        if self.emit == Some(Emit::Toml) && all.first().is_some_and(|log| log.len() > 1) {
+            bail!("--emit toml writes one channel; there are {}", all[0].len());
         }
-        Ok(logs)
+        Ok((logs, all))
     }
 
     fn emitted(&self, scheme: Scheme, cut: &Cut, row: &Row) -> Result<String> {
@@ -340,37 +365,27 @@ struct Channels {
     channels: Vec<String>,
 }
 
+/// The entry of each log in a report, and the log's recordings, one for each channel.
+type Read = (Vec<Log<Channels>>, Vec<Vec<Recording>>);
+
 /// Settings found on all logs together: rows of figures and parameters, by channel.
 #[derive(Debug, Serialize)]
 struct Summary {
+    #[serde(flatten)]
+    counts: Counts,
     channels: BTreeMap<String, Vec<serde_json::Value>>,
 }
 
 /// Prints the report of `--json`: the notes on each log, and for each channel a row of figures and parameters for each
 /// scheme.
-fn print_json(
-    paths: &[PathBuf],
-    request: &TuneRequest,
-    results: &[(Cut, Vec<(Scheme, Row)>)],
-) -> Result<()> {
-    let log = |(path, recordings): (&PathBuf, &Vec<Recording>)| {
-        let notes = recordings.first().map(Recording::notes).unwrap_or_default();
-        Log {
-            log: path.display().to_string(),
-            refused: None,
-            notes: notes.iter().map(|note| note.spelled(option).to_string()).collect(),
-            content: Some(Channels {
-                channels: recordings.iter().map(|own| own.name.clone()).collect(),
-            }),
-        }
-    };
-    let logs: Vec<_> = paths.iter().zip(&request.logs).map(log).collect();
+fn print_json(logs: &[Log<Channels>], results: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
     let rows = |(cut, rows): &(Cut, Vec<(Scheme, Row)>)| {
         let rows = rows.iter().map(|(_, row)| json!(row)).collect();
         (cut.name.clone(), rows)
     };
-    let summary = Summary { channels: results.iter().map(rows).collect() };
-    Report { command: "tune", logs: &logs, summary }.print()
+    let channels = results.iter().map(rows).collect();
+    let summary = Summary { counts: Counts::of(logs), channels };
+    Report { command: "tune", logs, summary }.print()
 }
 
 /// Length of the progress bar in steps.

@@ -103,7 +103,7 @@ pub fn refused(arguments: &str, input: &str, words: &[&str]) {
 }
 
 /// Runs the program; returns the largest amount of memory that it used, in MB. Kills the program once `is_due` returns
-/// true. Reads the memory from Linux's `/proc`.
+/// true; otherwise the test fails unless the exit status is 0. Reads the memory from Linux's `/proc`.
 pub fn most_memory(arguments: &str, is_due: impl Fn() -> bool) -> f64 {
     let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
         .args(arguments.split_whitespace())
@@ -125,6 +125,7 @@ pub fn most_memory(arguments: &str, is_due: impl Fn() -> bool) -> f64 {
         }
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
+    assert!(child.wait().unwrap().success(), "spikewire {arguments}");
     most
 }
 

@@ -9,7 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Endings of file names by which tables in a directory are recognised.
-pub(super) const TABLES: [&str; 8] = ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
+pub(super) const TABLES: [&str; 8] =
+    ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
 /// Endings of the names of compressed files.
 const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
