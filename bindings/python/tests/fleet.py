@@ -1,14 +1,16 @@
 """Encodes many logs with two Dask workers; one is killed after 300 logs, and one after 700.
 
-    fleet.py LOGS OUT KIND=CHANNELS...
+    fleet.py [LOGS OUT KIND=CHANNELS...]
 
-`cargo verify fleet` compares OUT with what `spikewire dataset` writes.
+Without arguments the two workers start, are killed and end without logs, to know what Dask takes by itself. `cargo verify
+fleet` compares OUT with what `spikewire dataset` writes.
 """
 
 import os
 import resource
 import signal
 import sys
+import time
 
 import distributed
 
@@ -20,18 +22,28 @@ def most() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
 
 
+def kill_one(client: distributed.Client) -> None:
+    os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
+
+
 def main() -> None:
-    logs, out, *channels_of = sys.argv[1:]
     kills = [700, 300]
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
     ):
+        if not sys.argv[1:]:
+            for _ in kills:
+                kill_one(client)
+                time.sleep(2)
+                client.wait_for_workers(2)
+            return
+        logs, out, *channels_of = sys.argv[1:]
 
         def kill(done: int, total: int) -> None:
             if kills and done >= kills[-1]:
                 kills.pop()
-                os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
+                kill_one(client)
 
         scheme = sw.StepForward(threshold=0.05)
         counts = sw.dataset(

@@ -352,8 +352,8 @@ const LOGS: usize = 1000;
 /// Writes a thousand logs of seven formats. The tables repeat a real flight, and the `ULog` files are parts of a real
 /// flight. The logs in other formats hold sine waves.
 fn a_thousand(logs: &Path) {
-    /// Fewest samples of a log, and the largest number above it. A flight of ten minutes has as many; the logs take 5 GB.
-    const SAMPLES: (usize, usize) = (50_000, 100_003);
+    /// Fewest samples of a log, and the largest number above it.
+    const SAMPLES: (usize, usize) = (6_000, 20_011);
     fs::create_dir(logs).unwrap();
     let table = fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let (header, flown) = table.split_once('\n').unwrap();
@@ -413,9 +413,9 @@ fn a_thousand(logs: &Path) {
 }
 
 /// One run that encodes a thousand logs, killed twice on the way, takes at most 1.2 times the processor time of a
-/// thousand runs with one log each. So do two workers of Dask of which one is killed twice, if `FLEET_PYTHON` names a
-/// Python with the package; their bytes are the same. The test takes minutes, and runs on Linux only: `cargo verify
-/// fleet`.
+/// thousand runs with one log each. So do two workers of Dask of which one is killed twice, beside what Dask takes
+/// without logs, if `FLEET_PYTHON` names a Python with the package; their bytes are the same. The test takes minutes,
+/// and runs on Linux only: `cargo verify fleet`.
 #[test]
 #[ignore = "a measurement"]
 fn a_thousand_logs_cost_little_more_than_each_alone() {
@@ -451,12 +451,15 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
     let Some(python) = std::env::var_os("FLEET_PYTHON") else { return };
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bindings/python/tests/fleet.py");
     let channels_of = CHANNELS.map(|(kind, names)| format!("{kind}={names}"));
-    let start = spent();
-    let mut dask = Command::new(python);
-    let status = dask.args([&script, &at("logs"), &at("dask")]).args(channels_of).status();
-    assert!(status.unwrap().success());
-    let dask = spent() - start;
-    println!("with Dask {dask:.2} s of processor time: {:.2}", dask / alone);
+    let (logs, to) = (at("logs").display().to_string(), at("dask").display().to_string());
+    let given = [logs, to].into_iter().chain(channels_of).collect::<Vec<_>>();
+    let [idle, dask] = [&[][..], &given].map(|arguments| {
+        let start = spent();
+        let status = Command::new(&python).arg(&script).args(arguments).status();
+        assert!(status.unwrap().success());
+        spent() - start
+    });
+    println!("Dask {dask:.2} s, of which {idle:.2} s without logs: {:.2}", (dask - idle) / alone);
     for file in parts(&out).iter().map(String::as_str).chain(["manifest.jsonl", "dataset.json"]) {
         assert!(
             fs::read(out.join(file)).unwrap() == fs::read(at("dask").join(file)).unwrap(),
@@ -464,5 +467,5 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
         );
     }
     assert_eq!(parts(&out).len(), parts(&at("dask")).len());
-    assert!(dask <= 1.2 * alone);
+    assert!(dask - idle <= 1.2 * alone);
 }

@@ -217,12 +217,11 @@ fn emitted_settings_score_as_in_the_search() {
         let tuned = row(&common);
         let toml = ran!("tune {common} --emit toml").output;
         let (_directory, params) = file("tuned.toml", &toml);
-        let scored = ran!("score --json --params {params} --column signal {signal}").output;
-        let scored: Value = serde_json::from_str(&scored).unwrap();
+        let scored = ran!("score --json --params {params} --column signal {signal}").schemes();
         for figure in ["rmse", "efficiency", "snr"] {
             let (a, b) = (
                 number(&tuned, &format!("/whole/{figure}")),
-                number(&scored, &format!("/0/{figure}")),
+                number(&scored[0], &format!("/{figure}")),
             );
             assert!((a - b).abs() < 1e-9 * a.abs(), "{scheme} {figure}: {a} {b}\n{toml}");
         }
