@@ -2,7 +2,7 @@
 
     python bindings/python/examples/fleet.py [FOLDER X Y Z [THRESHOLD]]
 
-FOLDER holds flight logs of any kinds, and X, Y and Z name its three turn rates, in rad/s. Without a folder, the recordings of
+FOLDER holds flight logs of one kind, and X, Y and Z name its three turn rates, in rad/s. Without a folder, the recordings of
 this repository, a hexarotor's flight and an aircraft at rest, are cut into logs of two seconds. Every log becomes
 spikes and a row of a manifest; from a second of spikes, leaky neurons learn whether the aircraft flies. Logs that the
 manifest keeps for testing are not trained on.
@@ -52,7 +52,8 @@ def seconds(row):
     index, channel, polarity = np.empty((3, 0), int)
     if any(row["spikes"]):
         index, channel, polarity = sw.read(place / "spikes" / row["events"], "index", "channel", "polarity").x.astype(int)
-    second = round(row["rate"])
+    second = round(row["rate"] or 0)
+    assert second >= 4, f"{row['log']}: a log needs times, and 4 samples a second at least"
     starts = range(0, len(roll) - second + 1, second // 4)
     spikes = np.zeros((STEPS, len(starts), 6), np.float32)
     for number, start in enumerate(starts):
@@ -64,7 +65,9 @@ def seconds(row):
 
 def side(split):
     """All seconds on one side of the split."""
-    spikes, flies = zip(*(seconds(row) for row in rows if row["split"] == split))
+    all_seconds = [seconds(row) for row in rows if row["split"] == split]
+    assert all_seconds, f"no log is on the side {split}: give more logs"
+    spikes, flies = zip(*all_seconds)
     return torch.tensor(np.concatenate(spikes, axis=1)), torch.tensor(np.concatenate(flies))
 
 

@@ -44,8 +44,8 @@ def dataset(
 
     `client` is a ``dask.distributed.Client``, or an executor of :mod:`concurrent.futures`; without one, `jobs` threads of
     this process work. A task is a log, or with Dask up to 16 logs if there are many; the workers need the same files under
-    the same paths. Dask gives the tasks of a worker that died to another one. Whoever encodes, the bytes of all files are the same. A call that was ended is
-    continued by the same call.
+    the same paths. Dask gives the tasks of a worker that died to another one. Whoever encodes, the bytes of all files are
+    the same. A call that was ended is continued by the same call.
     """
     flight = flight if isinstance(flight, Scheme) else Path(flight)
     if isinstance(flight, Path):
@@ -74,7 +74,7 @@ def dataset(
     }
     run = _native.Dataset(_told(keywords))
     left = run.left()
-    # A task names its log alone.
+    # A task carries only its own log, not the list of all.
     task = partial(_encoded, {**keywords, "logs": []})
     logs = [str(log) for log in left]
     rows = _by_dask(client, task, logs) if hasattr(client, "get_executor") else _by_executor(client, jobs, task, logs)
@@ -104,16 +104,16 @@ def _by_executor(
 
 def _by_dask(client: Any, task: Callable[[str], str], logs: list[str]) -> Generator[str, None, None]:
     """The rows of logs, in the order in which Dask's workers have done them."""
-    from distributed import as_completed
+    import distributed
 
     # A task costs Dask some milliseconds, which short logs share if there are many for each worker.
     size = min(16, max(1, len(logs) // (8 * max(1, sum(client.nthreads().values())))))
     batches = [logs[start : start + size] for start in range(0, len(logs), size)]
-    # Impure, as a task that was computed before may have lost its files since.
+    # Dask must not reuse the result of an earlier equal task, because the files of that task may be gone.
     futures = client.map(partial(_each, task), batches, pure=False)
     try:
-        for future, rows in as_completed(futures, with_results=True):
-            # Or a worker that dies later would take the rows along, and its logs would be encoded once more.
+        for future, rows in distributed.as_completed(futures, with_results=True):
+            # Releases the rows at once: otherwise Dask would compute them anew if their worker died.
             future.release()
             yield from rows
     finally:

@@ -36,7 +36,7 @@ pub fn python() -> Result<()> {
 
 /// Encodes a thousand logs with the program and with Dask, each killed on the way, and trains a network on logs.
 ///
-/// The distribution has torch without the libraries of graphics cards, and that for its own Python alone.
+/// Debian's torch needs no GPU libraries, but works only with Debian's Python.
 pub fn fleet() -> Result<()> {
     let python = environment("python-fleet")?;
     install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
@@ -53,7 +53,8 @@ pub fn fleet() -> Result<()> {
             .args(["-m", "venv", "--system-site-packages"])
             .arg(&place))?;
     }
-    install(&torch, &["--no-deps", "snntorch==1.0.0", "maturin==1.16.0"])?;
+    let pinned = ["bindings/python/examples/requirements.txt", "bindings/python/requirements.txt"];
+    install(&torch, &["--no-deps", "--requirement", pinned[0], "--constraint", pinned[1], "maturin"])?;
     package(&torch, "release")?;
     run(command(&torch).arg("bindings/python/examples/fleet.py"))
 }
