@@ -20,8 +20,18 @@ pub(crate) trait Arithmetic: Sized {
     /// The sample at a bound that another sample has passed.
     fn of_bound(bound: Self::Bound) -> Self;
 
+    /// A sum of steps in a register. A Cortex-M0, which has no 16-bit arithmetic, keeps 16 bits in the upper half of a
+    /// word, where they saturate as 32 do.
+    type Level: Copy;
+
+    fn level(self) -> Self::Level;
+
+    fn of_level(level: Self::Level) -> Self;
+
+    fn climb(level: Self::Level, step: Self::Level) -> Self::Level;
+
     /// The bounds one threshold below and above.
-    fn bounds(around: Self::Bound, threshold: Self) -> [Self::Bound; 2];
+    fn bounds(around: Self::Bound, threshold: Self::Bound) -> [Self::Bound; 2];
 
     fn is_finite(&self) -> bool;
 
@@ -42,7 +52,7 @@ pub(crate) trait Arithmetic: Sized {
     fn doubled(self, times: u8) -> Self;
 
     /// Compares `self - previous` with the threshold: `Greater` above it, `Less` below its negative, else `Equal`.
-    fn step(self, previous: Self, threshold: Self) -> Ordering;
+    fn step(self, previous: Self::Bound, threshold: Self::Bound) -> Ordering;
 }
 
 impl Arithmetic for f32 {
@@ -60,6 +70,23 @@ impl Arithmetic for f32 {
     #[inline]
     fn of_bound(bound: f32) -> f32 {
         bound
+    }
+
+    type Level = f32;
+
+    #[inline]
+    fn level(self) -> f32 {
+        self
+    }
+
+    #[inline]
+    fn of_level(level: f32) -> f32 {
+        level
+    }
+
+    #[inline]
+    fn climb(level: f32, step: f32) -> f32 {
+        level + step
     }
 
     #[inline]
@@ -98,7 +125,7 @@ impl Arithmetic for f32 {
     }
 
     #[inline]
-    fn step(self, previous: Self, threshold: Self) -> Ordering {
+    fn step(self, previous: f32, threshold: f32) -> Ordering {
         beyond(self - previous, magnitude(threshold))
     }
 }
@@ -150,8 +177,24 @@ macro_rules! for_each_integer {
 }
 pub(super) use for_each_integer;
 
+/// What a level of 16 bits is kept in, and how far up.
+#[cfg(any(not(target_arch = "arm"), target_has_atomic = "32"))]
+type Half = i16;
+#[cfg(any(not(target_arch = "arm"), target_has_atomic = "32"))]
+const UP: u32 = 0;
+#[cfg(not(any(not(target_arch = "arm"), target_has_atomic = "32")))]
+type Half = i32;
+#[cfg(not(any(not(target_arch = "arm"), target_has_atomic = "32")))]
+const UP: u32 = 16;
+
 macro_rules! integer_arithmetic {
-    ([$($generics:tt)*] $sample:ty, $bits:ty, $to_bits:path, $from_bits:path) => {
+    ([$($generics:tt)*] $sample:ty, i16, $($paths:tt)*) => {
+        integer_arithmetic! { @ [$($generics)*] $sample, i16, Half, UP, $($paths)* }
+    };
+    ([$($generics:tt)*] $sample:ty, i32, $($paths:tt)*) => {
+        integer_arithmetic! { @ [$($generics)*] $sample, i32, i32, 0, $($paths)* }
+    };
+    (@ [$($generics:tt)*] $sample:ty, $bits:ty, $level:ty, $up:expr, $to_bits:path, $from_bits:path) => {
         impl<$($generics)*> Arithmetic for $sample {
             const ZERO: Self = $from_bits(0);
 
@@ -169,10 +212,26 @@ macro_rules! integer_arithmetic {
                 $from_bits(bound as $bits)
             }
 
+            type Level = $level;
+
+            #[inline]
+            fn level(self) -> Self::Level {
+                Self::Level::from($to_bits(self)) << $up
+            }
+
+            #[inline]
+            fn of_level(level: Self::Level) -> Self {
+                $from_bits((level >> $up) as $bits)
+            }
+
+            #[inline]
+            fn climb(level: Self::Level, step: Self::Level) -> Self::Level {
+                level.saturating_add(step)
+            }
+
             // A bound that saturates is an end of the type: no sample lies beyond it, nor beyond the exact bound.
             #[inline]
-            fn bounds(around: i32, threshold: Self) -> [i32; 2] {
-                let threshold = threshold.bound();
+            fn bounds(around: i32, threshold: i32) -> [i32; 2] {
                 if <$bits>::BITS == 16 {
                     [around.wrapping_sub(threshold), around.wrapping_add(threshold)]
                 } else {
@@ -211,11 +270,17 @@ macro_rules! integer_arithmetic {
             }
 
             #[inline]
-            fn step(self, previous: Self, threshold: Self) -> Ordering {
-                let [lower, upper] = Self::bounds(previous.bound(), threshold);
-                if self.bound() > upper {
+            fn step(self, previous: i32, threshold: i32) -> Ordering {
+                let [sample, lower, upper] = if <$bits>::BITS == 16 {
+                    let change = self.bound().wrapping_sub(previous);
+                    [change, threshold.wrapping_neg(), threshold]
+                } else {
+                    let [lower, upper] = Self::bounds(previous, threshold);
+                    [self.bound(), lower, upper]
+                };
+                if sample > upper {
                     Ordering::Greater
-                } else if self.bound() < lower {
+                } else if sample < lower {
                     Ordering::Less
                 } else {
                     Ordering::Equal

@@ -21,7 +21,7 @@ pub(crate) trait Binary: Sized {
 /// Ones in the last `count` places, up to 16.
 #[inline]
 const fn ones(count: u32) -> u32 {
-    0xffff >> (16_u32.saturating_sub(count) & 31)
+    1_u32.wrapping_shl(count).wrapping_sub(1)
 }
 
 /// In a function of its own, or the usual path would compute it, too.
@@ -129,17 +129,16 @@ macro_rules! integer {
             fn of_digits(digits: u32, count: u32, min: Self, max: Self) -> Self {
                 let [low, high] = [min, max].map(|x| i32::from($to_bits(x)));
                 let range = <$wide>::from(high.wrapping_sub(low).cast_unsigned());
-                let first_with = |digits: u32| {
-                    let above = range.wrapping_mul(<$wide>::from(digits));
-                    low.wrapping_add((above.wrapping_add(ones(count).into()) >> (count & 31)) as i32)
-                };
-                let first = first_with(digits);
+                // How far above the minimum the first and the last value with these digits are.
+                let above = range.wrapping_mul(digits.into()).wrapping_add(ones(count).into());
+                let first = (above >> (count & 31)) as i32;
                 let last = if digits == ones(count) {
-                    high
+                    range as i32
                 } else {
-                    first_with(digits.wrapping_add(1)).wrapping_sub(1)
+                    ((above.wrapping_add(range) >> (count & 31)) as i32).wrapping_sub(1)
                 };
-                $from_bits(first.wrapping_add(last.wrapping_sub(first) >> 1) as $bits)
+                let middle = first.wrapping_add(last.wrapping_sub(first) >> 1);
+                $from_bits(low.wrapping_add(middle) as $bits)
             }
 
             #[inline]

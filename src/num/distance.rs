@@ -56,7 +56,8 @@ pub(crate) const fn even_bins<S: Sample>(origin: f64, width: f64, count: usize) 
 pub(crate) const fn bin_of<S: Sample>(bins: EvenBins, value: S) -> usize {
     match S::KIND {
         SampleKind::F32 => bins.of_float(units(value) as f32),
-        _ => bins.of_integer(units(value) as i32),
+        SampleKind::Fixed16 { .. } => bins.of_short(units(value) as i16),
+        SampleKind::Fixed32 { .. } => bins.of_integer(units(value) as i32),
     }
 }
 
@@ -149,7 +150,7 @@ impl Distance<f32> for u32 {
 }
 
 macro_rules! integer {
-    ([$($generics:tt)*] $sample:ty, $bits:ty, $reach:ty, $is_near:expr, $to_bits:path, $from_bits:path) => {
+    ([$($generics:tt)*] $sample:ty, $bits:ty, $reach:ty, $bin:ident, $is_near:expr, $to_bits:path, $from_bits:path) => {
         impl<$($generics)*> Spaced for $sample {
             type Reach = $reach;
             type Short = i32;
@@ -165,7 +166,7 @@ macro_rules! integer {
 
             #[inline]
             fn bin(self, bins: EvenBins) -> usize {
-                bins.of_integer($to_bits(self).into())
+                bins.$bin($to_bits(self))
             }
 
             #[inline]
@@ -239,7 +240,7 @@ macro_rules! distance {
     };
 }
 
-integer!([] i16, i16, i32, |_, _| true, core::convert::identity, core::convert::identity);
+integer!([] i16, i16, i32, of_short, |_, _| true, core::convert::identity, core::convert::identity);
 distance!([] i16, i32, core::convert::identity);
 
 #[cfg(feature = "fixed")]
@@ -248,11 +249,11 @@ mod fixed_point {
     use fixed::types::extra::{LeEqU16, LeEqU32};
     use fixed::{FixedI16, FixedI32};
 
-    integer!([Frac: LeEqU16 + 'static] FixedI16<Frac>, i16, i32, |_, _| true,
+    integer!([Frac: LeEqU16 + 'static] FixedI16<Frac>, i16, i32, of_short, |_, _| true,
         FixedI16::to_bits, FixedI16::from_bits);
     distance!([Frac: LeEqU16 + 'static] FixedI16<Frac>, i32, FixedI16::to_bits);
 
-    integer!([Frac: LeEqU32 + 'static] FixedI32<Frac>, i32, i64,
+    integer!([Frac: LeEqU32 + 'static] FixedI32<Frac>, i32, i64, of_integer,
         |value, [low, high]| value >= low && value <= high,
         FixedI32::to_bits, FixedI32::from_bits);
     distance!([Frac: LeEqU32 + 'static] FixedI32<Frac>, i32, FixedI32::to_bits);

@@ -63,13 +63,26 @@ impl EvenBins {
         ((value - f32::from_bits(self.origin)) * f32::from_bits(self.scale)) as u32 as usize
     }
 
-    /// The bin of an integer, in units of the last place.
+    /// The bin of an integer of 32 bits, in units of the last place.
     #[inline]
     pub(crate) const fn of_integer(self, value: i32) -> usize {
         let Self { origin, scale } = self;
         let above = if value > origin as i32 { (value as u32).wrapping_sub(origin) } else { 0 };
         let above = above >> (scale >> 16 & 31);
-        let above = if above > 0xffff { 0xffff } else { above };
-        ((above * (scale & 0xffff)) >> (scale >> 24 & 31)) as usize
+        self.of_reduced(if above > 0xffff { 0xffff } else { above })
+    }
+
+    /// The bin of an integer of 16 bits, whose distance from the origin fits 32.
+    #[inline]
+    pub(crate) const fn of_short(self, value: i16) -> usize {
+        let above = (value as i32).wrapping_sub(self.origin as i32) >> (self.scale >> 16 & 31);
+        let above = if above < 0 { 0 } else { above };
+        self.of_reduced(if above > 0xffff { 0xffff } else { above } as u32)
+    }
+
+    /// The bin of a value this far above the origin, reduced to 16 bits.
+    #[inline]
+    const fn of_reduced(self, above: u32) -> usize {
+        ((above * (self.scale & 0xffff)) >> (self.scale >> 24 & 31)) as usize
     }
 }

@@ -8,20 +8,19 @@ use super::Ratio;
 /// Compares `e1 = sum |residual - tap|` with `e2 = sum |residual|` over pairs of a residual and its tap.
 pub(crate) trait Nearer: Sized {
     /// A sum of magnitudes.
-    type Sum: Copy + core::fmt::Debug + Send + Sync;
+    type Sum;
 
-    const EMPTY: Self::Sum;
-
-    /// `sum + |self - other|`.
-    fn add_distance(self, other: Self, sum: Self::Sum) -> Self::Sum;
+    /// The sum of `|residual - other|` over pairs, in 32 bits for up to `short` pairs.
+    fn distance(short: usize, pairs: impl Iterator<Item = (Self, Self)>) -> Self::Sum;
 
     /// `left <= right * ratio`.
     fn at_most(left: Self::Sum, right: Self::Sum, ratio: Ratio) -> bool;
 
     /// Whether `e1` is within the bound, so that subtracting the taps brings the residuals nearer to zero.
-    /// `magnitude` is the sum of the taps' magnitudes over the pairs.
+    /// `magnitude` is the sum of the taps' magnitudes over the pairs; the sums of up to `short` pairs fit 32 bits.
     fn is_nearer(
         bound: Bound<Self>,
+        short: usize,
         magnitude: Self,
         pairs: impl Iterator<Item = (Self, Self)>,
     ) -> bool;
@@ -39,11 +38,9 @@ pub(crate) enum Bound<R> {
 impl Nearer for f32 {
     type Sum = f32;
 
-    const EMPTY: f32 = 0.0;
-
-    #[inline(always)]
-    fn add_distance(self, other: f32, sum: f32) -> f32 {
-        sum + (self - other).abs()
+    #[inline]
+    fn distance(_: usize, pairs: impl Iterator<Item = (f32, f32)>) -> f32 {
+        pairs.fold(0.0, |sum, (residual, other)| sum + (residual - other).abs())
     }
 
     #[inline]
@@ -52,7 +49,12 @@ impl Nearer for f32 {
     }
 
     #[inline(always)]
-    fn is_nearer(bound: Bound<f32>, _: f32, pairs: impl Iterator<Item = (f32, f32)>) -> bool {
+    fn is_nearer(
+        bound: Bound<f32>,
+        _: usize,
+        _: f32,
+        pairs: impl Iterator<Item = (f32, f32)>,
+    ) -> bool {
         let (mut with, mut without) = (0.0, 0.0);
         for (residual, tap) in pairs {
             with += (residual - tap).abs();
@@ -65,14 +67,22 @@ impl Nearer for f32 {
     }
 }
 
+/// Whether these are up to `short` pairs; where a filter's length is a constant, so is the answer.
+#[inline(always)]
+fn are_short(pairs: &impl Iterator, short: usize) -> bool {
+    pairs.size_hint().1.is_some_and(|count| count <= short)
+}
+
 impl Nearer for i32 {
     type Sum = i64;
 
-    const EMPTY: i64 = 0;
-
-    #[inline(always)]
-    fn add_distance(self, other: i32, sum: i64) -> i64 {
-        sum.wrapping_add(i64::from(self.abs_diff(other)))
+    #[inline]
+    fn distance(short: usize, pairs: impl Iterator<Item = (i32, i32)>) -> i64 {
+        if are_short(&pairs, short) {
+            pairs.fold(0_u32, |sum, (r, other)| sum.wrapping_add(r.abs_diff(other))).into()
+        } else {
+            pairs.fold(0, |sum, (r, other)| i64::from(r.abs_diff(other)).wrapping_add(sum))
+        }
     }
 
     #[inline]
@@ -83,6 +93,7 @@ impl Nearer for i32 {
     #[inline(always)]
     fn is_nearer(
         bound: Bound<i32>,
+        short: usize,
         magnitude: i32,
         pairs: impl Iterator<Item = (i32, i32)>,
     ) -> bool {
@@ -105,11 +116,19 @@ impl Nearer for i32 {
                 }
                 left >= 0
             }
-            Bound::Part(ratio) => {
-                let (mut with, mut without) = (i32::EMPTY, i32::EMPTY);
+            Bound::Part(ratio) if are_short(&pairs, short) => {
+                let (mut with, mut without) = (0_u32, 0_u32);
                 for (residual, tap) in pairs {
-                    with = residual.add_distance(tap, with);
-                    without = residual.add_distance(0, without);
+                    with = with.wrapping_add(residual.abs_diff(tap));
+                    without = without.wrapping_add(residual.unsigned_abs());
+                }
+                i32::at_most(with.into(), without.into(), ratio)
+            }
+            Bound::Part(ratio) => {
+                let (mut with, mut without) = (0_i64, 0_i64);
+                for (residual, tap) in pairs {
+                    with = with.wrapping_add(residual.abs_diff(tap).into());
+                    without = without.wrapping_add(residual.unsigned_abs().into());
                 }
                 i32::at_most(with, without, ratio)
             }

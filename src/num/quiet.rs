@@ -102,7 +102,7 @@ macro_rules! integer {
 
             #[inline]
             fn band(base: Self, threshold: Self) -> [u16; 2] {
-                let bounds = Self::bounds(base.bound(), threshold);
+                let bounds = Self::bounds(base.bound(), threshold.bound());
                 let [lower, upper] =
                     bounds.map(|bound| bound.clamp(i16::MIN.into(), i16::MAX.into()));
                 let width = upper.wrapping_sub(lower).wrapping_add(1).min(TOP.into());
@@ -149,7 +149,7 @@ macro_rules! integer {
 
             #[inline]
             fn band(base: Self, threshold: Self) -> [u32; 2] {
-                let [lower, upper] = Self::bounds(base.bound(), threshold);
+                let [lower, upper] = Self::bounds(base.bound(), threshold.bound());
                 between(lower.cast_unsigned(), upper.cast_unsigned())
             }
 

@@ -9,6 +9,10 @@ use super::{Nearer, Shortfall, Stored};
 pub(crate) trait Rated: Sized {
     type Residual: Residual;
 
+    /// How many pairs of a residual and a tap have distances whose sum fits 32 bits: in 16 bits each distance is less
+    /// than 2¹⁶ and the taps together.
+    const SHORT: usize = 0;
+
     /// `self - shift`. 32-bit fixed point is clamped so that no subtraction of taps overflows; `magnitude` is the
     /// sum of the taps' magnitudes.
     fn residual(self, shift: Self, magnitude: Self::Residual) -> Self::Residual;
@@ -121,6 +125,8 @@ macro_rules! integer_rated {
     ([$($generics:tt)*] $sample:ty, i16, $to_bits:path, $from_bits:path) => {
         impl<$($generics)*> Rated for $sample {
             type Residual = i32;
+
+            const SHORT: usize = 256;
 
             #[inline]
             fn residual(self, shift: Self, _: i32) -> i32 {

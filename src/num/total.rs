@@ -31,7 +31,7 @@ pub trait Total: Copy + PartialOrd + Debug + Send + Sync + Stored {
     /// `self * count`.
     fn times(self, count: u32) -> Self;
 
-    /// `self * 2^times`.
+    /// `self * 2^times`, for results that the type holds.
     fn doubled(self, times: u8) -> Self;
 
     /// `self / 2^times`, up to 15 times; integers are rounded down.
@@ -39,6 +39,16 @@ pub trait Total: Copy + PartialOrd + Debug + Send + Sync + Stored {
 
     /// `self / 2^times`; integers are rounded to the nearest, halves upwards.
     fn halved_to_nearest(self, times: u8) -> Self;
+
+    /// `self` less its `2^power`th part, which is rounded towards 0.
+    #[inline]
+    fn leaked(self, power: u8) -> Self {
+        if self < Self::ZERO {
+            self.plus(Self::ZERO.minus(self).halved(power))
+        } else {
+            self.minus(self.halved(power))
+        }
+    }
 
     /// Whether `2^17 self >= (2 draw + 1) range`, for a draw of 16 bits.
     fn is_drawn(self, range: Self, draw: u32) -> bool;
@@ -108,6 +118,11 @@ impl Total for f32 {
     }
 
     #[inline]
+    fn leaked(self, power: u8) -> f32 {
+        self - self.halved(power)
+    }
+
+    #[inline]
     fn is_drawn(self, range: f32, draw: u32) -> bool {
         self * 131_072.0 >= draw.wrapping_mul(2).wrapping_add(1) as f32 * range
     }
@@ -146,7 +161,7 @@ macro_rules! integer_total {
 
             #[inline]
             fn doubled(self, times: u8) -> Self {
-                self.$times((1 as Self).wrapping_shl(times.into()))
+                self.wrapping_shl(times.into())
             }
 
             #[inline]

@@ -7,7 +7,7 @@ use core::{
     mem::size_of_val,
 };
 
-use board::stopwatch::instructions;
+use board::stopwatch::{Count as Cost, instructions};
 use catalogue::{
     Count, Scaled,
     plain::{self, response},
@@ -18,6 +18,7 @@ use spikewire::{
 };
 
 use crate::{
+    in_c,
     measure::{CHUNK, Subject, decode_sample, encode_sample},
     signal::{LENGTH, Measured, Signal},
 };
@@ -32,13 +33,15 @@ pub fn measure<S: Measured, const HALF: usize>(
         out,
         sample,
         source,
+        scaled: Scaled::new(Calibration::new()),
         signal: [S::default(); LENGTH],
         spikes: [0; LENGTH],
     };
     counter.load();
     let mut calibration = Calibration::<S>::new();
     counter.signal.iter().for_each(|&sample| calibration.observe(sample));
-    catalogue::count(&Scaled::new(calibration), &mut counter).map_err(|failure| {
+    counter.scaled = Scaled::new(calibration);
+    catalogue::count(&counter.scaled.clone(), &mut counter).map_err(|failure| {
         let _ = writeln!(counter.out, "{failure:?}");
         fmt::Error
     })
@@ -72,6 +75,7 @@ struct Counter<'a, S, W, const HALF: usize> {
     out: &'a mut W,
     sample: &'a str,
     source: Signal,
+    scaled: Scaled<S>,
     signal: [S; LENGTH],
     spikes: [i8; LENGTH],
 }
@@ -93,8 +97,23 @@ impl<S: Measured, W: Write, const HALF: usize> Counter<'_, S, W, HALF> {
         codec: &'s str,
         scheme: &impl Scheme,
         plain: (u32, u32),
+        in_c: Cost,
     ) -> Subject<'s> {
-        Subject { signal: source.name(), codec, sample, flash: size_of_val(scheme), plain }
+        Subject { signal: source.name(), codec, sample, flash: size_of_val(scheme), plain, in_c }
+    }
+
+    /// Returns the cost of the encoder in C and a digest of its spikes, if there is one.
+    fn in_c(&mut self, codec: &str, taps: &[S]) -> Option<(Cost, u32)> {
+        let scaled = self.scaled;
+        let (signal, spikes) = self.slices();
+        let cost = in_c::encode(codec, &scaled, taps, signal, spikes)?;
+        Some((cost, self.digest()))
+    }
+
+    fn digest(&self) -> u32 {
+        self.spikes
+            .iter()
+            .fold(0, |sum: u32, &spike| sum.wrapping_mul(31).wrapping_add(spike as u32))
     }
 
     /// Fails unless the codec's spikes and values are those of the transcription, which the buffers hold. Loads the
@@ -133,8 +152,9 @@ impl<S: Measured, W: Write, const HALF: usize> Counter<'_, S, W, HALF> {
         scheme: &P,
         start: &impl Fn() -> P::EncoderState,
         plain: (u32, u32),
+        in_c: Cost,
     ) -> Result<(), Failure> {
-        let subject = Self::subject(self.sample, self.source, codec, scheme, plain);
+        let subject = Self::subject(self.sample, self.source, codec, scheme, plain, in_c);
         Ok(subject.measure(self.out, scheme, start, &self.signal)?)
     }
 }
@@ -160,11 +180,14 @@ impl<S: Measured, W: Write, const HALF: usize> Count for Counter<'_, S, W, HALF>
         encode: impl FnOnce(&[S], &mut [i8]),
         decode: impl FnOnce(&[i8], &mut [S]),
     ) -> Result<(), Failure> {
+        let in_c = self.in_c(name, &[]);
         let (signal, spikes) = self.slices();
         let encoding = instructions(|| encode(signal, spikes));
+        expect(name, LENGTH, in_c.is_none_or(|(_, digest)| digest == self.digest()))?;
+        let (signal, spikes) = (&mut self.signal[..], &self.spikes[..]);
         let decoding = instructions(|| decode(spikes, signal));
         self.agree(name, scheme, start, to_plain, of_plain)?;
-        self.finish(name, scheme, start, (encoding, decoding))
+        self.finish(name, scheme, start, (encoding, decoding), in_c.unwrap_or_default().0)
     }
 
     fn rate<P: Start<Sample = S, Code = Spike>>(
@@ -176,17 +199,22 @@ impl<S: Measured, W: Write, const HALF: usize> Count for Counter<'_, S, W, HALF>
         shift: S,
         encode: impl FnOnce(&mut [S], &mut [i8]),
     ) -> Result<(), Failure> {
-        for sample in &mut self.signal {
-            *sample = S::narrow((*sample).into() - shift.into());
-        }
+        let below = |sample: &mut S| *sample = S::narrow((*sample).into() - shift.into());
+        self.signal.iter_mut().for_each(below);
+        let in_c = self.in_c(name, taps);
+        self.load();
+        self.signal.iter_mut().for_each(below);
         let (signal, spikes) = self.slices();
         let encoding = instructions(|| encode(signal, spikes));
+        expect(name, LENGTH, in_c.is_none_or(|(_, digest)| digest == self.digest()))?;
+        let (signal, spikes) = (&mut self.signal[..], &self.spikes[..]);
         let decoding = instructions(|| plain::rate_decode(spikes, taps, shift, signal));
         self.agree(name, agreeing, &|| P::START, Spike::sign, |sign| match sign {
             1 => Spike::Up,
             _ => Spike::None,
         })?;
-        self.finish(name, scheme, &|| P::START, (encoding, decoding))
+        let in_c = in_c.unwrap_or_default().0;
+        self.finish(name, scheme, &|| P::START, (encoding, decoding), in_c)
     }
 
     /// Between two neurons, so close to halfway that rounding decides which exponential is the larger, the
@@ -215,7 +243,8 @@ impl<S: Measured, W: Write, const HALF: usize> Count for Counter<'_, S, W, HALF>
         self.agree(name, scheme, &|| Position::<S, M>::START, index, |index| {
             Neuron::new(index as u16)
         })?;
-        self.finish(name, scheme, &|| Position::<S, M>::START, (encoding, decoding))
+        let plain = (encoding, decoding);
+        self.finish(name, scheme, &|| Position::<S, M>::START, plain, Cost::default())
     }
 
     /// As many samples at once as the spikes have room for.
@@ -247,7 +276,8 @@ impl<S: Measured, W: Write, const HALF: usize> Count for Counter<'_, S, W, HALF>
         }
         self.load();
         let plain = (encoding, decoding);
-        let subject = Self::subject(self.sample, self.source, name, scheme, plain);
+        let (sample, source) = (self.sample, self.source);
+        let subject = Self::subject(sample, source, name, scheme, plain, Cost::default());
         Ok(subject.measure(self.out, scheme, start, &self.signal)?)
     }
 }

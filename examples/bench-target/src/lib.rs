@@ -9,6 +9,7 @@
 
 mod codecs;
 mod events;
+mod in_c;
 #[cfg(target_os = "none")]
 mod loops;
 mod measure;

@@ -20,6 +20,8 @@ pub struct Subject<'a> {
     pub flash: usize,
     /// Instructions of the plain transcription for the whole signal, encoding and decoding.
     pub plain: (u32, u32),
+    /// The same for the encoder in C, where there is one.
+    pub in_c: Count,
 }
 
 /// What one form of one direction cost, over the whole signal.
@@ -61,22 +63,29 @@ impl Subject<'_> {
         signal: &[P::Sample; LENGTH],
     ) -> fmt::Result {
         for cost in encoding(scheme, start, signal) {
-            self.print(out, &cost, self.plain.0)?;
+            self.print(out, &cost, self.plain.0, self.in_c)?;
         }
         for cost in decoding(scheme, start, signal) {
-            self.print(out, &cost, self.plain.1)?;
+            self.print(out, &cost, self.plain.1, Count::default())?;
         }
         Ok(())
     }
 
     #[inline(never)]
-    fn print(&self, out: &mut impl fmt::Write, cost: &Cost, plain: u32) -> fmt::Result {
+    fn print(
+        &self,
+        out: &mut impl fmt::Write,
+        cost: &Cost,
+        plain: u32,
+        in_c: Count,
+    ) -> fmt::Result {
         let Self { signal, codec, sample, flash, .. } = self;
         let Cost { direction, form, code, state, samples, total, max, stack } = cost;
         write!(out, r#"{{"signal":"{signal}","codec":"{codec}","direction":"{direction}","#)?;
         write!(out, r#""sample":"{sample}","form":"{form}","samples":{samples},"#)?;
         print_count(out, "total", total)?;
         print_count(out, "max", max)?;
+        print_count(out, "in_c", &in_c)?;
         write!(out, r#""plain_samples":{LENGTH},"plain":{plain},"code":{code},"#)?;
         writeln!(out, r#""state":{state},"flash":{flash},"stack":{stack}}}"#)
     }

@@ -10,6 +10,7 @@ use flight_data::{Record, records};
 use rand_pcg::{Pcg32, rand_core::Rng};
 use spikewire::Sample;
 
+use crate::in_c::InC;
 use catalogue::plain::Plain;
 
 /// Samples of either signal.
@@ -64,7 +65,7 @@ fn clean(time: f64) -> f64 {
 }
 
 /// A sample type that is measured.
-pub trait Measured: Sample + Plain {
+pub trait Measured: Sample + Plain + InC {
     /// Units for 1 of the signal.
     const UNITS: f64 = 1.0;
 }

@@ -160,7 +160,7 @@ impl<S: Sample, const F: usize> Rule<S, F> for Bsa<S, F> {
             Limit::Subtractive(threshold) => Bound::Less(threshold.widen()),
             Limit::Multiplicative(ratio) => Bound::Part(ratio),
         };
-        S::Residual::is_nearer(bound, magnitude(), pairs)
+        S::Residual::is_nearer(bound, S::SHORT, magnitude(), pairs)
     }
 }
 

@@ -76,7 +76,7 @@ impl<S: Sample, const F: usize> BsaToolbox<S, F> {
         }
         let residual = self.filtered.residual(sample).minus(state.owed);
         state.owed = S::Residual::ZERO;
-        let without = without_filter(residuals);
+        let without = without_filter::<S>(residuals);
         let newest = state.cursor.next(F);
         *residuals.get_mut(newest)? = residual;
         if !state.cursor.advance(F) {
@@ -124,8 +124,9 @@ impl<R: Residual> Registers<R> {
 
 /// The sum of `|r|` over the window.
 #[inline]
-pub(super) fn without_filter<R: Residual>(residuals: &[R]) -> R::Sum {
-    residuals.iter().fold(R::EMPTY, |sum, residual| residual.add_distance(R::ZERO, sum))
+pub(super) fn without_filter<S: Sample>(residuals: &[S::Residual]) -> <S::Residual as Nearer>::Sum {
+    let pairs = residuals.iter().map(|&residual| (residual, S::Residual::ZERO));
+    S::Residual::distance(S::SHORT, pairs)
 }
 
 /// The sum of `|r - h|` over the window.
@@ -134,8 +135,8 @@ pub(super) fn with_filter<S: Sample>(
     residuals: &[S::Residual],
     taps: &[S],
 ) -> <S::Residual as Nearer>::Sum {
-    let pairs = residuals.iter().zip(taps);
-    pairs.fold(S::Residual::EMPTY, |sum, (residual, tap)| residual.add_distance(tap.widen(), sum))
+    let pairs = residuals.iter().zip(taps).map(|(&residual, tap)| (residual, tap.widen()));
+    S::Residual::distance(S::SHORT, pairs)
 }
 
 impl<S: Sample, const F: usize> Start for BsaToolbox<S, F> {

@@ -333,7 +333,7 @@ impl<S: Sample> Scheme for BsaToolbox<S> {
         }
         let residual = sample.residual(self.shift, self.taps.magnitude).minus(state.owed);
         state.owed = S::Residual::ZERO;
-        let without = bsa_toolbox::without_filter(&state.residuals);
+        let without = bsa_toolbox::without_filter::<S>(&state.residuals);
         *state.residuals.get_mut(state.cursor.next(self.taps.length()))? = residual;
         if !state.cursor.advance(self.taps.length()) {
             return None;

@@ -156,7 +156,8 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
             return Spike::None;
         }
         let previous = core::mem::replace(&mut state.previous, sample);
-        let spike = Spike::from_side(sample.step(previous, self.after(state.recent)));
+        let spike =
+            Spike::from_side(sample.step(previous.bound(), self.after(state.recent).bound()));
         state.recent.take(spike);
         spike
     }
@@ -178,7 +179,7 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         let mut check = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
             check = check.including(sample);
-            let emitted = Spike::from_side(sample.step(previous, threshold));
+            let emitted = Spike::from_side(sample.step(previous.bound(), threshold.bound()));
             spike.write(emitted);
             previous = sample;
             // Without a spike now or among the last 16 samples the threshold stays the smallest.

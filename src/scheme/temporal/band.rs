@@ -18,7 +18,7 @@ impl<S: Sample> Band<S> {
 
     #[inline]
     fn at(base: S::Bound, threshold: S) -> Self {
-        let [lower, upper] = S::bounds(base, threshold);
+        let [lower, upper] = S::bounds(base, threshold.bound());
         Self { lower, base, upper }
     }
 

@@ -145,7 +145,7 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
             return Spike::None;
         }
         let previous = core::mem::replace(&mut state.previous, sample);
-        Spike::from_side(sample.step(previous, self.threshold))
+        Spike::from_side(sample.step(previous.bound(), self.threshold.bound()))
     }
 
     /// The last sample stays in a register, and one check at the end asks whether all were finite: if not, the
@@ -160,15 +160,15 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         let (first, samples, spikes) =
             encode_first(self, state.tally.is_primed(), state, samples, spikes);
 
-        let mut previous = state.previous;
+        let (mut previous, threshold) = (state.previous.bound(), self.threshold.bound());
         let mut check = S::ZERO;
         for (spike, &sample) in spikes.iter_mut().zip(samples) {
             check = check.including(sample);
-            spike.write(Spike::from_side(sample.step(previous, self.threshold)));
-            previous = sample;
+            spike.write(Spike::from_side(sample.step(previous, threshold)));
+            previous = sample.bound();
         }
         if check.is_finite() {
-            state.previous = previous;
+            state.previous = S::of_bound(previous);
         } else {
             encode_each(self, state, samples, spikes);
         }

@@ -9,7 +9,7 @@ use crate::num::{Tally, to_f64};
 use crate::scheme::codec::{encode_each, encode_first};
 use crate::{
     Code, ConfigError, Destination, Fingerprint, NeuronSpike, Polarity, Recovery, Sample, Scheme,
-    Spike, Start,
+    Start,
 };
 
 /// The methods that limit the spikes of a sample, in the field `most`, for a code of [`Steps`].
@@ -294,10 +294,7 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
             1.. => self.threshold,
             _ => self.threshold.negated(),
         };
-        for _ in 0..steps.unsigned_abs() {
-            state.decode(step, Spike::Up);
-        }
-        state.value()
+        state.climb(step, steps.unsigned_abs())
     }
 
     fn held(&self, state: &StepState<S>) -> Option<S> {

@@ -36,6 +36,15 @@ impl<S: Sample> StepState<S> {
         self.value
     }
 
+    /// Adds a step so many times.
+    #[inline]
+    pub(super) fn climb(&mut self, step: S, times: u32) -> S {
+        let step = step.level();
+        let level = (0..times).fold(self.value.level(), |level, _| S::climb(level, step));
+        self.value = S::of_level(level);
+        self.value
+    }
+
     /// The value stays in a register, and a turn of the loop decodes eight samples.
     #[allow(clippy::inline_always)]
     #[inline(always)] // a call would move five arguments
@@ -45,13 +54,14 @@ impl<S: Sample> StepState<S> {
         spikes: &[impl Copy + Into<Spike>],
         values: &mut [S],
     ) -> usize {
-        let steps = [step.negated(), S::ZERO, step];
-        let mut decoded = self.value;
+        let steps = [step.negated(), S::ZERO, step].map(S::level);
+        let (mut level, mut decoded) = (self.value.level(), self.value);
         let mut decode = |value: &mut S, spike: Spike| {
             if spike.is_fired()
                 && let Some(&step) = steps.get((spike.sign() + 1) as usize)
             {
-                decoded = decoded.plus(step);
+                level = S::climb(level, step);
+                decoded = S::of_level(level);
             }
             *value = decoded;
         };

@@ -9,6 +9,7 @@ mod figures;
 pub mod listing;
 mod loops;
 mod measured;
+mod slower;
 mod stack;
 mod table;
 
@@ -59,6 +60,8 @@ struct Printed {
     max_cycles: [u32; 2],
     plain_samples: u32,
     plain: u32,
+    in_c: u32,
+    in_c_cycles: [u32; 2],
     code: u32,
     state: u32,
     flash: u32,
@@ -129,7 +132,7 @@ pub fn verify_stack() -> Result<()> {
 }
 
 /// Fails if small loops take other cycles than calculated, if anything takes more instructions on a core than it did,
-/// or if six channels take more than promised.
+/// if 16-bit counts or plain C are passed by more than allowed, or if six channels take more than promised.
 pub fn verify(core: &str) -> Result<()> {
     loops::verify(Board::with(core)?)?;
     let measured = measure(&[], &[core])?;
@@ -211,6 +214,8 @@ fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Mea
             cycles_mean: cycles_mean(printed.total_cycles, printed.samples),
             cycles_max: cycles_max(printed.max_cycles),
             plain_mean: (printed.plain > 0).then(|| mean(printed.plain, printed.plain_samples)),
+            in_c_mean: (printed.in_c > 0).then(|| mean(printed.in_c, printed.plain_samples)),
+            in_c_cycles_mean: cycles_mean(printed.in_c_cycles, printed.plain_samples),
             code_bytes: code.bytes(printed.code),
             state_bytes: printed.state,
             flash_bytes: printed.flash,

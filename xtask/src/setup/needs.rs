@@ -21,7 +21,7 @@ pub const TOOLS: [Tool; 5] = [
     Tool {
         package: "gcc-arm-none-eabi",
         program: "arm-none-eabi-gcc",
-        why: "compiles the tests of the library for C",
+        why: "compiles the tests of the library for C, and C to compare counts with",
     },
     Tool {
         package: "qemu-system-misc",

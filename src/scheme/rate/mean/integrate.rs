@@ -120,7 +120,7 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
     #[inline]
     fn advance(&self, mut potential: S::Total, sample: S) -> (S::Total, i32) {
         if self.is_leaky {
-            potential = leaked(potential, self.power);
+            potential = potential.leaked(self.power);
         }
         potential = potential.plus(sample.offset_from(self.reference));
         let (threshold, most) = (self.unit(), i32::from(self.most));
@@ -163,16 +163,6 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
 fn stay_rolled() {
     if cfg!(target_has_atomic = "32") {
         black_box(());
-    }
-}
-
-/// A sum less its `2^k`th part, which is rounded towards 0.
-#[inline]
-fn leaked<T: Total>(sum: T, power: u8) -> T {
-    if sum < T::ZERO {
-        sum.plus(T::ZERO.minus(sum).halved(power))
-    } else {
-        sum.minus(sum.halved(power))
     }
 }
 
@@ -261,7 +251,7 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
 
     #[inline]
     fn decode(&self, state: &mut PotentialState<S>, steps: Steps<K>) -> S {
-        let mut potential = leaked(state.potential, self.power);
+        let mut potential = state.potential.leaked(self.power);
         let step = self.unit().times(steps.count().unsigned_abs().into());
         potential = if steps.count() < 0 { potential.minus(step) } else { potential.plus(step) };
         state.potential = potential;

@@ -3,8 +3,9 @@
 use super::stack::Stack;
 use super::{
     events,
-    figures::{CORES, Row, between_whole, cell},
+    figures::{CORES, ENERGY, Row, between_whole, cell},
     measured::Measured,
+    slower,
 };
 use crate::figures::markdown;
 use crate::programs::{boards::Board, image};
@@ -13,6 +14,7 @@ use anyhow::Result;
 /// Place of the tables: the file, and the marker around them.
 const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
 const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
+const SLOWER: (&str, &str) = ("docs/costs.md", "bench-target slower");
 const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
 const SIX: (&str, &str) = ("README.md", "bench-target six channels");
 
@@ -132,6 +134,7 @@ fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str),
     let mut tables = vec![(EVENTS, events::markdown(events)?)];
     if !rows.is_empty() {
         tables.insert(0, (CODECS, codecs(rows)));
+        tables.push((SLOWER, slower::markdown(rows)));
         tables.push((BRIEF, brief(rows, &markdown::section(BRIEF.0, BRIEF.1)?)));
         tables.push((SIX, format!("\n{}\n", events::in_a_sentence(events)?)));
     }
@@ -158,11 +161,11 @@ fn brief(rows: &[Row], table: &str) -> String {
 /// Formats the codecs: in `f32` for cores with a floating-point unit, in fixed point for cores without.
 fn codecs(rows: &[Row]) -> String {
     let mut text = String::new();
-    for (core, sample) in CORES.into_iter().zip(["f32", "q16.16"]) {
+    for ((core, energy), sample) in ENERGY.into_iter().zip(["f32", "q16.16"]) {
         text += &format!(
             "\nCortex-{core}, `{sample}`:\n\n\
-             | codec | encode slice | cycles | encode sample | cycles | worst sample | cycles | decode | cycles | plain | ratio | code slice | code sample | state | flash |\n\
-             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+             | codec | encode slice | cycles | nJ | in C | cycles | encode sample | cycles | worst sample | cycles | decode | cycles | plain | ratio | code slice | code sample | state | flash |\n\
+             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
         );
         for line in lines(rows) {
             let Line { encode, encode_sample, decode, .. } = &line;
@@ -170,11 +173,16 @@ fn codecs(rows: &[Row]) -> String {
                 == (core, sample, "paper")
             {
                 let (plain, ratio) = line.plain();
+                let nanojoules =
+                    encode.cycles_mean.map(|[_, most]| format!("{:.1}", most * energy));
                 text += &format!(
-                    "| {} | {:.1} | {} | {:.1} | {} | {} | {} | {:.1} | {} | {plain} | {ratio} | {} | {} | {} | {} |\n",
+                    "| {} | {:.1} | {} | {} | {} | {} | {:.1} | {} | {} | {} | {:.1} | {} | {plain} | {ratio} | {} | {} | {} | {} |\n",
                     name(&encode.codec),
                     encode.instructions_mean,
                     cell(encode.cycles_mean),
+                    nanojoules.unwrap_or_default(),
+                    encode.in_c_mean.map_or("–".into(), |mean| format!("{mean:.1}")),
+                    cell(encode.in_c_cycles_mean),
                     encode_sample.instructions_mean,
                     cell(encode_sample.cycles_mean),
                     encode_sample.instructions_max,
