@@ -16,12 +16,12 @@ fn table(times: impl Iterator<Item = i64>) -> String {
     table
 }
 
-/// Runs `score` with the scheme `sf` (step forward) on the file at `path`. Returns the text on standard error, and the
-/// number of spikes a second.
+/// Runs `score` with the scheme `sf` (step forward) on the file at `path`. Returns the notes on the file, and the number
+/// of spikes a second.
 fn spikes_a_second(path: &str) -> (String, f64) {
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
     let rows = ran.schemes();
-    (ran.stderr, rows[0]["spikes_per_second"].as_f64().unwrap())
+    (ran.log()["notes"].to_string(), rows[0]["spikes_per_second"].as_f64().unwrap())
 }
 
 #[test]

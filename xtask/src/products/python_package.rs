@@ -54,7 +54,10 @@ pub fn fleet() -> Result<()> {
             .arg(&place))?;
     }
     let pinned = ["bindings/python/examples/requirements.txt", "bindings/python/requirements.txt"];
-    install(&torch, &["--no-deps", "--requirement", pinned[0], "--constraint", pinned[1], "maturin"])?;
+    install(
+        &torch,
+        &["--no-deps", "--requirement", pinned[0], "--constraint", pinned[1], "maturin"],
+    )?;
     package(&torch, "release")?;
     run(command(&torch).arg("bindings/python/examples/fleet.py"))
 }
