@@ -237,7 +237,8 @@ mod tests {
     #[test]
     fn pieces_are_measured_as_the_whole() {
         let values: Vec<f64> = (0..1500).map(|sample| (f64::from(sample) * 0.05).sin()).collect();
-        let (sample, asked) = (SampleType::F32, Asked { paper: true, ..Asked::default() });
+        let (sample, mut asked) = (SampleType::F32, Asked::default());
+        asked.paper = true;
         let mut calibrated = Calibrated::of(sample, &asked);
         calibrated.observe(&values);
         for scheme in Scheme::all() {
