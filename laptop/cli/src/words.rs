@@ -56,7 +56,9 @@ pub(crate) fn notes<W: Worded>(notes: &[W]) -> Vec<String> {
 /// Prints notes on a log on standard error, one on each line. If the log is one of several, its name comes first.
 pub(crate) fn tell_of(log: Option<&str>, notes: &[String]) {
     let of = log.map_or(String::new(), |log| format!("{log}: "));
-    notes.iter().for_each(|note| eprintln!("{of}{note}"));
+    for note in notes {
+        eprintln!("{of}{note}");
+    }
 }
 
 /// Prints notes of the library on standard error, one on each line.
