@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor, as_completed
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -41,9 +43,9 @@ def dataset(
     keywords are those of :func:`~spikewire.read`.
 
     `client` is a ``dask.distributed.Client``, or an executor of :mod:`concurrent.futures`; without one, `jobs` threads of
-    this process work. Each log is a task, and the workers need the same files under the same paths. Dask gives the tasks
-    of a worker that died to another one. Whoever encodes, the bytes of all files are the same. A call that was ended is
-    continued by the same call.
+    this process work. A task is a log, or with Dask up to 16 logs if there are many; the workers need the same files under
+    the same paths. Dask gives the tasks of a worker that died to another one. Whoever encodes, the bytes of all files are
+    the same. A call that was ended is continued by the same call.
     """
     flight = flight if isinstance(flight, Scheme) else Path(flight)
     if isinstance(flight, Path):
@@ -72,31 +74,50 @@ def dataset(
     }
     run = _native.Dataset(_told(keywords))
     left = run.left()
-    executor, is_own = _executor(client, jobs)
-    futures = []
-    try:
-        with _progress.bar(progress, "dataset") as tell:
-            futures = [executor.submit(_encoded, keywords, str(log)) for log in left]
-            for done, future in enumerate(as_completed(futures), 1):
-                run.add(future.result())
-                if tell:
-                    tell(done, len(left))
-    finally:
-        for future in futures:
-            future.cancel()
-        if is_own:
-            executor.shutdown()
+    # A task carries only its own log, not the list of all.
+    task = partial(_encoded, {**keywords, "logs": []})
+    logs = [str(log) for log in left]
+    rows = _by_dask(client, task, logs) if hasattr(client, "get_executor") else _by_executor(client, jobs, task, logs)
+    with _progress.bar(progress, "dataset") as tell, closing(rows):
+        for done, row in enumerate(rows, 1):
+            run.add(row)
+            if tell:
+                tell(done, len(left))
     return json.loads(run.finish())
 
 
-def _executor(client: Any, jobs: int | None) -> tuple[Executor, bool]:
-    """The executor of a client, and whether it ends with the call."""
-    if client is None:
-        return ThreadPoolExecutor(jobs), True
-    if hasattr(client, "get_executor"):
-        # A task that was computed before may have lost its files since.
-        return client.get_executor(pure=False), True
-    return client, False
+def _by_executor(
+    client: Executor | None, jobs: int | None, task: Callable[[str], str], logs: list[str]
+) -> Generator[str, None, None]:
+    """The rows of logs, in the order in which they are done."""
+    executor = ThreadPoolExecutor(jobs) if client is None else client
+    futures = [executor.submit(task, log) for log in logs]
+    try:
+        for future in as_completed(futures):
+            yield future.result()
+    finally:
+        for future in futures:
+            future.cancel()
+        if client is None:
+            executor.shutdown()
+
+
+def _by_dask(client: Any, task: Callable[[str], str], logs: list[str]) -> Generator[str, None, None]:
+    """The rows of logs, in the order in which Dask's workers have done them."""
+    import distributed
+
+    # A task costs Dask some milliseconds, which short logs share if there are many for each worker.
+    size = min(16, max(1, len(logs) // (8 * max(1, sum(client.nthreads().values())))))
+    batches = [logs[start : start + size] for start in range(0, len(logs), size)]
+    # Dask must not reuse the result of an earlier equal task, because the files of that task may be gone.
+    futures = client.map(partial(_each, task), batches, pure=False)
+    try:
+        for future, rows in distributed.as_completed(futures, with_results=True):
+            # Releases the rows at once: otherwise Dask would compute them anew if their worker died.
+            future.release()
+            yield from rows
+    finally:
+        client.cancel(futures)
 
 
 def _told(keywords: dict[str, Any]) -> dict[str, Any]:
@@ -108,3 +129,8 @@ def _told(keywords: dict[str, Any]) -> dict[str, Any]:
 def _encoded(keywords: dict[str, Any], log: str) -> str:
     """A task: encodes one log, and returns its row of the manifest."""
     return _native.encode_log(_told(keywords), log)
+
+
+def _each(task: Callable[[str], str], logs: list[str]) -> list[str]:
+    """A task for Dask: encodes some logs, and returns their rows."""
+    return [task(log) for log in logs]

@@ -74,7 +74,7 @@ impl Dataset {
     /// Completes the manifest, and returns the counts as JSON.
     fn finish(&mut self) -> PyResult<String> {
         let run = self.0.take().ok_or_else(|| PyValueError::new_err("it is finished already"))?;
-        let outcome = run.finish().map_err(value)?;
+        let (outcome, _) = run.finish().map_err(value)?;
         serde_json::to_string(&outcome).map_err(value)
     }
 }

@@ -97,7 +97,7 @@ class Objective:
         ran = subprocess.run(self.command + words, capture_output=True, text=True)
         value = 1e9
         if ran.returncode == 0:
-            figures = json.loads(ran.stdout)[0]
+            figures = json.loads(ran.stdout)["logs"][0]["schemes"][0]
             lacking = self.efficiency - figures["efficiency"]
             value = figures["rmse"] if lacking <= 0 else 1e6 + lacking
         self.trace.append(min(value, self.trace[-1] if self.trace else math.inf))
@@ -158,7 +158,7 @@ def tuned(program, log, channel, problem, budget):
     seconds = time.time() - start
     if ran.returncode != 0:
         return math.inf, budget, seconds
-    row = json.loads(ran.stdout)[channel][0]
+    row = json.loads(ran.stdout)["summary"]["channels"][channel][0]
     return row["tuned_on"]["rmse"], row["evaluated"], seconds
 
 

@@ -1,10 +1,12 @@
 //! Options that choose the recording and its channels, and options for converting events between formats.
 
-use anyhow::Result;
-use clap::Args;
+use anyhow::{Context, Result, bail};
 use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
 use flight_logs::{Kind, Packing};
+use lab::dataset::{self, ChannelsOf, Found, Split};
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
+use std::fs;
 use std::io::{self, BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -81,6 +83,113 @@ pub(crate) struct ChannelOptions {
     /// Read the undamaged part of a log that is cut short or damaged, and a table up to its last whole line
     #[arg(long, help_heading = "Input")]
     accept_cut: bool,
+}
+
+/// Options that name many logs.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LogList {
+    /// Logs and tables of all kinds, directories, and patterns such as 'logs/**/*.ulg'. In a directory, logs are
+    /// recognised by their content, and tables by their file extensions, such as .csv and .parquet
+    #[arg(value_name = "LOG", required_unless_present = "list")]
+    logs: Vec<PathBuf>,
+    /// File that lists further logs, directories and patterns, one on each line; `-` is standard input
+    #[arg(long, value_name = "FILE")]
+    list: Option<PathBuf>,
+}
+
+/// Options that choose many logs, or the logs of a data set.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LogOptions {
+    #[command(flatten)]
+    list: LogList,
+    /// Flights to take from a data set of `dataset`, which is given by its directory or its `manifest.jsonl`; default:
+    /// train
+    #[arg(long, value_enum, value_name = "SIDE", help_heading = "Input")]
+    split: Option<Side>,
+}
+
+/// The value of `--split`: a side of a data set's split.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Side {
+    /// The flights for training
+    Train,
+    /// The flights for testing
+    Test,
+    /// All flights
+    All,
+}
+
+/// Options that choose the channels of many logs.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ManyChannels {
+    /// Channels to read from logs of one kind, in place of those that other options name. KIND is table, ulog,
+    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. If the option is given several times for a kind, each log is
+    /// read with the first NAMES that are all in the log
+    #[arg(long, value_name = "KIND=NAMES", help_heading = "Input")]
+    pub channels_of: Vec<ChannelsOf>,
+    #[command(flatten)]
+    pub channel: ChannelOptions,
+}
+
+impl LogList {
+    /// Returns the logs, directories and patterns as they are given.
+    ///
+    /// # Errors
+    /// Returns an error if the file of `--list` cannot be read, or if standard input is both the list and a log.
+    pub(crate) fn given(&self) -> Result<Vec<PathBuf>> {
+        let Some(list) = &self.list else { return Ok(self.logs.clone()) };
+        let is_stdin = list == Path::new("-");
+        if is_stdin && self.logs.contains(list) {
+            bail!("standard input cannot be both the list and a log");
+        }
+        let text =
+            if is_stdin { io::read_to_string(io::stdin()) } else { fs::read_to_string(list) };
+        let text = text.with_context(|| list.display().to_string())?;
+        let listed = text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from);
+        Ok(self.logs.iter().cloned().chain(listed).collect())
+    }
+}
+
+impl LogOptions {
+    /// Finds the logs. A file that is missing is found too, and refused when it is read.
+    ///
+    /// # Errors
+    /// Returns an error if there are no logs, if a list or a manifest cannot be read, or if `--split` is given without a
+    /// data set.
+    pub(crate) fn find(&self) -> Result<Found> {
+        let split = match self.split.unwrap_or(Side::Train) {
+            Side::Train => Some(Split::Train),
+            Side::Test => Some(Split::Test),
+            Side::All => None,
+        };
+        let found = dataset::expand(&self.list.given()?, split)?;
+        if self.split.is_some() && !found.has_set {
+            bail!("--split chooses flights of a data set, and none of the logs is one");
+        }
+        Ok(found)
+    }
+}
+
+impl ManyChannels {
+    /// Calls `read` with the options for reading one of the logs. An option that does not apply to the log's kind is
+    /// ignored. If `is_single` is set and `--channels-of` is not given, such an option is an error instead.
+    ///
+    /// # Errors
+    /// Returns an error if the log cannot be read.
+    pub(crate) fn read<T>(
+        &self,
+        log: &Path,
+        is_single: bool,
+        mut read: impl FnMut(&input::InputOptions) -> lab::Result<T>,
+    ) -> Result<T> {
+        let file = as_file(log)?;
+        let options = self.channel.of(&file);
+        if is_single && self.channels_of.is_empty() {
+            return Ok(read(&options)?);
+        }
+        let kind = if options.is_stdin() { None } else { Kind::of(&file)? };
+        Ok(dataset::read(&file, kind, &options.channel, &self.channels_of, read)?)
+    }
 }
 
 /// Returns a parser of a unit of time: `s`, `ms`, `us` or `ns`.

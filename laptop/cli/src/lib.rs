@@ -6,6 +6,7 @@ mod inputs;
 mod live;
 mod options;
 mod panel;
+mod report;
 mod stop;
 mod words;
 

@@ -48,6 +48,19 @@ pub(crate) fn is_closed_pipe(error: &Error) -> bool {
         || error.downcast_ref::<io::Error>().is_some_and(is_pipe)
 }
 
+/// Formats notes of the library.
+pub(crate) fn notes<W: Worded>(notes: &[W]) -> Vec<String> {
+    notes.iter().map(|note| note.spelled(option).to_string()).collect()
+}
+
+/// Prints notes on a log on standard error, one on each line. If the log is one of several, its name comes first.
+pub(crate) fn tell_of(log: Option<&str>, notes: &[String]) {
+    let of = log.map_or(String::new(), |log| format!("{log}: "));
+    for note in notes {
+        eprintln!("{of}{note}");
+    }
+}
+
 /// Prints notes of the library on standard error, one on each line.
 pub(crate) fn tell<'a, W: Worded + 'a>(notes: impl IntoIterator<Item = &'a W>) {
     notes.into_iter().for_each(|note| eprintln!("{}", note.spelled(option)));

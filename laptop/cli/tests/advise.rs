@@ -12,7 +12,7 @@ const SHORT: &str = "--evaluations 60";
 fn a_scheme_within_the_error_is_advised_with_its_figures() {
     let (_directory, log) = file("signal.csv", good("signal --seconds 6", "").output);
     let arguments = format!("advise {log} --channel signal --max-rmse 0.4 {SHORT}");
-    let report: Value = ran!("{arguments} --json").json();
+    let report = ran!("{arguments} --json").log();
     let advice = &report["channels"][0];
     assert_eq!(advice["look"]["verdict"], "good");
     assert!((advice["look"]["rate"].as_f64().unwrap() - 100.0).abs() < 0.1);
@@ -48,7 +48,7 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     let ask = |more: &str| {
         let asked = format!("advise {log} --column x --rate 100 --max-rmse 0.4 --evaluations 16");
         let ran = ran!("{asked} --json {more}");
-        let report: Value = ran.json();
+        let report = ran.log();
         let reaching = report["channels"][0]["reaching"].as_array().unwrap().iter();
         let latencies = reaching.map(|one| {
             let latency = one["costs"]["latency"].as_f64().unwrap();
@@ -101,7 +101,7 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("flight.toml");
     let asked = format!("advise {log} --loop-bandwidth 5 --evaluations 16 -o {}", path.display());
-    let report: Value = ran!("{asked} --json").json();
+    let report = ran!("{asked} --json").log();
     let banks = report["bank"]["banks"].as_array().unwrap();
     let bytes: Vec<f64> =
         banks.iter().map(|bank| bank["bytes_per_second"].as_f64().unwrap()).collect();
@@ -178,7 +178,7 @@ fn a_shaken_flight_is_advised_on() {
         &format!("advise {log} --column x --rate 197 --max-rmse 0.12 --json {SHORT}"),
         "",
     );
-    let report: Value = ran.json();
+    let report = ran.log();
     let look = &report["channels"][0]["look"];
     let (deviation, noise) = (look["deviation"].as_f64().unwrap(), look["noise"].as_f64().unwrap());
     assert!(

@@ -9,7 +9,7 @@ use common::{good, spikewire};
 use serde_json::Value;
 
 fn bench() -> Value {
-    good("bench --tests 40 --cases 3 --seed 7 --json", "").json()
+    good("bench --tests 40 --cases 3 --seed 7 --json", "").json()["summary"].take()
 }
 
 #[test]

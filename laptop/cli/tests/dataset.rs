@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{flight, flight_logs, good, ran, refused};
+use common::{flight, flight_logs, good, most_memory, ran, refused};
 use flight_logs::made::{Kind, blackbox, dataflash, dataflash_sample, dataflash_text, frame, tlog};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -151,11 +151,12 @@ fn a_run_that_is_killed_twice_is_continued_without_a_duplicate_or_a_hole() {
 
     // Nothing is left to do, and a log that has changed is encoded again.
     let third = good(&format!("{ended} --json"), "").json();
-    assert_eq!(third["done_before"], count);
+    assert_eq!(third["summary"]["done_before"], count);
+    assert_eq!(third["logs"], Value::from(all.clone()));
     fs::write(at("logs/a/1.csv"), table(250)).unwrap();
     let fourth = good(&format!("{ended} --json"), "").json();
-    assert_eq!(fourth["done_before"], count - 1);
-    assert_eq!((fourth["logs"].clone(), rows(&at("ended")).len()), (count.into(), count));
+    assert_eq!(fourth["summary"]["done_before"], count - 1);
+    assert_eq!((&fourth["summary"]["logs"], rows(&at("ended")).len()), (&count.into(), count));
     assert_eq!(rows(&at("ended"))[0]["samples"], 250);
 
     let other = ended.replace("0.05", "0.06");
@@ -194,7 +195,7 @@ fn the_manifest_says_what_became_of_each_log() {
         all.sort_unstable();
         all
     };
-    let listed = told.as_array().unwrap();
+    let listed = told["logs"].as_array().unwrap();
     assert_eq!(samples(&mut listed.iter()), samples(&mut train.into_iter()));
     assert!(listed.iter().all(|own| own["kind"] == "table" && own["columns"].is_array()));
     let names = at("logs").join("a");
@@ -315,11 +316,13 @@ parameters = { threshold = 20, spikes = 4 }
 #[test]
 fn what_cannot_be_asked_is_refused() {
     let directory = tempfile::tempdir().unwrap();
-    let out = directory.path().join("out");
+    let (out, list) = (directory.path().join("out"), directory.path().join("list"));
+    fs::write(&list, "").unwrap();
     let table = flight("hexarotor.csv");
     let sf = "dataset --scheme sf --threshold 1";
     for (asked, words) in [
-        (format!("{sf} -o {}", out.display()), "no logs; --logs takes files"),
+        (format!("{sf} -o {}", out.display()), "were not provided"),
+        (format!("{sf} --list {} -o {}", list.display(), out.display()), "no logs: name files"),
         (format!("{sf} missing.csv -o {}", out.display()), "missing.csv: no file of this name"),
         (format!("{sf} --test 2 {table} -o {}", out.display()), "--test 2 must be from 0 to 1"),
         (
@@ -343,42 +346,15 @@ fn spent() -> f64 {
     fields[13..15].iter().map(|own| own.parse::<f64>().unwrap()).sum::<f64>() / TICKS
 }
 
-/// Runs the program; returns the largest amount of memory that it used, in MB. Kills the program after it has written
-/// `until` rows of the manifest.
-fn measured(arguments: &str, dataset: &Path, until: usize) -> f64 {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
-        .args(arguments.split_whitespace())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let mut most = 0.0_f64;
-    while child.try_wait().unwrap().is_none() {
-        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let kilobytes = line.and_then(|own| own.trim().trim_end_matches(" kB").parse::<f64>().ok());
-        most = most.max(kilobytes.unwrap_or_default() / 1000.0);
-        if rows(dataset).len() >= until {
-            child.kill().unwrap();
-            child.wait().unwrap();
-            return most;
-        }
-        sleep(Duration::from_millis(20));
-    }
-    most
-}
+/// Number of logs of the measurement.
+const LOGS: usize = 1000;
 
-/// One run that encodes a thousand logs takes at most 1.2 times the processor time of a thousand runs with one log
-/// each. The tables among the logs repeat a real flight, and the `ULog` files are parts of a real flight. The logs in
-/// other formats hold sine waves. The test takes minutes, and runs on Linux only:
-/// `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn a_thousand_logs_cost_little_more_than_each_alone() {
-    const LOGS: usize = 1000;
-    let directory = tempfile::tempdir().unwrap();
-    let at = |name: &str| directory.path().join(name);
-    fs::create_dir(at("logs")).unwrap();
+/// Writes a thousand logs of seven formats. The tables repeat a real flight, and the `ULog` files are parts of a real
+/// flight. The logs in other formats hold sine waves.
+fn a_thousand(logs: &Path) {
+    /// Fewest samples of a log, and the largest number above it.
+    const SAMPLES: (usize, usize) = (6_000, 20_011);
+    fs::create_dir(logs).unwrap();
     let table = fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let (header, flown) = table.split_once('\n').unwrap();
     let flown: Vec<(i64, &str)> = flown
@@ -396,8 +372,8 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
         - b"E\xffEnd of log\0".len()
         - (0..200).map(|own| frame(own).len()).sum::<usize>();
     for log in 0..LOGS {
-        // Between 3000 and 13000 samples, a different number for each log.
-        let samples = 3000 + (log * 7919 % 10_007) as u32;
+        // A different number for each log.
+        let samples = (SAMPLES.0 + log * 79_193 % SAMPLES.1) as u32;
         let (ending, content) = match log % 7 {
             0 => {
                 let rows = (0..samples as usize * 2).map(|row| {
@@ -432,12 +408,25 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
                 ("tlog", own.repeat(samples as usize / 200))
             }
         };
-        fs::write(at("logs").join(format!("{log:04}.{ending}")), content).unwrap();
+        fs::write(logs.join(format!("{log:04}.{ending}")), content).unwrap();
     }
+}
+
+/// One run that encodes a thousand logs, killed twice on the way, takes at most 1.2 times the processor time of a
+/// thousand runs with one log each. So do two workers of Dask of which one is killed twice, beside what Dask takes
+/// without logs, if `FLEET_PYTHON` names a Python with the package; their bytes are the same. The test takes minutes,
+/// and runs on Linux only: `cargo verify fleet`.
+#[test]
+#[ignore = "a measurement"]
+fn a_thousand_logs_cost_little_more_than_each_alone() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    a_thousand(&at("logs"));
     let out = at("out");
     let asked = arguments(&at("logs"), &out) + " --accept-cut";
     let start = spent();
-    let most = [300, 700, usize::MAX].map(|until| measured(&asked, &out, until));
+    let most =
+        [300, 700, usize::MAX].map(|until| most_memory(&asked, || rows(&out).len() >= until));
     let together = spent() - start;
     let all = rows(&out);
     let logs: BTreeSet<&str> = all.iter().map(|row| row["log"].as_str().unwrap()).collect();
@@ -458,4 +447,25 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
     );
     assert!(together <= 1.2 * alone);
     assert!(most.iter().all(|most| *most < 200.0));
+
+    let Some(python) = std::env::var_os("FLEET_PYTHON") else { return };
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bindings/python/tests/fleet.py");
+    let channels_of = CHANNELS.map(|(kind, names)| format!("{kind}={names}"));
+    let (logs, to) = (at("logs").display().to_string(), at("dask").display().to_string());
+    let given = [logs, to].into_iter().chain(channels_of).collect::<Vec<_>>();
+    let [idle, dask] = [&[][..], &given].map(|arguments| {
+        let start = spent();
+        let status = Command::new(&python).arg(&script).args(arguments).status();
+        assert!(status.unwrap().success());
+        spent() - start
+    });
+    println!("Dask {dask:.2} s, of which {idle:.2} s without logs: {:.2}", (dask - idle) / alone);
+    for file in parts(&out).iter().map(String::as_str).chain(["manifest.jsonl", "dataset.json"]) {
+        assert!(
+            fs::read(out.join(file)).unwrap() == fs::read(at("dask").join(file)).unwrap(),
+            "{file}"
+        );
+    }
+    assert_eq!(parts(&out).len(), parts(&at("dask")).len());
+    assert!(dask - idle <= 1.2 * alone);
 }

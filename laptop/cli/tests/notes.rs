@@ -13,9 +13,8 @@ fn a_rate_code_that_reaches_the_signal_has_no_note() {
 
 #[test]
 fn scores_say_what_they_ran_with() {
-    let figures = ran!("score --column gyro_x --json {}", flight("hexarotor.csv")).json();
-    let figures = figures.as_array().unwrap();
-    for scheme in figures {
+    let figures = ran!("score --column gyro_x --json {}", flight("hexarotor.csv")).schemes();
+    for scheme in &figures {
         assert!(scheme["parameters"].as_object().unwrap().len() >= 2, "{scheme}");
         assert_eq!(scheme["scheme"] == "sf", scheme["slope"].is_object(), "{scheme}");
     }

@@ -35,7 +35,7 @@ fn options_override_it() {
     let (_directory, params) = file("sf.toml", "scheme = \"sf\"\nthreshold = 0.5\n");
     let flight = flight("hexarotor.csv");
     let score = |options: &str| {
-        let figures = ran!("score --json --column gyro_x {options} {flight}").json();
+        let figures = ran!("score --json --column gyro_x {options} {flight}").schemes();
         figures[0]["parameters"]["threshold"].as_f64().unwrap()
     };
     assert_eq!(score(&format!("--params {params}")), 0.5);

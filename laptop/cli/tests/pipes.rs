@@ -73,7 +73,7 @@ fn sub_timesteps_have_times_of_their_own() {
 fn scores_are_those_of_a_signal_worked_by_hand() {
     // Decoded as 0, 0, 1, 1: the squared errors are 0, 1, 1, 0, and the signal's variance is 1/2.
     let (_directory, path) = file("x.csv", table(&[0.0, 1.0, 2.0, 1.0]));
-    let figures = ran!("score --scheme sf --threshold 1 --rate 2 --json {path}").json();
+    let figures = ran!("score --scheme sf --threshold 1 --rate 2 --json {path}").schemes();
     let number = |name: &str| figures[0][name].as_f64().unwrap();
     assert_eq!(
         (number("spikes"), number("efficiency"), number("spikes_per_second")),
@@ -117,8 +117,7 @@ fn a_scheme_that_refuses_is_a_row() {
     };
     assert!(row("mw").contains("refused: ") && row("mw").contains("threshold"), "{}", ran.output);
     assert!(row("weighted-phase").ends_with(" |") && !row("weighted-phase").contains("refused"));
-    let rows = ran!("score --json --sample q8.8 --rate 100 {path}").json();
-    let rows = rows.as_array().unwrap();
+    let rows = ran!("score --json --sample q8.8 --rate 100 {path}").schemes();
     let refusals = rows.iter().filter(|row| row["refused"].is_string()).count();
     assert!((1..rows.len()).contains(&refusals), "{rows:?}");
     // If only this scheme is asked for, its refusal is the command's.
@@ -130,8 +129,8 @@ fn a_scheme_that_refuses_is_a_row() {
 fn one_scheme_without_parameters_has_the_papers_settings() {
     let flight = flight("hexarotor.csv");
     let threshold = |command: &str| {
-        let rows = ran!("{command} --json --column gyro_x {flight}").json();
-        let sf = rows.as_array().unwrap().iter().find(|row| row["scheme"] == "sf").unwrap();
+        let rows = ran!("{command} --json --column gyro_x {flight}").schemes();
+        let sf = rows.iter().find(|row| row["scheme"] == "sf").unwrap();
         sf["parameters"]["threshold"].as_f64().unwrap()
     };
     assert_eq!(threshold("score --scheme sf"), threshold("score"));

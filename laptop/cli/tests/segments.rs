@@ -16,12 +16,12 @@ fn table(times: impl Iterator<Item = i64>) -> String {
     table
 }
 
-/// Runs `score` with the scheme `sf` (step forward) on the file at `path`. Returns the text on standard error, and the
-/// number of spikes a second.
+/// Runs `score` with the scheme `sf` (step forward) on the file at `path`. Returns the notes on the file, and the number
+/// of spikes a second.
 fn spikes_a_second(path: &str) -> (String, f64) {
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
-    let rows: serde_json::Value = ran.json();
-    (ran.stderr, rows[0]["spikes_per_second"].as_f64().unwrap())
+    let rows = ran.schemes();
+    (ran.log()["notes"].to_string(), rows[0]["spikes_per_second"].as_f64().unwrap())
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn no_code_joins_two_segments() {
     }
     let (directory, path) = file("x.csv", text);
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
-    let rows: serde_json::Value = ran.json();
+    let rows = ran.schemes();
     assert!(rows[0]["rmse"].as_f64().unwrap() < 0.2, "{}", ran.output);
     assert_eq!(rows[0]["slope"]["steps_above_threshold"], 0, "{}", ran.output);
 

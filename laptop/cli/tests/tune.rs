@@ -13,7 +13,7 @@ const SHORT: &str = "--evaluations 100";
 /// Runs `tune --json` with one channel and one scheme; returns the result as JSON.
 fn row(arguments: &str) -> Value {
     let report: Value = ran!("tune --json {arguments}").json();
-    let (_, rows) = report.as_object().unwrap().iter().next().unwrap();
+    let (_, rows) = report["summary"]["channels"].as_object().unwrap().iter().next().unwrap();
     rows[0].clone()
 }
 
@@ -54,8 +54,8 @@ fn no_threshold_on_a_grid_is_better() {
         for threshold in (1..60).map(|step| f64::from(step) * 0.02) {
             let scored = ran!(
                 "score --json --column signal --scheme {scheme} {window} --threshold {threshold} {signal}"
-            ).json();
-            let (efficiency, rmse) = (number(&scored, "/0/efficiency"), number(&scored, "/0/rmse"));
+            ).schemes().swap_remove(0);
+            let (efficiency, rmse) = (number(&scored, "/efficiency"), number(&scored, "/rmse"));
             assert!(
                 efficiency < 60.0 || rmse >= least * 0.9999,
                 "{scheme} {threshold}: {rmse} < {least}"
@@ -73,8 +73,9 @@ fn settings_exactly_at_the_goal_are_found() {
     for threshold in [0.3, 0.35, 0.41] {
         let scored =
             ran!("score --json --column gyro_x --scheme sf --threshold {threshold} {flight}")
-                .json();
-        let (efficiency, rmse) = (number(&scored, "/0/efficiency"), number(&scored, "/0/rmse"));
+                .schemes()
+                .swap_remove(0);
+        let (efficiency, rmse) = (number(&scored, "/efficiency"), number(&scored, "/rmse"));
         let tuned = row(&format!(
             "{flight} --channel gyro_x --scheme sf --hold-out 0 --min-efficiency {efficiency} {SHORT}"
         ));
@@ -216,12 +217,11 @@ fn emitted_settings_score_as_in_the_search() {
         let tuned = row(&common);
         let toml = ran!("tune {common} --emit toml").output;
         let (_directory, params) = file("tuned.toml", &toml);
-        let scored = ran!("score --json --params {params} --column signal {signal}").output;
-        let scored: Value = serde_json::from_str(&scored).unwrap();
+        let scored = ran!("score --json --params {params} --column signal {signal}").schemes();
         for figure in ["rmse", "efficiency", "snr"] {
             let (a, b) = (
                 number(&tuned, &format!("/whole/{figure}")),
-                number(&scored, &format!("/0/{figure}")),
+                number(&scored[0], &format!("/{figure}")),
             );
             assert!((a - b).abs() < 1e-9 * a.abs(), "{scheme} {figure}: {a} {b}\n{toml}");
         }

@@ -20,6 +20,7 @@ pub mod flight;
 pub mod frames;
 pub mod input;
 pub mod look;
+mod measure;
 #[cfg(feature = "networks")]
 pub mod network;
 pub mod output;

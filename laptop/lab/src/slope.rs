@@ -32,20 +32,12 @@ impl Slope {
     /// Compares the largest slope of the recording with the largest slope that the code can follow. Returns `None` if
     /// the decoded value of the code can move by more than one step from sample to sample.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
-        let threshold = settings.number(scheme.info().climbs_by?).ok()?;
-        let segments = recording.segments.iter().map(|own| &recording.values[own.clone()]);
-        let steps = segments.flat_map(|own| own.windows(2)).map(|pair| (pair[1] - pair[0]).abs());
-        let above = steps.clone().filter(|step| *step > threshold).count();
-        let (rate, per) = recording.rate.map_or((1.0, "sample"), |rate| (rate, "second"));
-        Some(Self {
-            scheme: scheme.name(),
-            follows: above == 0,
-            steps_above_threshold: above,
-            part: above as f64 / recording.values.len() as f64,
-            fastest: threshold * rate,
-            steepest: steps.fold(0.0, f64::max) * rate,
-            per,
-        })
+        let mut steps = Steps::new(scheme, settings)?;
+        for segment in &recording.segments {
+            steps.observe(&recording.values[segment.clone()]);
+            steps.end_segment();
+        }
+        Some(steps.slope(recording.rate))
     }
 
     /// Returns the share of samples at which the signal changes by more than the threshold. The code cannot follow such
@@ -75,5 +67,56 @@ impl Slope {
             "{scheme} {verdict}: it climbs up to {fastest} a {per}, the signal {steepest}; {above} steps, {percent} % of \
              the samples, are larger than the threshold"
         )
+    }
+}
+
+/// Compares the slopes of a recording, as it is read, with the largest slope that the code can follow.
+pub(crate) struct Steps {
+    scheme: Scheme,
+    threshold: f64,
+    previous: Option<f64>,
+    samples: usize,
+    /// Number of changes from one sample to the next that exceed the threshold.
+    above: usize,
+    /// Largest change from one sample to the next.
+    largest: f64,
+}
+
+impl Steps {
+    /// Makes the comparison for a recording that has no samples yet. Returns `None` if the decoded value of the code
+    /// can move by more than one step from sample to sample.
+    pub(crate) fn new(scheme: Scheme, settings: &Settings) -> Option<Self> {
+        let threshold = settings.number(scheme.info().climbs_by?).ok()?;
+        Some(Self { scheme, threshold, previous: None, samples: 0, above: 0, largest: 0.0 })
+    }
+
+    /// Adds the next samples.
+    pub(crate) fn observe(&mut self, values: &[f64]) {
+        for &value in values {
+            let step = self.previous.map_or(0.0, |previous| (value - previous).abs());
+            self.above += usize::from(step > self.threshold);
+            self.largest = self.largest.max(step);
+            self.previous = Some(value);
+        }
+        self.samples += values.len();
+    }
+
+    /// Ends a segment. The change from its last sample to the next one is not counted.
+    pub(crate) fn end_segment(&mut self) {
+        self.previous = None;
+    }
+
+    /// Returns the result for the samples so far. `rate` is the sample rate in Hz, if known.
+    pub(crate) fn slope(&self, rate: Option<f64>) -> Slope {
+        let (rate, per) = rate.map_or((1.0, "sample"), |rate| (rate, "second"));
+        Slope {
+            scheme: self.scheme.name(),
+            follows: self.above == 0,
+            steps_above_threshold: self.above,
+            part: self.above as f64 / self.samples as f64,
+            fastest: self.threshold * rate,
+            steepest: self.largest * rate,
+            per,
+        }
     }
 }

@@ -1,13 +1,10 @@
 //! Encodes and decodes recordings in memory, in order to draw and score the results.
 
 use crate::Result;
-use crate::brief::short;
-use crate::fit::{Fit, explained, rounding};
-use crate::input::TableKind;
-use crate::input::{Clock, InputOptions, Kind};
+use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind};
+use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
-use crate::tune::RequestKind;
-use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings, Shape, Words};
+use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
 /// One channel of a recording, in memory.
@@ -52,15 +49,20 @@ impl Recording {
         Self::read_all(input)?.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
     }
 
-    /// Reads a recording of every chosen channel. Rows in which any channel is not finite are left out.
+    /// Reads a recording of every chosen channel. Rows in which any channel is not finite are left out. The usual step
+    /// of the times is that of the first [`CHUNK`] samples.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read, or if no row is finite in all columns.
     pub fn read_all(input: &InputOptions) -> Result<Vec<Self>> {
         let mut source = input.open()?;
-        let all = source.rest()?;
+        let mut all = Chunk::default();
+        source.next(&mut all)?;
+        // As in files that are read in pieces, the first piece tells the usual step.
+        let first = all.times.len();
+        all.append(&mut source.rest()?);
         let rows = all.finite_rows();
-        let mut clock = Clock::new(&all.times, input.rate, input.gap);
+        let mut clock = Clock::new(&all.times[..first], input.rate, input.gap);
         let steps = clock.observe(&all.times);
         let restarts = steps.iter().filter(|step| step.kind == Kind::Restart);
         let starts = restarts.map(|step| step.after as usize + 1);
@@ -117,14 +119,7 @@ impl Recording {
 
     /// Returns notes on the recording, to be shown to the user.
     pub fn notes(&self) -> Vec<Words> {
-        let mut notes = self.notes.clone();
-        if self.rejected > 0 {
-            let count = self.rejected;
-            let what = "samples were not finite or missing and emitted nothing";
-            notes.push(format!("{count} {what}").into());
-        }
-        notes.push(self.clock.to_string().into());
-        notes
+        notes(&self.notes, self.rejected, &self.clock)
     }
 
     /// Returns the number of samples that were missing or not finite.
@@ -139,6 +134,17 @@ impl Recording {
         }
         Some(self.clock.seconds())
     }
+}
+
+/// Returns notes for the user on a recording: those of its reader, the number of rejected samples, and its clock's.
+pub(crate) fn notes(of_reader: &[Words], rejected: usize, clock: &Clock) -> Vec<Words> {
+    let mut notes = of_reader.to_vec();
+    if rejected > 0 {
+        let what = "samples were not finite or missing and emitted nothing";
+        notes.push(format!("{rejected} {what}").into());
+    }
+    notes.push(clock.to_string().into());
+    notes
 }
 
 /// Returns the index range of each segment of a recording. `samples` is the number of samples. `bounds` holds the index
@@ -180,6 +186,8 @@ pub struct Trial {
     pub events: Vec<Event>,
     /// The decoded values, one for each sample.
     pub decoded: Vec<f64>,
+    /// Numbers of samples and spikes, and sums of the errors.
+    pub(crate) sums: Sums,
 }
 
 impl Trial {
@@ -195,58 +203,35 @@ impl Trial {
     ) -> Result<Self> {
         let mut calibrated = Calibrated::new(sample);
         calibrated.observe(&recording.values);
-        let asked = asked.channel(scheme.info(), 0, 1)?;
-        let resolved = |first: &[f64]| {
-            let known = Known { calibrated: Some(&calibrated), first, can_calibrate: true };
-            let settings = scheme.resolve(sample, &asked, &known);
-            settings.map_err(|error| explained(error.into(), sample, first))
+        let mean = recording.values.iter().sum::<f64>() / recording.values.len() as f64;
+        let known = (&calibrated, mean);
+        let mut measure = Measure::new(scheme, asked, sample, known, &recording.values)?;
+        let (mut events, mut decoded) = (Vec::new(), Vec::new());
+        let mut take = |new: &[Event], values: &[f64]| {
+            events.extend_from_slice(new);
+            decoded.extend_from_slice(values);
         };
-        let settings = resolved(&recording.values)?;
-        let (mut latency, mut all, mut decoded) = (0, Vec::new(), Vec::new());
         for segment in &recording.segments {
-            let values = &recording.values[segment.clone()];
-            let mut codec = scheme.codec(&resolved(values)?)?;
-            let mut events = Vec::new();
-            codec.encode(values, &mut events);
-            codec.finish(&mut events);
-            let start = segment.start as u64;
-            codec.decode(values.len(), &events, &mut decoded).map_err(|event| {
-                let sample = start + event.sample;
-                RequestKind::NotDecoded { scheme: scheme.name(), sample }
-            })?;
-            latency = codec.latency();
-            all.extend(events.into_iter().map(|own| Event { sample: start + own.sample, ..own }));
+            for part in recording.values[segment.clone()].chunks(CHUNK) {
+                measure.observe(part, &mut take)?;
+            }
+            measure.end_segment(&mut take)?;
         }
-        let events: Vec<Event> = all;
-        let mut fit = Fit::new(scheme, &settings);
-        fit.observe(&recording.values);
-        let mut notes: Vec<String> = rounding(&settings).into_iter().collect();
-        let suits = fit.notes(&settings, events.len() as u64);
-        notes.extend(suits.lines().map(str::to_owned));
-        notes.extend(low(&recording.values, &decoded));
-        let shape = scheme.shape(&settings)?;
-        Ok(Self { scheme, settings, shape, latency, notes, events, decoded })
+        let settings = measure.settings().clone();
+        Ok(Self {
+            scheme,
+            shape: scheme.shape(&settings)?,
+            settings,
+            latency: measure.latency(),
+            notes: measure.notes(),
+            events,
+            decoded,
+            sums: measure.sums(),
+        })
     }
 
     /// Returns the spiking efficiency, `(1 - spikes / samples) * 100`, in percent.
     pub fn efficiency(&self) -> f64 {
-        (1.0 - self.events.len() as f64 / self.decoded.len() as f64) * 100.0
+        self.sums.efficiency()
     }
-}
-
-/// Compares the mean of the decoded values with the mean of the signal. Returns a note if the two means differ by more
-/// than the signal's standard deviation.
-fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
-    let mean = |sum: f64| sum / values.len() as f64;
-    let center = mean(values.iter().sum());
-    let deviation = mean(values.iter().map(|value| (value - center).powi(2)).sum()).sqrt();
-    let off = mean(values.iter().zip(decoded).map(|(value, decoded)| decoded - value).sum());
-    (off.abs() > deviation).then(|| {
-        let direction = if off < 0.0 { "low" } else { "high" };
-        format!(
-            "decodes {} too {direction} on average, where the signal's own deviation is {}",
-            short(off.abs()),
-            short(deviation)
-        )
-    })
 }

@@ -32,7 +32,9 @@ pub fn tuned() -> Result<()> {
     let common = format!("tune {} --channel gyro_z {SCHEME} {BUDGET}", log.display());
     let told = shell::output(&mut host::spikewire(&format!("{common} --json"))?)?;
     let told: Value = serde_json::from_str(&told).context("the figures of `spikewire tune`")?;
-    let scored = told["gyro_z"][0]["whole"]["spikes"].as_u64().context("no count of spikes")?;
+    let scored = told["summary"]["channels"]["gyro_z"][0]["whole"]["spikes"]
+        .as_u64()
+        .context("no count of spikes")?;
     for (kind, path) in [("rust", &constant), ("toml", &parameters)] {
         let emit = format!("{common} --emit {kind} -o {}", path.display());
         shell::output(&mut host::spikewire(&emit)?)?;

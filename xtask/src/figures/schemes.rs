@@ -9,7 +9,19 @@ use serde::Deserialize;
 const PAGE: &str = "docs/schemes.md";
 const MARKER: &str = "schemes";
 
-/// A line of `spikewire score --json`.
+/// The report of `spikewire score --json`.
+#[derive(Deserialize)]
+struct Report {
+    logs: [Log; 1],
+}
+
+/// The entry of a log.
+#[derive(Deserialize)]
+struct Log {
+    schemes: Vec<Figures>,
+}
+
+/// The figures of a scheme.
 #[derive(Deserialize)]
 struct Figures {
     scheme: String,
@@ -55,5 +67,7 @@ fn table() -> Result<String> {
 
 fn scored(what: &str) -> Result<Vec<Figures>> {
     let json = output(&mut spikewire(&format!("score --json {what}"))?)?;
-    serde_json::from_str(&json).context("the figures of `spikewire score`")
+    let report: Report = serde_json::from_str(&json).context("the figures of `spikewire score`")?;
+    let [log] = report.logs;
+    Ok(log.schemes)
 }

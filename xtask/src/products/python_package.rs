@@ -33,6 +33,16 @@ pub fn python() -> Result<()> {
     source_package(&python).map(drop)
 }
 
+/// Encodes a thousand logs with the program and with Dask, each killed on the way.
+pub fn fleet() -> Result<()> {
+    let python = environment("python-fleet")?;
+    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    package(&python, "release")?;
+    let thousand =
+        "test --release --package spikewire-cli --test dataset a_thousand -- --ignored --nocapture";
+    run(cargo(thousand).env("FLEET_PYTHON", &python))
+}
+
 /// Writes the type stub of the schemes' classes.
 pub fn write_stub() -> Result<()> {
     let python = environment("python")?;
@@ -66,6 +76,7 @@ pub fn torch() -> Result<()> {
     package(&python, "dev")?;
     let tests = "-m pytest --quiet --no-header --doctest-modules bindings/python/tests/test_torch.py bindings/python/tests/test_notebooks.py bindings/python/tests/test_readme.py --pyargs spikewire.torch";
     run(command(&python).args(tests.split_whitespace()))?;
+    run(command(&python).arg("bindings/python/examples/fleet.py"))?;
     let typed = "-m mypy --strict bindings/python/tests/typed.py";
     run(command(&python).args(typed.split_whitespace()))?;
     let pages = paths::target().join("python-pages");

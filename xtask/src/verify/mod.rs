@@ -255,8 +255,13 @@ const LONG: &[Step] = &[
     ),
     step(
         "py-torch",
-        "the layer of PyTorch, notebooks that train with it, and the pages of the Python package",
+        "the layer of PyTorch, notebooks and a fleet's logs that train with it, and the package's pages",
         python_package::torch,
+    ),
+    step(
+        "fleet",
+        "a thousand logs, by the program and by Dask, killed on the way",
+        python_package::fleet,
     ),
     step(
         "all-boards",

@@ -1,24 +1,29 @@
 //! `spikewire advise`: describes a log, and names the scheme that suits each of its channels.
 
-use crate::inputs::InputOptions;
+use crate::inputs::{LogOptions, ManyChannels};
 use crate::options::{answer, whole};
+use crate::report::{Counts, Log, Report};
 use crate::stop::Stop;
-use crate::words::tell;
+use crate::words::{self, tell_of};
 use anyhow::{Result, bail};
 use catalogue::run::SampleType;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::advise::{Advice, AdviseRequest, BankAdvice, advise};
+use lab::dataset::Found;
 use lab::look::known_unit;
 use lab::output::Output;
 use lab::plot::{Picture, draw};
 use lab::trial::{Recording, Trial};
 use lab::tune::costs;
 use lab::watch::{Progress, Watch};
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Describe a log and advise a bank of encoders for it: one scheme for all channels, its parameters, and the reasons.
+/// Of several logs, each is described under its name, and a last line counts the schemes advised.
 ///
 /// Each scheme is tuned briefly on each channel, with some blocks of the log held out. A scheme qualifies if its RMSE
 /// is at most --max-rmse on the tuned blocks, and at most 1.25 times --max-rmse on the held-out blocks. Of the schemes
@@ -29,10 +34,13 @@ use std::path::{Path, PathBuf};
 Examples:
   spikewire advise flight.csv --loop-bandwidth 4 -o flight.toml
   spikewire advise flight.csv --channel gyro_x --max-rmse 0.05 --max-latency 0 --picture roll.svg
+  spikewire advise logs --channels-of ulog='sensor_combined.gyro_rad[0]' --channels-of table=gyro_x
   spikewire advise flight.ulg --topic sensor_combined --field 'gyro_rad[0]' --json")]
 pub(crate) struct Advise {
     #[command(flatten)]
-    input: InputOptions,
+    logs: LogOptions,
+    #[command(flatten)]
+    channels: ManyChannels,
     /// Sample type of the codecs: f32, i16, i32, or fixed point such as q16.16
     #[arg(long, default_value_t)]
     sample: SampleType,
@@ -54,7 +62,7 @@ pub(crate) struct Advise {
     /// Core for which the report counts instructions: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
-    /// Stop after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
+    /// Stop the search on a log after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
     #[arg(long, value_parser = lab::input::above_zero)]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel
@@ -63,12 +71,12 @@ pub(crate) struct Advise {
     /// Seed of the search
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Picture to draw, as `.svg` or `.png`: signal, spikes and reconstruction with the advised scheme; needs a
-    /// recording of one channel, or --channel
+    /// Picture to draw, as `.svg` or `.png`: signal, spikes and reconstruction with the advised scheme; needs one log
+    /// of one channel, or --channel
     #[arg(long)]
     picture: Option<PathBuf>,
-    /// Write the advised bank of encoders, one for each channel, as a flight file (`flight.toml`). It is read by `emit`,
-    /// `encode`, `listen`, Python and a firmware's build script
+    /// Write the advised bank of encoders, one for each channel of one log, as a flight file (`flight.toml`). It is
+    /// read by `emit`, `encode`, `listen`, Python and a firmware's build script
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print the whole report as JSON
@@ -76,83 +84,188 @@ pub(crate) struct Advise {
     json: bool,
 }
 
+/// Advice on a log: on each channel, and on a bank for all of them.
+#[derive(Debug, Serialize)]
+struct Advised {
+    channels: Vec<Advice>,
+    bank: Option<BankAdvice>,
+}
+
+/// What holds for all logs together.
+#[derive(Debug, Serialize)]
+struct Summary {
+    #[serde(flatten)]
+    counts: Counts,
+    /// Number of channels for which each scheme is advised.
+    advised: BTreeMap<&'static str, usize>,
+}
+
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if the log or the options are invalid, or if no channel has a scheme that can be advised. With
-/// `-o`, also returns an error if no scheme suits all channels, or if the output cannot be written.
+/// Returns an error if a log or the options are invalid, or if no channel of a log has a scheme that can be advised.
+/// Advice on the other logs comes first. With `-o`, also returns an error if no scheme suits all channels, or if the
+/// output cannot be written. After Ctrl-C, returns an error if logs are left.
 pub(crate) fn run(options: &Advise) -> Result<()> {
-    let recordings = Recording::read_all(&options.input.to_lab()?.or_all()?)?;
-    if options.picture.is_some() && recordings.len() > 1 {
-        bail!("--picture draws one channel; --channel says which");
+    let Found { logs, is_single, .. } = options.logs.find()?;
+    if (options.output.is_some() || options.picture.is_some()) && logs.len() > 1 {
+        bail!("-o and --picture take one log; there are {}", logs.len());
     }
-    if let Some(first) = recordings.first() {
-        tell(&first.notes());
-    }
-    let request = AdviseRequest {
-        recordings,
-        sample: options.sample,
-        max_rmse: options.max_rmse,
-        max_latency: options.max_latency,
-        loop_bandwidth: options.loop_bandwidth,
-        frame_loss: options.frame_loss,
-        core: options.core.clone(),
-        evaluations: options.evaluations,
-        seconds: options.seconds,
-        seed: options.seed,
-    };
     let stop = Stop::new(None)?;
-    let bar = ProgressBar::no_length()
-        .with_style(ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}")?);
-    let tell = |progress: &Progress| {
-        bar.set_length(progress.total as u64);
-        bar.set_position(progress.done as u64);
-        bar.set_message(progress.words.clone());
-    };
-    let watch = Watch { is_stopped: &|| stop.is_due(), tell: &tell };
-    let all = advise(&request, &watch)?;
-    let is_wanted = request.recordings.len() > 1 || options.output.is_some();
-    let has_rate = request.recordings.iter().all(|recording| recording.rate.is_some());
-    let bank = if is_wanted && (has_rate || options.output.is_some()) {
-        Some(BankAdvice::new(&request, &all, &watch)?)
-    } else {
-        None
-    };
-    bar.finish_and_clear();
+    let (mut all, mut last) = (Vec::new(), None);
+    for path in &logs {
+        if stop.is_due() {
+            break;
+        }
+        let log = path.display().to_string();
+        match options.advised(path, is_single, &stop) {
+            Ok((request, notes, advised)) => {
+                let why = advised.check().err();
+                if !options.json {
+                    tell_of((!is_single).then_some(&*log), &notes);
+                    let page = advised.page();
+                    answer(if is_single { page } else { format!("{log}\n{page}\n") })?;
+                }
+                let entry = match why {
+                    None => Log { log, refused: None, notes, content: Some(advised) },
+                    Some(why) if is_single && !options.json => return Err(why),
+                    Some(why) => Log { notes, content: Some(advised), ..Log::refused(log, &why) },
+                };
+                all.push(entry);
+                last = Some(request);
+            }
+            Err(error) if is_single && !options.json => return Err(error),
+            Err(error) => all.push(Log::refused(log, &error)),
+        }
+    }
+    let summary = Summary::of(&all);
+    let counts = summary.counts;
     if options.json {
-        let report = serde_json::json!({ "channels": all, "bank": bank });
-        answer(serde_json::to_string_pretty(&report)? + "\n")?;
-    } else {
-        let pages = all.iter().map(Advice::page).chain(bank.as_ref().map(BankAdvice::page));
-        answer(pages.collect::<String>())?;
+        Report { command: "advise", logs: &all, summary }.print()?;
+    } else if !is_single {
+        let advised = summary.advised.iter().map(|(scheme, count)| format!("{scheme} {count}"));
+        let advised = advised.collect::<Vec<_>>().join(", ");
+        answer(format_args!("channels by advised scheme: {advised}\n"))?;
     }
-    if let (Some(path), [advice], [recording]) =
-        (&options.picture, &all[..], &request.recordings[..])
+    if all.len() < logs.len() {
+        bail!("stopped: {} of {} logs are left", logs.len() - all.len(), logs.len());
+    }
+    counts.check()?;
+    if let ([Log { content: Some(advised), .. }], [path], Some(request)) =
+        (&all[..], &logs[..], last)
     {
-        draw_advised(options, path, advice, recording)?;
-    }
-    if all.iter().all(|advice| advice.best().is_none()) {
-        bail!(
-            "nothing can be advised: {}",
-            all.iter().map(Advice::why_not).collect::<Vec<_>>().join("; ")
-        );
-    }
-    if let (Some(path), Some(bank)) = (&options.output, &bank) {
-        let Some(flight) = bank.flight() else {
-            bail!("no scheme suits all channels: no flight is written")
-        };
-        let mut output = Output::open(Some(path), &options.input.input)?;
-        output.write_all(flight.to_toml(&bank.comments()).as_bytes())?;
-        output.finish()?;
+        options.write(path, &request, advised)?;
     }
     Ok(())
 }
 
-/// Draws a recording, its spikes and its reconstruction, and writes the picture to `path`. Spikes and reconstruction
-/// are those of the scheme in `advice`; without such a scheme, nothing is written.
+impl Advise {
+    /// Writes the picture and the flight file of the only log, if they are asked for.
+    fn write(&self, path: &Path, request: &AdviseRequest, advised: &Advised) -> Result<()> {
+        if let (Some(picture), [advice], [recording]) =
+            (&self.picture, &advised.channels[..], &request.recordings[..])
+        {
+            draw_advised(self, (picture, path), advice, recording)?;
+        }
+        if let (Some(output), Some(bank)) = (&self.output, &advised.bank) {
+            let Some(flight) = bank.flight() else {
+                bail!("no scheme suits all channels: no flight is written")
+            };
+            let mut output = Output::open(Some(output), path)?;
+            output.write_all(flight.to_toml(&bank.comments()).as_bytes())?;
+            output.finish()?;
+        }
+        Ok(())
+    }
+
+    /// Reads a log and advises on it. Returns the request that was made, notes for the user on the log, and the advice.
+    fn advised(
+        &self,
+        path: &Path,
+        is_single: bool,
+        stop: &Stop,
+    ) -> Result<(AdviseRequest, Vec<String>, Advised)> {
+        let recordings =
+            self.channels.read(path, is_single, |input| Recording::read_all(&input.or_all()?))?;
+        if self.picture.is_some() && recordings.len() > 1 {
+            bail!("--picture draws one channel; --channel says which");
+        }
+        let notes = recordings.first().map(Recording::notes).unwrap_or_default();
+        let request = AdviseRequest {
+            recordings,
+            sample: self.sample,
+            max_rmse: self.max_rmse,
+            max_latency: self.max_latency,
+            loop_bandwidth: self.loop_bandwidth,
+            frame_loss: self.frame_loss,
+            core: self.core.clone(),
+            evaluations: self.evaluations,
+            seconds: self.seconds,
+            seed: self.seed,
+        };
+        let advised = self.searched(&request, stop)?;
+        Ok((request, words::notes(&notes), advised))
+    }
+
+    /// Searches for the advice, and shows the progress.
+    fn searched(&self, request: &AdviseRequest, stop: &Stop) -> Result<Advised> {
+        let bar = ProgressBar::no_length()
+            .with_style(ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}")?);
+        let tell = |progress: &Progress| {
+            bar.set_length(progress.total as u64);
+            bar.set_position(progress.done as u64);
+            bar.set_message(progress.words.clone());
+        };
+        let watch = Watch { is_stopped: &|| stop.is_due(), tell: &tell };
+        let channels = advise(request, &watch)?;
+        let is_wanted = request.recordings.len() > 1 || self.output.is_some();
+        let has_rate = request.recordings.iter().all(|recording| recording.rate.is_some());
+        let bank = if is_wanted && (has_rate || self.output.is_some()) {
+            Some(BankAdvice::new(request, &channels, &watch)?)
+        } else {
+            None
+        };
+        bar.finish_and_clear();
+        Ok(Advised { channels, bank })
+    }
+}
+
+impl Advised {
+    fn page(&self) -> String {
+        let pages = self.channels.iter().map(Advice::page);
+        pages.chain(self.bank.as_ref().map(BankAdvice::page)).collect()
+    }
+
+    /// Checks that a scheme is advised for a channel.
+    ///
+    /// # Errors
+    /// Returns an error, with the reasons, if none is advised for any channel.
+    fn check(&self) -> Result<()> {
+        if self.channels.iter().all(|advice| advice.best().is_none()) {
+            let why: Vec<String> = self.channels.iter().map(Advice::why_not).collect();
+            bail!("nothing can be advised: {}", why.join("; "));
+        }
+        Ok(())
+    }
+}
+
+impl Summary {
+    fn of(logs: &[Log<Advised>]) -> Self {
+        let mut advised = BTreeMap::new();
+        let channels =
+            logs.iter().filter_map(|log| log.content.as_ref()).flat_map(|own| &own.channels);
+        for (scheme, _) in channels.filter_map(Advice::best) {
+            *advised.entry(scheme.name()).or_default() += 1;
+        }
+        Self { counts: Counts::of(logs), advised }
+    }
+}
+
+/// Draws the recording of a log, its spikes and its reconstruction, and writes the picture to `picture`. Spikes and
+/// reconstruction are those of the scheme in `advice`; without such a scheme, nothing is written.
 fn draw_advised(
     options: &Advise,
-    path: &Path,
+    (picture, log): (&Path, &Path),
     advice: &Advice,
     recording: &Recording,
 ) -> Result<()> {
@@ -161,6 +274,5 @@ fn draw_advised(
     let trials = [Trial::new(scheme, &parameters, options.sample, recording)?];
     let unit = known_unit(&recording.name);
     let shown = 0..recording.values.len();
-    let picture = Picture { recording, trials: &trials, unit, shown };
-    Ok(draw(path, &options.input.input, &picture)?)
+    Ok(draw(picture, log, &Picture { recording, trials: &trials, unit, shown })?)
 }

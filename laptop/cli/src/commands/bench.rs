@@ -2,6 +2,7 @@
 //! from.
 
 use crate::options::answer;
+use crate::report::Report;
 use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -58,7 +59,8 @@ pub(crate) fn run(options: &Bench) -> Result<()> {
         rayon::current_num_threads()
     );
     if json {
-        answer(format_args!("{:#}\n", bench::json(&results, seed)))?;
+        let summary = bench::json(&results, seed);
+        Report::<(), _> { command: "bench", logs: &[], summary }.print()?;
     } else {
         answer(bench::print(&results))?;
     }

@@ -1,16 +1,15 @@
 //! `spikewire dataset`: encodes many logs to Parquet files, with a manifest.
 
-use crate::inputs::ChannelOptions;
+use crate::inputs::{LogList, ManyChannels};
 use crate::options::{Coding, answer, whole};
-use anyhow::{Context, Result, bail};
+use crate::report::Report;
+use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use lab::dataset::{self, ChannelsOf, Code, Flights, Outcome, Request};
+use lab::dataset::{self, Code, Flights, Outcome, Request};
 use lab::flight::Flight;
 use lab::watch::Progress;
 use std::fmt::Write;
-use std::fs;
-use std::io::{self, Read};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -38,19 +37,10 @@ pub(crate) struct Dataset {
     /// those of the sender on the drone
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
-    /// Files, directories and patterns such as 'logs/**/*.ulg'. In a directory, logs are recognised by their content,
-    /// and tables by their file extensions, such as .csv and .parquet
-    logs: Vec<PathBuf>,
-    /// File that lists further logs, directories and patterns, one on each line; `-` is standard input
-    #[arg(long, value_name = "FILE")]
-    list: Option<PathBuf>,
-    /// Channels to read from logs of one kind, in place of the channels of --flight or --columns. KIND is table, ulog,
-    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. If the option is given several times for a kind, each log is
-    /// read with the first NAMES that are all in the log
-    #[arg(long, value_name = "KIND=NAMES", help_heading = "Input")]
-    channels_of: Vec<ChannelsOf>,
     #[command(flatten)]
-    channel: ChannelOptions,
+    logs: LogList,
+    #[command(flatten)]
+    channels: ManyChannels,
     /// Directory to write; a directory that an earlier run left incomplete is completed
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -64,7 +54,7 @@ pub(crate) struct Dataset {
     /// Number of logs to encode at the same time; default: one for each core
     #[arg(long, value_parser = whole::<usize>)]
     jobs: Option<usize>,
-    /// Print the numbers of logs, samples and spikes as JSON
+    /// Print the rows of the manifest, and the numbers of logs, samples and spikes, as JSON
     #[arg(long)]
     json: bool,
 }
@@ -77,7 +67,7 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
     let bar = ProgressBar::no_length().with_style(ProgressStyle::with_template(
         "{bar:40} {pos} of {len} logs, {eta} left; {msg}",
     )?);
-    let outcome = dataset::run(&options.request()?, &mut |progress: &Progress| {
+    let (outcome, rows) = dataset::run(&options.request()?, &mut |progress: &Progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
         bar.set_message(progress.words.clone());
@@ -85,7 +75,7 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
     bar.finish_and_clear();
     let Outcome { logs, done_before, refused, passed_over, samples, events, train, test } = outcome;
     if options.json {
-        answer(serde_json::to_string_pretty(&outcome)? + "\n")?;
+        Report { command: "dataset", logs: &rows, summary: outcome }.print()?;
     } else {
         let encoded = logs - refused;
         let mut text = format!(
@@ -103,7 +93,6 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
         answer(text)?;
     }
     if refused == logs {
-        let rows = dataset::rows(&options.output)?;
         let why = rows.iter().find_map(|row| row.refused.as_deref()).unwrap_or("no logs");
         bail!("no log can be encoded: {why}");
     }
@@ -122,27 +111,14 @@ impl Dataset {
         };
         let cores = thread::available_parallelism().map_or(1, NonZeroUsize::get);
         Ok(Request {
-            logs: self.logs.iter().cloned().chain(self.listed()?).collect(),
+            logs: self.logs.given()?,
             code,
-            channel: self.channel.of(Path::new("")).channel,
-            channels_of: self.channels_of.clone(),
+            channel: self.channels.channel.of(Path::new("")).channel,
+            channels_of: self.channels.channels_of.clone(),
             output: self.output.clone(),
             test: self.test,
             flights: if self.by_directory { Flights::Directories } else { Flights::Logs },
             jobs: self.jobs.unwrap_or(cores),
         })
-    }
-
-    /// Reads the file of `--list`; returns no paths if the option is not given.
-    fn listed(&self) -> Result<Vec<PathBuf>> {
-        let Some(list) = &self.list else { return Ok(Vec::new()) };
-        let text = if list == Path::new("-") {
-            let mut text = String::new();
-            io::stdin().read_to_string(&mut text).map(|_| text)
-        } else {
-            fs::read_to_string(list)
-        };
-        let text = text.with_context(|| list.display().to_string())?;
-        Ok(text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from).collect())
     }
 }

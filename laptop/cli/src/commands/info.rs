@@ -1,40 +1,39 @@
 //! `spikewire info`: lists the content of a log or a table.
 
-use crate::inputs::as_file;
-use crate::words::{self, option};
-use anyhow::{Result, bail};
-use catalogue::run::Worded;
+use crate::inputs::{LogOptions, as_file};
+use crate::report::{Counts, Log, Report};
+use crate::words;
+use anyhow::Result;
 use clap::Args;
 use flight_logs::Kind;
-use lab::dataset;
+use lab::dataset::{self, Found};
 use lab::input::messages::{Overview, overview};
 use lab::input::{ChannelOptions, Clock, InputOptions, Rollover, Summary, above_zero, summary};
 use lab::output::Output;
 use serde_json::json;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// List the content of logs and tables. For a log: its topics with their fields, rates and gaps, and the data that the
-/// logger lost. For a table: its columns, rows, rate and gaps.
+/// List the content of logs and tables: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, telemetry `.tlog`, bags of ROS 1
+/// and 2, MCAP, Betaflight's blackbox; CSV, JSON lines, Parquet, `NumPy`'s arrays; also compressed.
+///
+/// For a log: its topics with their fields, rates and gaps, and the data that the logger lost. For a table: its
+/// columns, rows, rate and gaps. Each of several files is listed under its name.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire info flight.ulg
   spikewire info --json logs 'more/*.bag'")]
 pub(crate) struct Info {
-    /// Log or table: PX4's `ULog`, `ArduPilot`'s `.bin` or `.log`, a telemetry log `.tlog`, a bag of ROS 1 or 2, an
-    /// MCAP file, Betaflight's blackbox, or a table in CSV, JSON lines, Parquet or `NumPy`'s arrays, also compressed;
-    /// `-` is standard input. Several files, directories and patterns such as 'logs/*.bag' may be given; each file is
-    /// then listed under its name
-    #[arg(required = true)]
-    logs: Vec<PathBuf>,
+    #[command(flatten)]
+    logs: LogOptions,
     /// Report time steps longer than this multiple of the usual step
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
     gap: f64,
     /// Read the undamaged part of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
-    /// Print one object for each log, as JSON
+    /// Print the content as JSON
     #[arg(long)]
     json: bool,
 }
@@ -48,53 +47,39 @@ enum Content {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if a log cannot be read. If several logs are given, the readable ones are listed first.
+/// Returns an error if a log cannot be read. The readable ones are listed first.
 pub(crate) fn run(options: &Info) -> Result<()> {
-    let logs = dataset::expand(&options.logs)?;
-    let is_single = logs.len() == 1;
+    let Found { logs, is_single, .. } = options.logs.find()?;
     let mut output = Output::to(None)?;
-    let (mut all, mut is_any_refused) = (Vec::new(), false);
-    for log in &logs {
-        let content = as_file(log).and_then(|own| options.content(&own));
-        let name = log.display().to_string();
-        match content {
-            Ok(content) if options.json => all.push(json(&name, &content)),
-            Ok(content) => {
-                if !is_single {
-                    writeln!(output, "{name}")?;
-                }
-                match content {
-                    Content::Table(table) => write_table(&name_of(log), &table, &mut output)?,
-                    Content::Log(_, topics, notes) => {
-                        for note in notes {
-                            writeln!(output, "{note}")?;
-                        }
-                        for topic in &topics {
-                            write(topic, &mut output)?;
-                        }
-                    }
-                }
-                if !is_single {
-                    writeln!(output)?;
-                }
-            }
-            Err(error) if is_single => return Err(error),
+    let mut all = Vec::new();
+    for path in &logs {
+        let log = path.display().to_string();
+        let content = match as_file(path).and_then(|own| options.content(&own)) {
+            Ok(content) => content,
+            Err(error) if is_single && !options.json => return Err(error),
             Err(error) => {
-                let words = words::of(&error);
-                all.push(json!({ "log": name, "refused": words }));
-                eprintln!("error: {words}");
-                is_any_refused = true;
+                all.push(Log::refused(log, &error));
+                continue;
+            }
+        };
+        if !options.json {
+            if !is_single {
+                writeln!(output, "{log}")?;
+            }
+            content.write(&name_of(path), &mut output)?;
+            if !is_single {
+                writeln!(output)?;
             }
         }
+        let (notes, content) = (content.notes(), Some(content.json()));
+        all.push(Log { log, refused: None, notes, content });
     }
+    let counts = Counts::of(&all);
     if options.json {
-        writeln!(output, "{:#}", serde_json::Value::Array(all))?;
+        Report { command: "info", logs: &all, summary: counts }.print()?;
     }
     output.finish()?;
-    if is_any_refused {
-        bail!("not all of the {} logs can be read", logs.len());
-    }
-    Ok(())
+    counts.check()
 }
 
 impl Info {
@@ -120,43 +105,62 @@ fn name_of(log: &Path) -> String {
     InputOptions { input: log.to_owned(), channel: ChannelOptions::default() }.name()
 }
 
-/// Returns the JSON description of a file called `name`.
-fn json(name: &str, content: &Content) -> serde_json::Value {
-    match content {
-        Content::Log(kind, topics, notes) => {
-            let topics: Vec<_> = topics
-                .iter()
-                .map(|own| {
-                    let mut all = json!({
-                        "name": own.name,
-                        "type": own.kind,
-                        "samples": own.count,
-                        "fields": own.fields,
-                        "texts": own.texts,
-                        "unread": own.unread,
-                        "missing": own.missing,
-                    });
-                    add_times(&mut all, &own.clock, &own.rollover);
-                    all
-                })
-                .collect();
-            json!({ "log": name, "kind": dataset::name(Some(*kind)), "notes": notes, "topics": topics })
+impl Content {
+    fn notes(&self) -> Vec<String> {
+        match self {
+            Self::Log(_, _, notes) => notes.clone(),
+            Self::Table(table) => words::notes(&table.notes),
         }
-        Content::Table(table) => {
-            let Summary { columns, rows, clock, rollover, notes } = &**table;
-            let columns: Vec<_> = columns
-                .iter()
-                .map(|own| {
-                    let text =
-                        own.text.as_ref().map(|(line, text)| json!({ "line": line, "text": text }));
-                    json!({ "name": own.name, "missing": own.missing, "text": text })
-                })
-                .collect();
-            let notes: Vec<_> = notes.iter().map(|own| own.spelled(option).to_string()).collect();
-            let kind = dataset::name(None);
-            let mut all = json!({ "log": name, "kind": kind, "notes": notes, "samples": rows, "columns": columns });
-            add_times(&mut all, clock, rollover);
-            all
+    }
+
+    /// Lists the content of a file that is called `name` if it is a table.
+    fn write(&self, name: &str, output: &mut impl Write) -> Result<()> {
+        for note in self.notes() {
+            writeln!(output, "{note}")?;
+        }
+        match self {
+            Self::Table(table) => write_table(name, table, output),
+            Self::Log(_, topics, _) => topics.iter().try_for_each(|topic| write(topic, output)),
+        }
+    }
+
+    /// Returns the content as JSON.
+    fn json(&self) -> serde_json::Value {
+        match self {
+            Self::Log(kind, topics, _) => {
+                let topics: Vec<_> = topics
+                    .iter()
+                    .map(|own| {
+                        let mut all = json!({
+                            "name": own.name,
+                            "type": own.kind,
+                            "samples": own.count,
+                            "fields": own.fields,
+                            "texts": own.texts,
+                            "unread": own.unread,
+                            "missing": own.missing,
+                        });
+                        add_times(&mut all, &own.clock, &own.rollover);
+                        all
+                    })
+                    .collect();
+                json!({ "kind": dataset::name(Some(*kind)), "topics": topics })
+            }
+            Self::Table(table) => {
+                let Summary { columns, rows, clock, rollover, .. } = &**table;
+                let columns: Vec<_> = columns
+                    .iter()
+                    .map(|own| {
+                        let text = own.text.as_ref();
+                        let text = text.map(|(line, text)| json!({ "line": line, "text": text }));
+                        json!({ "name": own.name, "missing": own.missing, "text": text })
+                    })
+                    .collect();
+                let kind = dataset::name(None);
+                let mut all = json!({ "kind": kind, "samples": rows, "columns": columns });
+                add_times(&mut all, clock, rollover);
+                all
+            }
         }
     }
 }
@@ -174,10 +178,7 @@ fn add_times(all: &mut serde_json::Value, clock: &Clock, rollover: &Rollover) {
 }
 
 fn write_table(name: &str, table: &Summary, output: &mut impl Write) -> Result<()> {
-    let Summary { columns, rows, clock, rollover, notes } = table;
-    for note in notes {
-        writeln!(output, "{}", note.spelled(option))?;
-    }
+    let Summary { columns, rows, clock, rollover, .. } = table;
     write!(output, "{name}: {rows} rows")?;
     if let Some(rate) = clock.rate() {
         write!(output, ", {:.3} s, {rate:.2} Hz", clock.seconds())?;

@@ -4,6 +4,7 @@
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes};
+use crate::report::{Counts, Log, Report};
 use crate::words;
 use anyhow::{Context, Result, ensure};
 use catalogue::run::{Calibrated, Known, SampleType, Settings, Words};
@@ -21,6 +22,7 @@ use lab::network::{
 use lab::output::Output;
 use lab::scheme::Scheme;
 use lab::trial::Recording;
+use serde::Serialize;
 use spikewire::Polarity;
 use std::fmt::Write as _;
 use std::fs;
@@ -104,6 +106,27 @@ pub(crate) struct Network {
     /// and the numbers of the outputs that fired. The Rust file is not written unless -o is given
     #[arg(long)]
     live: bool,
+    /// Print the comparisons as JSON; needs -o
+    #[arg(long, requires = "output", conflicts_with = "live")]
+    json: bool,
+}
+
+/// The comparisons of a network on a recording.
+#[derive(Serialize)]
+struct Content<'a> {
+    tuned: &'a Figures,
+    held_out: Option<&'a Figures>,
+    /// Share of active steps in which the outputs fire as in the training framework.
+    reading: Option<f64>,
+    costs: Vec<CostLeft>,
+}
+
+/// A part of the chip's arithmetic, and the share of active steps that it alone leaves as they were.
+#[derive(Serialize)]
+struct CostLeft {
+    #[serde(flatten)]
+    cost: Cost,
+    left: f64,
 }
 
 /// Name by which `--on` selects the flight controller rather than a chip.
@@ -239,6 +262,23 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         let mut output = Output::open(Some(path), &input.input)?;
         output.write_all(&brought.network.bytes()?)?;
         output.finish()?;
+    }
+    if options.json {
+        let Brought { network, tuned, held_out, costs, reading } = &brought;
+        let content = Content {
+            tuned,
+            held_out: held_out.as_ref(),
+            reading: *reading,
+            costs: costs.iter().map(|&(cost, left)| CostLeft { cost, left }).collect(),
+        };
+        let log = Log {
+            log: input.input.display().to_string(),
+            refused: None,
+            notes: words::notes(&driven.notes).into_iter().chain(network.notes()).collect(),
+            content: Some(content),
+        };
+        let logs = [log];
+        return Report { command: "network", logs: &logs, summary: Counts::of(&logs) }.print();
     }
     words::tell(&driven.notes);
     report(&brought);

@@ -1,14 +1,16 @@
 //! `spikewire tune`: finds the parameters of a scheme that suit flight logs best.
 
-use crate::inputs::{ChannelOptions, as_file};
+use crate::inputs::{LogOptions, ManyChannels};
 use crate::options::{FREE, answer, augment, given, option_group, whole};
+use crate::report::{Counts, Log, Report};
 use crate::stop::Stop;
-use crate::words::{option, tell};
+use crate::words::{self, option, tell_of};
 use anyhow::{Context, Result, bail};
 use catalogue::Parameter;
 use catalogue::run::{Asked, SampleType, Worded};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use lab::dataset::Found;
 use lab::flight::of_rows;
 use lab::look::known_unit;
 use lab::output::Output;
@@ -20,6 +22,9 @@ use lab::tune::report::{Cut, Row, print};
 use lab::tune::stretch::HoldOut;
 use lab::tune::{Goal, Limits, Stretch, TuneRequest, Tuned, costs, emit, tune};
 use lab::watch::{Progress, Watch};
+use serde::Serialize;
+use serde_json::json;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -29,8 +34,9 @@ use std::time::Instant;
 ///
 /// The spiking efficiency is 100 less the number of spikes for every 100 samples. Some blocks of each log are held out,
 /// and the settings found are scored on these blocks too. Settings are scored with the encoder and decoder that run on
-/// the drone, in the sample type of --sample. Parameters that are given stay fixed; the others are searched. The
-/// default goal is the least RMSE at the efficiency that the settings of Dupeyroux et al. (2022) reach.
+/// the drone, in the sample type of --sample. Settings are tuned on all logs together. Parameters that are given stay
+/// fixed; the others are searched. The default goal is the least RMSE at the efficiency that the settings of Dupeyroux
+/// et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -40,9 +46,8 @@ Examples:
   spikewire tune flight.csv --scheme sod --spikes 8 --max-rmse 0.1 --emit flight -o flight.toml
   spikewire tune flight.csv --channel gyro_x,gyro_y --scheme all --front front.svg")]
 pub(crate) struct Tune {
-    /// Flight logs or CSV tables; the settings are tuned on all of them together
-    #[arg(required = true, value_name = "LOG")]
-    inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    logs: LogOptions,
     /// Scheme to tune, or `all`
     #[arg(long, value_parser = schemes)]
     scheme: Schemes,
@@ -50,7 +55,7 @@ pub(crate) struct Tune {
     #[arg(long, default_value_t)]
     sample: SampleType,
     #[command(flatten)]
-    channel: ChannelOptions,
+    channels: ManyChannels,
     #[command(flatten)]
     parameters: Fixed,
     /// Goal: least RMSE, with at least this percentage of samples without a spike
@@ -166,7 +171,9 @@ fn is_fixable(parameter: &Parameter) -> bool {
 pub(crate) fn run(options: &Tune) -> Result<()> {
     let mut request = options.request()?;
     request.check()?;
-    request.logs = options.logs()?;
+    let Found { logs: paths, is_single, .. } = options.logs.find()?;
+    let logs;
+    (logs, request.logs) = options.recordings(&paths, is_single)?;
     let stop = Stop::new(None)?;
     let start = Instant::now();
     let bar = ProgressBar::new(BAR)
@@ -199,15 +206,18 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
         results.push((channel, rows));
     }
     if let Some(picture) = &options.front {
-        draw_fronts(picture, &options.inputs[0], &panels)?;
+        draw_fronts(picture, &paths[0], &panels)?;
         return Ok(());
+    }
+    if options.json {
+        return print_json(&logs, &results);
     }
     options.tell(&results)?;
     if options.emit == Some(Emit::Flight) {
         emitted = options.flight(&request, &results)?;
     }
     if options.emit.is_some() {
-        let mut output = Output::open(options.output.as_deref(), &options.inputs[0])?;
+        let mut output = Output::open(options.output.as_deref(), &paths[0])?;
         output.write_all(emitted.as_bytes())?;
         output.finish()?;
     }
@@ -257,20 +267,43 @@ impl Tune {
         })
     }
 
-    /// Reads the chosen channels of each log: an entry for each log, with a recording for each channel.
-    fn logs(&self) -> Result<Vec<Vec<Recording>>> {
-        let mut logs = Vec::new();
-        for input in &lab::dataset::expand(&self.inputs)? {
-            let recordings = Recording::read_all(&self.channel.of(&as_file(input)?))?;
-            if let Some(first) = recordings.first() {
-                tell(&first.notes());
+    /// Reads the chosen channels of each log. Returns the entry of each log in a report, and its recordings, one for
+    /// each channel. With `--channels-of`, the channels of all logs have the names of the first log's, in order.
+    ///
+    /// # Errors
+    /// Returns an error if a log cannot be read, or if its channels are not those of the first log.
+    fn recordings(&self, paths: &[PathBuf], is_single: bool) -> Result<Read> {
+        let (mut logs, mut all): (Vec<Log<Channels>>, Vec<Vec<Recording>>) = Default::default();
+        let by_place = !self.channels.channels_of.is_empty();
+        for path in paths {
+            let log = path.display().to_string();
+            let mut recordings = self.channels.read(path, is_single, Recording::read_all)?;
+            let notes = recordings.first().map(Recording::notes).unwrap_or_default();
+            let notes = words::notes(&notes);
+            if !self.json {
+                tell_of((!is_single).then_some(&*log), &notes);
             }
-            logs.push(recordings);
+            let channels: Vec<_> = recordings.iter().map(|own| own.name.clone()).collect();
+            if let (Some(first), Some(Log { log: name, content: Some(own), .. })) =
+                (all.first(), logs.first())
+            {
+                if own.channels != channels && !(by_place && own.channels.len() == channels.len()) {
+                    let (own, other) = (own.channels.join(", "), channels.join(", "));
+                    bail!(
+                        "the logs have other channels: {own} in {name}, {other} in {log}; --channels-of names those of each kind"
+                    );
+                }
+                for (recording, first) in recordings.iter_mut().zip(first) {
+                    recording.name.clone_from(&first.name);
+                }
+            }
+            logs.push(Log { log, refused: None, notes, content: Some(Channels { channels }) });
+            all.push(recordings);
         }
-        if self.emit == Some(Emit::Toml) && logs.first().is_some_and(|log| log.len() > 1) {
-            bail!("--emit toml writes one channel; there are {}", logs[0].len());
+        if self.emit == Some(Emit::Toml) && all.first().is_some_and(|log| log.len() > 1) {
+            bail!("--emit toml writes one channel; there are {}", all[0].len());
         }
-        Ok(logs)
+        Ok((logs, all))
     }
 
     fn emitted(&self, scheme: Scheme, cut: &Cut, row: &Row) -> Result<String> {
@@ -309,19 +342,9 @@ impl Tune {
         Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
     }
 
-    /// Prints a table of the tuned settings for each channel, or JSON with `--json`. The tables go to standard output.
-    /// They go to standard error if `--emit` writes the settings to standard output.
+    /// Prints a table of the tuned settings for each channel. The tables go to standard output, or to standard error if
+    /// `--emit` writes the settings to standard output.
     fn tell(&self, results: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
-        if self.json {
-            let channels: serde_json::Map<String, serde_json::Value> = results
-                .iter()
-                .map(|(cut, rows)| {
-                    let rows: Vec<&Row> = rows.iter().map(|(_, row)| row).collect();
-                    (cut.name.clone(), serde_json::json!(rows))
-                })
-                .collect();
-            return answer(format_args!("{:#}\n", serde_json::Value::Object(channels)));
-        }
         let is_to_stdout =
             self.emit.is_some() && self.output.as_deref().is_none_or(|path| path == Path::new("-"));
         for (cut, rows) in results {
@@ -334,6 +357,35 @@ impl Tune {
         }
         Ok(())
     }
+}
+
+/// Names of the channels that were read from a log.
+#[derive(Debug, Serialize)]
+struct Channels {
+    channels: Vec<String>,
+}
+
+/// The entry of each log in a report, and the log's recordings, one for each channel.
+type Read = (Vec<Log<Channels>>, Vec<Vec<Recording>>);
+
+/// Settings found on all logs together: rows of figures and parameters, by channel.
+#[derive(Debug, Serialize)]
+struct Summary {
+    #[serde(flatten)]
+    counts: Counts,
+    channels: BTreeMap<String, Vec<serde_json::Value>>,
+}
+
+/// Prints the report of `--json`: the notes on each log, and for each channel a row of figures and parameters for each
+/// scheme.
+fn print_json(logs: &[Log<Channels>], results: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
+    let rows = |(cut, rows): &(Cut, Vec<(Scheme, Row)>)| {
+        let rows = rows.iter().map(|(_, row)| json!(row)).collect();
+        (cut.name.clone(), rows)
+    };
+    let channels = results.iter().map(rows).collect();
+    let summary = Summary { counts: Counts::of(logs), channels };
+    Report { command: "tune", logs, summary }.print()
 }
 
 /// Length of the progress bar in steps.

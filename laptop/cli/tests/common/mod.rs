@@ -16,6 +16,18 @@ impl Ran {
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.output).unwrap()
     }
+
+    /// Returns the entry of the only log in a report of `--json`.
+    pub fn log(&self) -> serde_json::Value {
+        let mut report = self.json();
+        assert_eq!(report["logs"].as_array().unwrap().len(), 1, "{report:#}");
+        report["logs"][0].take()
+    }
+
+    /// Returns what a report of `score --json` has of each scheme on the only log.
+    pub fn schemes(&self) -> Vec<serde_json::Value> {
+        self.log()["schemes"].as_array().unwrap().clone()
+    }
 }
 
 /// Runs `spikewire` without input, and returns its output as [`Ran`]. The macro's arguments are those of `format!`; the
@@ -88,6 +100,33 @@ pub fn refused(arguments: &str, input: &str, words: &[&str]) {
             ran.stderr
         );
     }
+}
+
+/// Runs the program; returns the largest amount of memory that it used, in MB. Kills the program once `is_due` returns
+/// true; otherwise the test fails unless the exit status is 0. Reads the memory from Linux's `/proc`.
+pub fn most_memory(arguments: &str, is_due: impl Fn() -> bool) -> f64 {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_spikewire"))
+        .args(arguments.split_whitespace())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut most = 0.0_f64;
+    while child.try_wait().unwrap().is_none() {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id()));
+        let status = status.unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kilobytes = line.and_then(|own| own.trim().trim_end_matches(" kB").parse::<f64>().ok());
+        most = most.max(kilobytes.unwrap_or_default() / 1000.0);
+        if is_due() {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            return most;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert!(child.wait().unwrap().success(), "spikewire {arguments}");
+    most
 }
 
 /// Returns a CSV table with one column, `x`.

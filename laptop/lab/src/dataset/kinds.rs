@@ -6,7 +6,12 @@ use catalogue::kinds;
 kinds! {
     /// The reason that a data set cannot be made or read.
     pub enum DatasetKind by spell of subject {
-        NoLogs => ("no logs; {} takes files, directories and patterns such as `logs/*.ulg`", spell("logs")),
+        NoLogs => ("no logs: name files, directories or patterns such as `logs/*.ulg`"),
+        NoneInside => (
+            "no logs in this directory, and no tables: files that end in .{}", super::paths::TABLES.join(", .")
+        ),
+        NotComplete => ("the data set is not complete; run `spikewire dataset` again"),
+        NoFlight { side: &'static str } => ("the data set has no flight for {side}; {} chooses others", spell("split")),
         NoneThere => ("no file of this name, and none that matches it"),
         Pattern { error: glob::PatternError } => ("no pattern: {error}"),
         KindOfLog { name: String } => (

@@ -251,12 +251,9 @@ impl Manifest {
         delete_unfinished(directory).map_err(failed)?;
         let mut text = String::new();
         file.read_to_string(&mut text).map_err(failed)?;
-        // A row that was being written is none.
-        let whole = text.rfind('\n').map_or(0, |end| end + 1);
-        file.set_len(whole as u64).map_err(failed)?;
-        let mut rows = parse(&text[..whole], &directory.join(MANIFEST))?;
-        rows.retain(|row| row.is_there(directory));
-        let rows = rows.into_iter().map(|row| (row.log.clone(), row)).collect();
+        let text = whole(&text);
+        file.set_len(text.len() as u64).map_err(failed)?;
+        let rows = parse(text, directory)?;
         Ok(Self { directory: directory.to_owned(), file, rows })
     }
 
@@ -354,7 +351,8 @@ fn split(rows: &mut [Row], test: f64, flights: Flights) {
     }
 }
 
-/// Reads the manifest of a data set.
+/// Reads the manifest of a data set: the latest row of each log, sorted by path. Rows whose files are missing or
+/// incomplete are left out, and so is a last line that a killed run did not finish.
 ///
 /// # Errors
 /// Returns an error if the manifest is missing, or if a line of it is not a valid row.
@@ -362,16 +360,28 @@ pub fn rows(directory: &Path) -> Result<Vec<Row>> {
     let path = directory.join(MANIFEST);
     let text = fs::read_to_string(&path)
         .map_err(|error| Error::open(path.display().to_string(), error))?;
-    parse(&text, &path)
+    Ok(parse(whole(&text), directory)?.into_values().collect())
 }
 
-fn parse(text: &str, path: &Path) -> Result<Vec<Row>> {
-    let rows = (1..).zip(text.lines()).map(|(line, own)| {
-        serde_json::from_str(own).map_err(|error| {
+/// Returns the complete lines of a manifest.
+fn whole(text: &str) -> &str {
+    &text[..text.rfind('\n').map_or(0, |end| end + 1)]
+}
+
+/// Parses the lines of the manifest in `directory`. Returns the latest row of each log, by the log's path, of the rows
+/// whose files are complete.
+fn parse(text: &str, directory: &Path) -> Result<BTreeMap<String, Row>> {
+    let path = directory.join(MANIFEST);
+    let mut rows = BTreeMap::new();
+    for (line, own) in (1..).zip(text.lines()) {
+        let row: Row = serde_json::from_str(own).map_err(|error| {
             DatasetKind::NoRow { error }.at(Place::line(path.display().to_string(), line))
-        })
-    });
-    rows.collect()
+        })?;
+        if row.is_there(directory) {
+            rows.insert(row.log.clone(), row);
+        }
+    }
+    Ok(rows)
 }
 
 fn described_as(settings: &Settings, split: &serde_json::Value) -> String {

@@ -133,12 +133,13 @@ pub struct Outcome {
     pub test: usize,
 }
 
-/// Makes a data set, or completes one that an earlier run began with the same settings.
+/// Makes a data set, or completes one that an earlier run began with the same settings. Also returns the manifest's rows
+/// of the requested logs.
 ///
 /// # Errors
 /// Returns an error if there are no logs, if the directory holds a data set with other settings, or if a file cannot be
 /// written. A log that cannot be read or encoded is not an error: the log's row in the manifest gives the reason.
-pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome> {
+pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<(Outcome, Vec<Row>)> {
     let mut run = Run::open(request)?;
     let (next, left) = (AtomicUsize::new(0), run.left());
     let mut progress =
@@ -219,11 +220,12 @@ impl Run {
     }
 
     /// Splits the data set into training and test data, and sorts the rows of the manifest by the logs' paths. All logs
-    /// of a flight (see [`Flights`]) are on the same side of the split. The result counts only the requested logs.
+    /// of a flight (see [`Flights`]) are on the same side of the split. Returns the numbers and the rows of the requested
+    /// logs.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.
-    pub fn finish(self) -> Result<Outcome> {
+    pub fn finish(self) -> Result<(Outcome, Vec<Row>)> {
         let mut outcome = Outcome {
             logs: self.logs.len(),
             done_before: self.done_before(),
@@ -231,53 +233,120 @@ impl Run {
             ..Outcome::default()
         };
         let Request { test, flights, .. } = self.request;
-        let rows = self.manifest.finish(&self.request.settings(), test, flights)?;
+        let mut rows = self.manifest.finish(&self.request.settings(), test, flights)?;
         let logs: HashSet<String> = self.logs.iter().map(|log| log.display().to_string()).collect();
-        for row in rows.iter().filter(|row| logs.contains(&row.log)) {
+        rows.retain(|row| logs.contains(&row.log));
+        for row in &rows {
             outcome.refused += usize::from(row.refused.is_some());
             outcome.samples += row.samples;
             outcome.events += row.spikes.iter().sum::<u64>();
             outcome.train += usize::from(row.split == Some(Split::Train));
             outcome.test += usize::from(row.split == Some(Split::Test));
         }
-        Ok(outcome)
+        Ok((outcome, rows))
     }
 }
 
-/// Returns the recordings among files, directories and patterns. The directory or the manifest of a data set is
-/// replaced by the sample files of its training flights. Standard input and names of missing files are returned
-/// unchanged.
+/// The recordings that were found among files, directories, patterns and data sets.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Found {
+    /// The paths of the recordings, without repetitions.
+    pub logs: Vec<PathBuf>,
+    /// Whether a single file was given, by its name.
+    pub is_single: bool,
+    /// Whether a data set was given.
+    pub has_set: bool,
+}
+
+/// Finds the recordings among files, directories and patterns. The directory or the manifest of a data set is replaced
+/// by the sample files of the flights on one side of its split, or of all flights if `split` is `None`. A file that is
+/// given several times is taken once. Standard input and names of missing files are returned unchanged.
 ///
 /// # Errors
-/// Returns an error if a directory cannot be read, if a directory or a pattern gives no recordings, or if a manifest is
-/// invalid.
-pub fn expand(given: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let mut all = Vec::new();
+/// Returns an error if nothing is given, if a directory cannot be read, if a directory or a pattern gives no recordings,
+/// or if a data set is incomplete, has no flight on the chosen side, or has an invalid manifest.
+pub fn expand(given: &[PathBuf], split: Option<Split>) -> Result<Found> {
+    let mut found = Found { is_single: given.len() == 1, ..Found::default() };
+    let mut known = HashSet::new();
     for path in given {
-        let directory = if path.file_name().is_some_and(|own| own == manifest::MANIFEST) {
-            path.parent()
-        } else {
-            Some(path.as_path()).filter(|own| own.join(manifest::MANIFEST).is_file())
-        };
-        if let Some(directory) = directory {
-            let train = rows(directory)?.into_iter().filter(|row| row.split == Some(Split::Train));
-            all.extend(train.filter_map(|row| row.values).map(|own| directory.join(own)));
-            continue;
-        }
         let is_pattern = !path.exists() && path.display().to_string().contains(['*', '?', '[']);
-        if is_pattern || path.is_dir() && Kind::of(path).is_err() {
-            let (found, _) = paths::find(std::slice::from_ref(path), Path::new(""))?;
-            if found.is_empty() {
-                // Of a directory, the words say what it might have been.
-                Kind::of(path)?;
-                return Err(DatasetKind::NoneThere.at(path.as_path()));
+        let paths = if is_pattern { paths::matches(path)? } else { vec![path.clone()] };
+        let mut all = Vec::new();
+        for own in paths {
+            if let Some(directory) = set(&own) {
+                found.has_set = true;
+                all.extend(recordings(directory, split)?);
+            } else if own.is_dir() && Kind::of(&own).is_err() {
+                all.extend(paths::find(std::slice::from_ref(&own), Path::new(""))?.0);
+            } else {
+                all.push(own);
             }
-            all.extend(found);
-        } else {
-            all.push(path.clone());
         }
+        if all.is_empty() {
+            return Err(DatasetKind::NoneInside.at(path.as_path()));
+        }
+        found.is_single &= all == [path.clone()];
+        all.retain(|own| known.insert(own.canonicalize().unwrap_or_else(|_| own.clone())));
+        found.logs.append(&mut all);
+    }
+    if found.logs.is_empty() { Err(DatasetKind::NoLogs.into()) } else { Ok(found) }
+}
+
+/// Returns the directory of the data set that a path names, by the directory or by the manifest.
+fn set(path: &Path) -> Option<&Path> {
+    if path.file_name().is_some_and(|own| own == manifest::MANIFEST) {
+        return path.parent();
+    }
+    Some(path).filter(|own| own.join(manifest::MANIFEST).is_file())
+}
+
+/// Returns the sample files of the flights on one side of a data set's split, or of all flights if `split` is `None`.
+fn recordings(directory: &Path, split: Option<Split>) -> Result<Vec<PathBuf>> {
+    let rows = rows(directory)?;
+    if rows.iter().any(|row| row.values.is_some() && row.split.is_none()) {
+        return Err(DatasetKind::NotComplete.at(directory));
+    }
+    let chosen = rows.into_iter().filter(|row| split.is_none_or(|own| row.split == Some(own)));
+    let all: Vec<_> = chosen.filter_map(|row| row.values).map(|own| directory.join(own)).collect();
+    if all.is_empty() {
+        let side = match split {
+            Some(Split::Train) => "training",
+            Some(Split::Test) => "testing",
+            None => "either",
+        };
+        return Err(DatasetKind::NoFlight { side }.at(directory));
     }
     Ok(all)
+}
+
+/// Calls `read` with the options for reading a log of a kind, one of many: without the options that do not apply to the
+/// kind. Of `channels_of`, the entries of this kind are tried in order until the log contains all channels of an entry.
+///
+/// # Errors
+/// Returns an error if the log lacks channels of each entry, or if `read` does.
+pub fn read<T>(
+    log: &Path,
+    kind: Option<Kind>,
+    channel: &ChannelOptions,
+    channels_of: &[ChannelsOf],
+    mut read: impl FnMut(&InputOptions) -> Result<T>,
+) -> Result<T> {
+    let mut channel = channel.clone();
+    if kind.is_some() {
+        (channel.delimiter, channel.rate) = (None, None);
+    }
+    if kind == Some(Kind::Ulog) {
+        (channel.time, channel.time_unit) = (None, None);
+    }
+    let of = |channel| InputOptions { input: log.to_owned(), channel };
+    let mut choices = channels_of.iter().filter(|own| own.kind == name(kind)).peekable();
+    while let Some(own) = choices.next() {
+        match read(&of(channel.clone().with_names(own.names.clone()))) {
+            Err(error) if choices.peek().is_some() && is_channel_missing(&error) => {}
+            other => return other,
+        }
+    }
+    read(&of(channel))
 }
 
 impl Request {
@@ -351,58 +420,12 @@ impl Request {
         let kind = Kind::of(log)?;
         name(kind).clone_into(&mut row.kind);
         row.hash(log)?;
-        let mut choices: Vec<Option<&[String]>> = self
-            .channels_of
-            .iter()
-            .filter(|own| own.kind == row.kind)
-            .map(|own| Some(&own.names[..]))
-            .collect();
-        if choices.is_empty() {
-            choices.push(None);
-        }
-        let mut last = None;
-        for names in choices {
-            match self.encoded_from(&self.input(log, kind, names), row) {
-                Err(error) if is_channel_missing(&error) => last = Some(error),
-                other => return other,
-            }
-        }
-        last.map_or(Ok(()), Err)
-    }
-
-    /// Returns the options for reading the log at `log`. `kind` is the format of a flight log, and `None` for a table.
-    /// Removes options that are for other formats. If `names` is given, chooses the columns of these names. Otherwise,
-    /// if the code is a flight, chooses the columns of the flight's channels.
-    fn input(&self, log: &Path, kind: Option<Kind>, names: Option<&[String]>) -> InputOptions {
         let mut channel = self.channel.clone();
-        let own;
-        let names = match (names, &self.code) {
-            (None, Code::Flight(flight)) => {
-                own = flight.channels.iter().map(|own| own.source.clone()).collect::<Vec<_>>();
-                Some(&own[..])
-            }
-            (names, _) => names,
-        };
-        if let Some(names) = names {
-            let (time, time_unit) = (channel.time, channel.time_unit);
-            channel = ChannelOptions {
-                columns: names.to_vec(),
-                time,
-                time_unit,
-                column: Vec::new(),
-                topic: None,
-                field: Vec::new(),
-                fields: Vec::new(),
-                ..channel
-            };
+        if let Code::Flight(flight) = &self.code {
+            let names = flight.channels.iter().map(|own| own.source.clone());
+            channel = channel.with_names(names.collect());
         }
-        if kind.is_some() {
-            (channel.delimiter, channel.rate) = (None, None);
-        }
-        if kind == Some(Kind::Ulog) {
-            (channel.time, channel.time_unit) = (None, None);
-        }
-        InputOptions { input: log.to_owned(), channel }
+        read(log, kind, &channel, &self.channels_of, |input| self.encoded_from(input, row))
     }
 
     fn encoded_from(&self, input: &InputOptions, row: &mut Row) -> Result<()> {

@@ -9,7 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Endings of file names by which tables in a directory are recognised.
-const TABLES: [&str; 8] = ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
+pub(super) const TABLES: [&str; 8] =
+    ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz", "parquet"];
 /// Endings of the names of compressed files.
 const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
@@ -28,19 +29,26 @@ pub(super) fn find(given: &[PathBuf], output: &Path) -> Result<(Vec<PathBuf>, us
             found.take(path)?;
             continue;
         }
-        let name = path.display().to_string();
-        let matches =
-            glob::glob(&name).map_err(|error| DatasetKind::Pattern { error }.at(&name))?;
-        let mut is_any = false;
-        for path in matches {
-            found.take(&path.map_err(|error| Error::open(&name, error.into()))?)?;
-            is_any = true;
-        }
-        if !is_any {
-            return Err(DatasetKind::NoneThere.at(name));
+        for path in matches(path)? {
+            found.take(&path)?;
         }
     }
     Ok((found.logs.into_iter().collect(), found.passed_over))
+}
+
+/// Returns the files and directories that match a pattern, sorted by name.
+///
+/// # Errors
+/// Returns an error if the pattern is invalid, if nothing matches it, or if a directory cannot be read.
+pub(super) fn matches(pattern: &Path) -> Result<Vec<PathBuf>> {
+    let name = pattern.display().to_string();
+    let matches = glob::glob(&name).map_err(|error| DatasetKind::Pattern { error }.at(&name))?;
+    let matches = matches.map(|path| path.map_err(|error| Error::open(&name, error.into())));
+    let matches = matches.collect::<Result<Vec<_>>>()?;
+    if matches.is_empty() {
+        return Err(DatasetKind::NoneThere.at(name));
+    }
+    Ok(matches)
 }
 
 struct Found {

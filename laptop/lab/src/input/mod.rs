@@ -111,6 +111,15 @@ impl Default for ChannelOptions {
     }
 }
 
+impl ChannelOptions {
+    /// Returns the options with other channels: columns of a table, or fields of a log in the form `TOPIC.FIELD`.
+    #[must_use]
+    pub fn with_names(self, names: Vec<String>) -> Self {
+        let (column, field, fields) = (Vec::new(), Vec::new(), Vec::new());
+        Self { columns: names, column, topic: None, field, fields, ..self }
+    }
+}
+
 /// The delimiter of a table's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Delimiter(pub u8);
@@ -158,7 +167,7 @@ impl Chunk {
 
     /// Moves the samples and times of `other` to the end of this chunk.
     pub fn append(&mut self, other: &mut Self) {
-        self.columns.resize(other.columns.len(), Vec::new());
+        self.columns.resize(self.columns.len().max(other.columns.len()), Vec::new());
         for (column, more) in self.columns.iter_mut().zip(&mut other.columns) {
             column.append(more);
         }

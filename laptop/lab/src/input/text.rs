@@ -17,7 +17,7 @@ const PARQUET: &str = if cfg!(feature = "datasets") {
 
 /// Kinds of files that are not tables. Each entry has the first bytes of such a file, and a text for the user. The text
 /// names the kind of file and suggests what to do.
-const OTHERS: [(&[u8], &str); 12] = [
+const OTHERS: [(&[u8], &str); 13] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
     (b"\xa3\x95", "an ArduPilot log; it is read from a file only"),
@@ -27,6 +27,7 @@ const OTHERS: [(&[u8], &str); 12] = [
     (b"\x89MCAP", "an MCAP file; it is read from a file only"),
     (b"PAR1", PARQUET),
     (b"ARROW1", "an Arrow or Feather file; export it as Parquet or CSV"),
+    (b"FEA1", "a Feather file; export it as Parquet or CSV"),
     (b"\x89HDF", "an HDF5 or MATLAB file; export it as CSV"),
     (b"MATLAB", "a MATLAB file; export it as CSV"),
     (b"ULog", "a flight log; it is read from a file only"),

@@ -6,6 +6,7 @@ use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
 use crate::network::NetworkKind;
 use crate::network::fault::ensure;
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of time steps in a window. A comparison of two runs checks for each window whether the same outputs have the
@@ -64,6 +65,7 @@ pub struct Brought {
 }
 
 /// Comparison of a network in double precision with the same network on the chip's model.
+#[derive(Debug, Serialize)]
 pub struct Figures {
     /// The comparison of each layer.
     pub layers: Vec<LayerFigures>,
@@ -94,6 +96,7 @@ pub struct Figures {
 }
 
 /// Comparison of the outputs' potentials in double precision with those on the chip's model.
+#[derive(Debug, Serialize)]
 pub struct PotentialFigures {
     /// Name of the output layer in the network's file.
     pub name: String,
@@ -109,6 +112,7 @@ pub struct PotentialFigures {
 }
 
 /// Comparison of a layer in double precision with the same layer on the chip's model.
+#[derive(Debug, Serialize)]
 pub struct LayerFigures {
     /// Name of the layer in the network's file.
     pub name: String,

@@ -4,10 +4,12 @@
 use super::controller::Fires;
 use super::trained::{Layer, Neuron};
 use super::{Distance, Trained, Trains};
+use serde::Serialize;
 use std::fmt::{self, Display};
 
 /// A part of a chip's arithmetic that differs from double precision and changes a network's spikes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "part", rename_all = "lowercase")]
 pub enum Cost {
     /// Comparison of potentials with thresholds after each spike that arrives, instead of once in each step.
     Order,
