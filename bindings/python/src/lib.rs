@@ -113,18 +113,21 @@ mod info {
         Ok(told)
     }
 
-    /// The kind of a search, and its bounds; for words, how many there are.
-    fn search(own: Search) -> (&'static str, f64, f64) {
-        match own {
+    /// The kind of a search, its bounds, and its words.
+    fn search(own: Search) -> (&'static str, f64, f64, Vec<&'static str>) {
+        let (kind, low, high) = match own {
+            Search::Words(words) => {
+                return ("words", 0.0, words.len() as f64 - 1.0, words.to_vec());
+            }
             Search::Log(low, high) => ("log", low, high),
             Search::Around(low, high) => ("around", low, high),
             Search::OfFilter(low, high) => ("of filter", low, high),
             Search::Thresholds(low, high) => ("times", low, high),
+            Search::Filter(_, low, high) => ("filter", low, high),
             Search::Whole(low, high) | Search::Most(low, high) => {
                 ("whole", f64::from(low), f64::from(high))
             }
-            Search::Words(words) => ("words", 0.0, words.len() as f64 - 1.0),
-            Search::Filter(_, low, high) => ("filter", low, high),
-        }
+        };
+        (kind, low, high, Vec::new())
     }
 }

@@ -13,8 +13,8 @@ pub(crate) use crate::{
 pub(crate) use {
     crate::run::{
         Asked, Build, Constant, Counted, Error, ErrorKind, FEW, Given, LANES, Needs, Outcome,
-        Outcomes, Parabola, Resolve, Result, Rule, Rust, Settings, Shape, Value, Visit, above,
-        below, costs, lengthened, missing, outcomes, population, state, sweep,
+        Outcomes, Parabola, Piece, Resolve, Result, Rule, Rust, Settings, Shape, Value, Visit,
+        above, below, costs, lengthened, missing, outcomes, population, state, sweep,
     },
     spikewire::dynamic,
 };

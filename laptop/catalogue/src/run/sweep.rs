@@ -1,5 +1,7 @@
 //! Compares many values of one parameter of a rate code in one pass over a signal.
 
+use super::Piece;
+
 /// Number of values that are compared in a pass; they fit a few vector registers.
 pub const LANES: usize = 16;
 
@@ -17,12 +19,12 @@ pub enum Rule {
     Bsa,
 }
 
-/// Codes stretches with `LANES` pairs of a factor of the taps and a threshold at once; returns the number of spikes and
-/// the sum of squared errors for each pair. The rest of a sample after all spikes is its error, so nothing is decoded.
+/// Codes pieces with `LANES` pairs of a factor of the taps and a threshold at once; returns the number of spikes and
+/// the sum of squared errors of the scored samples for each pair. The rest of a sample after all spikes is its error, so nothing is decoded.
 /// It computes in `f32`, with sums in another order than the codec's: use it to choose settings, not to report them.
 pub fn sweep(
     rule: Rule,
-    stretches: &[&[f64]],
+    pieces: &[Piece],
     (taps, shift): (&[f64], f64),
     factors: &[f64; LANES],
     thresholds: &[f64; LANES],
@@ -35,13 +37,15 @@ pub fn sweep(
         Rule::Bsa => -threshold as f32,
     });
     let mut found = [(0, 0.0); LANES];
-    for values in stretches {
+    for piece in pieces {
         let mut left: Vec<Lane> =
-            values.iter().map(|value| [(value - shift) as f32; LANES]).collect();
+            piece.values.iter().map(|value| [(value - shift) as f32; LANES]).collect();
         let mut window = left.as_mut_slice();
-        while !window.is_empty() {
+        for is_scored in piece.mask() {
+            let mut unscored = [(0, 0.0); LANES];
+            let found = if is_scored { &mut found } else { &mut unscored };
             if rule != Rule::Hough || window.len() >= taps.len() {
-                spike(rule, window, &taps, &limits, &mut found);
+                spike(rule, window, &taps, &limits, found);
             }
             let Some((done, later)) = window.split_first_mut() else { break };
             for ((_, squares), error) in found.iter_mut().zip(done) {
@@ -90,7 +94,7 @@ fn spike(
 
 #[cfg(test)]
 mod tests {
-    use super::{LANES, Rule, sweep};
+    use super::{LANES, Piece, Rule, sweep};
     use crate::schemes::{bsa, hsa, t_hsa};
 
     /// Each lane agrees with the transcription of the paper's pseudo-code.
@@ -103,7 +107,9 @@ mod tests {
         let thresholds: [f64; LANES] = std::array::from_fn(|lane| lane as f64 * 0.07);
         let factors: [f64; LANES] = std::array::from_fn(|lane| 0.5 + lane as f64 * 0.13);
         for rule in [Rule::Hough, Rule::ThresholdHough, Rule::Bsa] {
-            let all = sweep(rule, &[&signal], (&taps, 0.5), &factors, &thresholds);
+            let scored = [0..120, 200..300];
+            let piece = Piece { values: &signal, scored: &scored };
+            let all = sweep(rule, &[piece], (&taps, 0.5), &factors, &thresholds);
             for (lane, (spikes, squares)) in all.into_iter().enumerate() {
                 let mut left: Vec<f32> = signal.iter().map(|own| (own - 0.5) as f32).collect();
                 let taps: Vec<f32> = taps.iter().map(|tap| (tap * factors[lane]) as f32).collect();
@@ -115,12 +121,10 @@ mod tests {
                     }
                     Rule::Bsa => bsa::transcribed(&mut left, &taps, threshold, &mut coded),
                 }
-                assert_eq!(
-                    spikes,
-                    coded.iter().filter(|own| **own == 1).count(),
-                    "{rule:?} {lane}"
-                );
-                let expected: f64 = left.iter().map(|own| f64::from(*own).powi(2)).sum();
+                let places = || scored.iter().cloned().flatten();
+                let count = places().filter(|place| coded[*place] == 1).count();
+                assert_eq!(spikes, count, "{rule:?} {lane}");
+                let expected: f64 = places().map(|place| f64::from(left[place]).powi(2)).sum();
                 assert!((squares - expected).abs() < 1e-3 * expected, "{rule:?} {lane}");
             }
         }

@@ -211,7 +211,7 @@ impl Build for Scheme {
 
     fn swept(
         settings: &Settings,
-        stretches: &[&[f64]],
+        pieces: &[Piece],
         values: &[f64; LANES],
     ) -> Option<[(usize, f64); LANES]> {
         let (form, criterion) = (settings.get("form")?.word(), settings.get("criterion")?.word());
@@ -219,7 +219,7 @@ impl Build for Scheme {
             return None;
         }
         let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
-        Some(sweep(Rule::Bsa, stretches, filter, &[1.0; LANES], values))
+        Some(sweep(Rule::Bsa, pieces, filter, &[1.0; LANES], values))
     }
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {

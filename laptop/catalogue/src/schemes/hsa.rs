@@ -84,11 +84,11 @@ impl Build for Scheme {
 
     fn swept(
         settings: &Settings,
-        stretches: &[&[f64]],
+        pieces: &[Piece],
         values: &[f64; LANES],
     ) -> Option<[(usize, f64); LANES]> {
         let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
-        Some(sweep(Rule::Hough, stretches, filter, values, &[0.0; LANES]))
+        Some(sweep(Rule::Hough, pieces, filter, values, &[0.0; LANES]))
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {

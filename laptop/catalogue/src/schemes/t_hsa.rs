@@ -97,11 +97,11 @@ impl Build for Scheme {
 
     fn swept(
         settings: &Settings,
-        stretches: &[&[f64]],
+        pieces: &[Piece],
         values: &[f64; LANES],
     ) -> Option<[(usize, f64); LANES]> {
         let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
-        Some(sweep(Rule::ThresholdHough, stretches, filter, &[1.0; LANES], values))
+        Some(sweep(Rule::ThresholdHough, pieces, filter, &[1.0; LANES], values))
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {

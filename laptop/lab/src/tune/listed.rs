@@ -1,10 +1,10 @@
 //! Tunes step codes. Lists the spikes and errors of all thresholds in exact arithmetic, and scores the best thresholds
 //! with the codec.
 
-use super::Scored;
 use super::problem::{Goal, most_spikes};
 use super::search::{BATCH, Run};
 use super::space::Space;
+use super::{Scored, Stretch};
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
@@ -15,6 +15,8 @@ const PASSES: usize = 4_000_000_000;
 /// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
 /// maximum keeps a search with a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
+/// Number of settings below which the budget does not shorten the list.
+const FEW_SETTINGS: usize = 300;
 /// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
 const NEIGHBOURHOODS: usize = 24;
 /// Number of combinations of integer parameters whose outcomes are listed before the search checks again whether to
@@ -28,20 +30,21 @@ const MOST_SCORED: usize = 1000;
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
-    /// Lists the outcomes of the threshold for every combination of integer parameters, and scores the best of them.
-    /// Returns false if the scheme cannot list its outcomes, or if the user fixed a parameter that the list would
-    /// choose.
-    pub(super) fn exactly(&mut self, space: &Space) -> bool {
+    /// Lists the outcomes of the threshold for every combination of integer parameters, and scores the best of them
+    /// until `until` settings have been scored in the whole search. Returns whether the search is over: false if the
+    /// scheme cannot list its outcomes, if the user fixed a parameter that the list would choose, or if points around
+    /// the best outcomes may be better, because the codec rounds and the list does not.
+    pub(super) fn exactly(&mut self, space: &Space, until: usize) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];
         if decides.iter().any(|name| problem.fixed.get(name).is_some()) {
             return false;
         }
         let Some((combinations, mut all)) = self.listed(space) else { return false };
-        let samples: usize = problem.train.iter().map(|stretch| stretch.values.len()).sum();
+        let samples: usize = problem.train.iter().map(Stretch::samples).sum();
         // The best by the goal, several because rounding may move one over a limit, and then a selection of the Pareto
         // front.
-        let most = MOST_SCORED.min(self.budget.evaluations - self.found.evaluated);
+        let most = MOST_SCORED.min(until.saturating_sub(self.found.evaluated));
         let best = if problem.goal == Goal::Front { 0 } else { most.div_ceil(2) };
         let in_order = self.in_order(samples);
         all.sort_by(|a, b| in_order(&a.0).total_cmp(&in_order(&b.0)));
@@ -62,28 +65,30 @@ impl Run<'_> {
         // A step that is fitted to these stretches scores too well on them. The list is sorted by the error to expect
         // on other stretches, so its first allowed setting is the best.
         let is_fitted = |(own, _): &(Outcome, usize)| own.apart != own.squares;
-        if chosen.first().is_some_and(is_fitted) && matches!(problem.goal, Goal::LeastError(_)) {
+        let is_fitted = chosen.first().is_some_and(is_fitted);
+        if is_fitted && matches!(problem.goal, Goal::LeastError(_)) {
             self.found.best = first.or_else(|| self.found.best.take());
         }
-        true
+        is_fitted
     }
 
     /// Lists the outcomes worth scoring, for all combinations of integer parameters. Returns `None` if the scheme
     /// cannot list its outcomes.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
-        let rounded = self.rounded;
-        let stretches: Vec<&[f64]> = rounded.iter().map(Vec::as_slice).collect();
-        let samples: usize = stretches.iter().map(|values| values.len()).sum();
-        let passes = self.budget.evaluations.saturating_mul(PASSES_A_SETTING).min(PASSES);
-        let most = (passes / samples.max(1) / 2).max(50);
+        let pieces = self.pieces;
+        let coded: usize = pieces.iter().map(|own| own.values.len()).sum();
+        let samples: usize = problem.train.iter().map(Stretch::samples).sum();
+        let settings = self.budget.evaluations.max(FEW_SETTINGS);
+        let passes = settings.saturating_mul(PASSES_A_SETTING).min(PASSES);
+        let most = (passes / coded.max(1) / 2).max(50);
         let range = problem.extent.max - problem.extent.min;
         let list_of = |combination: &Asked, span: (f64, f64), most: usize| -> Option<Outcomes> {
             let mut options = combination.clone();
             options.set("threshold", range * 0.1);
             let first = problem.train.first()?;
             let settings = problem.settings(&options, problem.sample, first).ok()?;
-            problem.scheme.outcomes(&settings, &stretches, span, most)
+            problem.scheme.outcomes(&settings, pieces, span, most)
         };
         let in_order = self.in_order(samples);
         let combined = |options: &Asked| -> Option<(Vec<Outcome>, usize, bool)> {
