@@ -1,23 +1,24 @@
-//! Akida AKD1500: access to the chip's memory over SPI, and the words of its events.
+//! Akida AKD1500: reads and writes the chip's memory over SPI, and converts events to and from the chip's words.
 
 use embedded_hal::spi::{Operation, SpiDevice};
 
 use super::ChipError;
 use super::error::{at_most, in_range};
 
-/// AKD1500 over SPI: reads and writes the chip's memory. An inference also needs a program from the vendor's compiler,
-/// which is loaded by writing it to memory.
+/// The driver of the AKD1500: reads and writes the chip's memory over SPI. An inference also needs a program made by
+/// the vendor's compiler; write this program to the chip's memory.
 ///
 /// - **SPI:** mode 0, high bit first, 8 MHz; chip select low over header and data.
 /// - **Blocks:** a transfer carries 1, 4, 8, 16 or 32 words of 32 bits; the driver splits longer runs.
 /// - **Addresses:** multiples of 4 from `0xFC00_0000` to `0xFCFF_FFFC`, as in the vendor's driver. The bus carries the
 ///   low 26 bits, and the chip adds the rest.
-/// - **Faults:** chip select begins every block anew, so that a lost or doubled clock pulse spoils only one block.
-///   There is no checksum, so [`program`](Self::program) reads everything back. A disturbed header may write a block to
-///   another address. Therefore, after [`ReadBack`](ChipError::ReadBack), rewrite all memory that matters. If the
-///   intended address already held the same words, the fault goes unnoticed.
+/// - **Faults:** chip select marks the start of each block, so that a lost or doubled clock pulse spoils only one
+///   block. There is no checksum, so [`program`](Self::program) reads everything back. If a fault changes the header of
+///   a block, the block may be written to another address. Therefore, after [`ReadBack`](ChipError::ReadBack), rewrite
+///   all memory that matters. If the intended address already held the same words, the fault goes unnoticed.
 ///
-/// Checked against the vendor's sources, and against a model of the transport made from them; never against a chip.
+/// Checked against the vendor's sources, and against a model of the SPI transport that was written from these sources;
+/// never against a chip.
 ///
 /// Source: the vendor's Arduino library and engine, for the protocol; no code was taken.
 ///
@@ -42,7 +43,7 @@ pub struct Akd1500<D> {
 
 const WRITE: u8 = 0x80;
 const READ: u8 = 0x60;
-/// Block sizes in 32-bit words, longest first, each with its code in the header.
+/// Block sizes in 32-bit words, longest first. The second value is the code of the size in the header of a block.
 const BLOCKS: [(usize, u8); 5] = [(32, 4), (16, 3), (8, 2), (4, 1), (1, 0)];
 /// First address of the chip's memory. The bus carries only the low 26 bits of an address; the high 6 bits are the
 /// same for all addresses.
@@ -60,8 +61,8 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Writes consecutive 32-bit words, the first to `address`.
     ///
     /// # Errors
-    /// Returns an error if `address` or the end of the words is out of range. Also returns an error if the bus failed;
-    /// some blocks may then have been written.
+    /// Returns an error if `address` is not a multiple of 4, or if a word lies outside the chip's memory. Also returns
+    /// an error if the bus failed; some blocks may then have been written.
     pub fn write(&mut self, address: u32, words: &[u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         for (address, code, block) in blocks(address, words) {
@@ -82,7 +83,8 @@ impl<D: SpiDevice> Akd1500<D> {
     /// Reads consecutive 32-bit words, the first from `address`.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, or if `address` or the end of the words is out of range.
+    /// Returns an error if the bus failed, if `address` is not a multiple of 4, or if a word lies outside the chip's
+    /// memory.
     pub fn read(&mut self, address: u32, words: &mut [u32]) -> Result<(), ChipError<D::Error>> {
         check(address, words.len())?;
         let mut address = address;
@@ -144,7 +146,7 @@ fn header(command: u8, address: u32) -> [u8; 4] {
     [command, high, middle, low]
 }
 
-/// Returns the size and the header code of the longest block that `words` words fill; `None` if there are no words.
+/// Returns the largest block size in [`BLOCKS`] that is at most `words`, and its code; `None` if `words` is 0.
 fn block_of(words: usize) -> Option<(usize, u8)> {
     BLOCKS.into_iter().find(|&(count, _)| count <= words)
 }
@@ -178,7 +180,7 @@ pub struct ConvolutionEvent {
     pub x: u16,
     /// Row, 0 to 4095.
     pub y: u16,
-    /// Feature, 0 to 2047.
+    /// Number of the feature, 0 to 2047.
     pub feature: u16,
     /// Activation, 0 to 255.
     pub activation: u8,
@@ -222,7 +224,7 @@ impl ConvolutionEvent {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DenseEvent {
-    /// Feature, 0 to 262 143.
+    /// Number of the feature, 0 to 262 143.
     pub feature: u32,
     /// Activation, 0 to 67 108 863.
     pub activation: u32,

@@ -6,7 +6,8 @@ use core::fmt;
 use super::Phase;
 use super::family::AerError;
 
-/// The reason that a call on a chip failed. `B` is the error type of the chip's bus, `P` that of its port.
+/// The reason that a call on a chip failed. `B` is the error type of the bus through which the driver accesses the
+/// chip. `P` is the error type of the port, which drives the chip's other pins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -27,22 +28,28 @@ pub enum ChipError<B, P = Infallible> {
     NotGated,
     /// The chip's activity is gated, so the chip takes no events.
     Gated,
-    /// The chip did not answer after its gate was opened: reset the chip first.
+    /// The chip did not answer after the driver had let it run: reset the chip first.
+    /// [`ReckOn::sample`](super::ReckOn::sample) returns this error if the chip is between samples; then no reset is
+    /// needed.
     NotStarted,
-    /// The driver could not verify that the chip runs, because no neuron can take a time step without changing: each
-    /// neuron is at its threshold or at the end of its range, or learns. The chip is still gated, and nothing was
-    /// changed.
+    /// The driver has no neuron with which to check that the chip runs. The check is a time step of one neuron. Before
+    /// it, the driver moves the neuron's potential by the leak, so that the time step moves the potential back. But
+    /// every neuron learns, has reached its threshold, or would leave the range of potentials at this move. The chip is
+    /// still gated, and nothing was changed.
     NoProbe,
-    /// The chip keeps sending outputs, so that it cannot be gated; see [`open_loop`](super::Running::open_loop).
+    /// The chip keeps sending outputs and does not come to rest. It must be at rest before it is gated; see
+    /// [`open_loop`](super::Running::open_loop). [`ReckOn::started`](super::ReckOn::started) returns this error if the
+    /// chip is within a sample.
     Busy,
     /// The weights from one input or neuron have both signs, which this chip cannot store.
     MixedSigns {
-        /// Row of synapses with these weights: the number of the presynaptic neuron, or the row of the input.
+        /// Number of the row of synapses that would store the weights. A row belongs to a presynaptic neuron or to an
+        /// input.
         pre: u8,
     },
     /// A value is out of its range.
     OutOfRange {
-        /// The name of the value.
+        /// The name of the value that is out of its range.
         what: &'static str,
         /// The value that the caller gave.
         value: i64,
@@ -51,7 +58,7 @@ pub enum ChipError<B, P = Infallible> {
         /// Largest value allowed.
         max: i64,
     },
-    /// The weight of a virtual event is 0, which the chip would take for a full spike.
+    /// The weight of a virtual event is 0. The chip would take such an event for a spike on a whole row of synapses.
     ZeroWeight,
     /// Memory reads back a different value than was written. On a chip without a reset line, write the value again. On
     /// a chip with a reset line, all memory is in doubt: reset the chip, and write all of its memory again.

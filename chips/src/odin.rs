@@ -20,8 +20,8 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN, which takes 128 bits of memory. The driver does not support the chip's
-/// Izhikevich neurons.
+/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory; the bits that the fields name are counted
+/// from 0 within these. The driver does not support the chip's Izhikevich neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -46,17 +46,23 @@ impl OdinNeuron {
     pub const DISABLED: Self = Self { is_disabled: true, ..Self::REST };
 }
 
-/// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP). A
-/// presynaptic spike strengthens a synapse if the neuron's potential is high and its calcium lies between the outer
-/// two thresholds. The spike weakens the synapse if the potential is low and the calcium lies between the lower two
-/// thresholds.
+/// The parameters with which the synapses onto a neuron learn, by spike-driven synaptic plasticity (SDSP).
+///
+/// The neuron's *calcium* is a number from 0 to 7 that rises by 1 when the neuron fires, and falls with time. A
+/// presynaptic spike strengthens a synapse if the neuron's potential is high, and its calcium is at least the first
+/// threshold and below the third. The spike weakens the synapse if the potential is low, and the calcium is at least
+/// the first threshold and below the second.
+///
+/// The bits that the fields name are counted from 0 within the neuron's 128 bits of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinLearning {
-    /// Potential at or above which synapses grow; below it they shrink. Bits 18 to 25.
+    /// Potential at or above which a presynaptic spike can strengthen a synapse; below this potential the spike can
+    /// weaken the synapse. Bits 18 to 25.
     pub potential: u8,
-    /// The three thresholds of the calcium, 0 to 7 each. Bits 26 to 34, 3 bits each.
+    /// The first, second and third threshold with which the calcium is compared, 0 to 7 each. Bits 26 to 34, 3 bits for
+    /// each threshold.
     pub calcium: [u8; 3],
     /// Number of time steps after which the calcium falls by 1, 1 to 31; 0 if it never falls. Bits 35 to 39.
     pub calcium_leak: u8,
@@ -69,8 +75,9 @@ pub struct OdinLearning {
 pub struct OdinSynapse {
     /// Weight, 0 to 7.
     pub weight: u8,
-    /// Mapping bit. A synapse without this bit acts only if register [24](OdinRegisters::propagates_unmapped) is set,
-    /// and learns only if register [23](OdinRegisters::updates_unmapped) is set.
+    /// The mapping bit, which enables the synapse. If this bit is 0, the synapse acts only if
+    /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is set, and learns only if
+    /// [`updates_unmapped`](OdinRegisters::updates_unmapped) is set.
     pub is_mapped: bool,
 }
 
@@ -80,29 +87,29 @@ pub struct OdinSynapse {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(clippy::struct_excessive_bools, reason = "each is a register")]
 pub struct OdinRegisters {
-    /// Register 1: whether the loop is open, that is, whether the spikes of neurons go only to the output bus and not
-    /// to other neurons.
+    /// Register 1: whether the loop is open. In open loop the spikes of neurons go only to the output bus, and not to
+    /// other neurons.
     pub is_open_loop: bool,
     /// Registers 2 to 17: bit `n % 16` of word `n / 16` is 1 if neuron `n` inhibits.
     pub inhibitory: [u16; 16],
     /// Register 18: interval between the spikes of a burst, in clock cycles, 20 bits; 0 disables bursts.
     pub burst_clocks: u32,
-    /// Register 19: which spikes go to the output bus.
+    /// Register 19: the spikes that go to the output bus.
     pub output_source: OutputSource,
     /// Registers 20 to 22: a neuron, and the presynaptic neuron of one of its synapses. If set, the output bus shows
     /// the states of the neuron and the synapse instead of spikes.
     pub monitored: Option<(u8, u8)>,
-    /// Register 23: whether synapses without the mapping bit learn.
+    /// Register 23: whether synapses learn even if their [mapping bit](OdinSynapse::is_mapped) is 0.
     pub updates_unmapped: bool,
-    /// Register 24: whether synapses without the mapping bit act.
+    /// Register 24: whether synapses act even if their [mapping bit](OdinSynapse::is_mapped) is 0.
     pub propagates_unmapped: bool,
     /// Register 25: whether synapses also learn from [`OdinInput::Synapse`] events.
     pub learns_from_synapse: bool,
 }
 
 impl OdinRegisters {
-    /// Registers for an open loop with excitatory neurons only, without bursts and monitoring, in which synapses
-    /// without the mapping bit neither act nor learn.
+    /// Registers for a simple network: the loop is open, all neurons are excitatory, and bursts and monitoring are off.
+    /// Synapses without the mapping bit neither act nor learn.
     pub const PLAIN: Self = Self {
         is_open_loop: true,
         inhibitory: [0; 16],
@@ -120,15 +127,16 @@ impl OdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OdinInput {
-    /// A spike of neuron `pre` that acts on one synapse only. The synapse acts if it has the mapping bit, or if
-    /// [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is set.
+    /// A spike of neuron `pre` that acts through one synapse only. The synapse acts if its
+    /// [mapping bit](OdinSynapse::is_mapped) is 1, or if [`propagates_unmapped`](OdinRegisters::propagates_unmapped) is
+    /// set.
     Synapse {
         /// The presynaptic neuron.
         pre: u8,
         /// The postsynaptic neuron.
         post: u8,
     },
-    /// A spike of neuron `pre` that acts on all of its synapses.
+    /// A spike of neuron `pre`, which acts through all synapses of that neuron.
     Spike {
         /// The neuron that fired.
         pre: u8,
@@ -142,12 +150,12 @@ pub enum OdinInput {
         /// Whether the weight lowers the potential.
         is_inhibitory: bool,
     },
-    /// A time step for one neuron, which waits in the chip's queue with virtual events and spikes.
+    /// A time step for one neuron. This event waits in the chip's queue, as spikes and virtual events do.
     VirtualLeak {
         /// The neuron that takes the time step.
         neuron: u8,
     },
-    /// A time step for one neuron, which does not wait in the chip's queue.
+    /// A time step for one neuron. This event does not wait in the chip's queue.
     Leak {
         /// The neuron that takes the time step.
         neuron: u8,
@@ -170,9 +178,9 @@ impl Input for OdinInput {
     const PROBED: u8 = 255;
     const NEURON_BYTES: u8 = 16;
     const PARAMETERS: [u8; 16] = 0xFFFF_FFFF_FFC0_003F_FFFF_FFFF_FFFF_FFFF_u128.to_le_bytes();
-    /// The slowest word is `BistabilityAll`: it takes 64 clock cycles for each neuron, and waits for up to 33 spikes of
-    /// 512 clock cycles each. All other words take at most 1600 clock cycles: `LeakAll` takes 512, after at most two
-    /// spikes.
+    /// The maximum for the slowest word, `BistabilityAll`, rounded up. This word takes 64 clock cycles for each neuron,
+    /// and waits for up to 33 spikes of 512 clock cycles each. All other words take at most 1600 clock cycles:
+    /// `LeakAll` takes 512, after at most two spikes.
     const MAX_CLOCKS: u32 = 34_000;
     const QUEUE: u32 = 32;
     const OPEN_LOOP: u16 = 1;
@@ -268,7 +276,8 @@ impl Input for OdinInput {
         Some(OdinNeuron { potential: before, ..*neuron })
     }
 
-    /// Encodes a signed weight without its sign. Sets the mapping bit unless the weight is 0.
+    /// Encodes a signed weight as the 4 bits of a synapse, without its sign. Sets the mapping bit, with which the
+    /// synapse acts, unless the weight is 0.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
         in_range("weight", weight.into(), -7, 7)?;
         Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })

@@ -22,8 +22,8 @@ pub type TinyOdin<D, P> = OdinChip<TinyOdinInput, D, P>;
 pub type TinyOdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<TinyOdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of tinyODIN. In the chip it takes 32 bits: potential in bits 0 to 11, threshold in
-/// 12 to 23, leak in 24 to 30, and the disabling bit 31.
+/// A leaky integrate-and-fire neuron of tinyODIN. It takes 32 bits of memory: bits 0 to 11 hold the potential, bits 12
+/// to 23 the threshold, and bits 24 to 30 the leak. Bit 31 disables the neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -51,10 +51,10 @@ impl TinyOdinNeuron {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinRegisters {
-    /// Register 1: whether the loop is open, that is, whether the spikes of neurons go only to the output bus and not
-    /// to other neurons.
+    /// Register 1: whether the loop is open. In open loop the spikes of neurons go only to the output bus, and not to
+    /// other neurons.
     pub is_open_loop: bool,
-    /// Register 2: which spikes go to the output bus.
+    /// Register 2: the spikes that go to the output bus.
     pub output_source: OutputSource,
     /// Register 3: the highest neuron in use. A spike takes 2 clock cycles for each neuron up to this one.
     pub last_neuron: u8,
@@ -65,7 +65,7 @@ pub struct TinyOdinRegisters {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum TinyOdinInput {
-    /// A spike of neuron `pre` that acts on all of its synapses.
+    /// A spike of neuron `pre`, which acts through all synapses of that neuron.
     Spike {
         /// The neuron that fired, 0 to 255.
         pre: u8,
@@ -74,12 +74,13 @@ pub enum TinyOdinInput {
     Virtual {
         /// The neuron on which the event acts, 0 to 15.
         neuron: u8,
-        /// Weight, -8 to 7 except 0, which the chip would take for a full spike.
+        /// Weight, -8 to 7 except 0. (With weight 0 the chip would take the event for a spike on a whole row of
+        /// synapses.)
         weight: i8,
     },
     /// A time step for one neuron.
     Leak {
-        /// The neuron that takes the time step, 0 to 254. (The chip would take 255 for all neurons.)
+        /// The neuron that takes the time step, 0 to 254. (To the chip, 255 means all neurons.)
         neuron: u8,
     },
     /// A time step for all neurons.
@@ -91,8 +92,9 @@ impl Input for TinyOdinInput {
     const PROBED: u8 = 254;
     const NEURON_BYTES: u8 = 4;
     const PARAMETERS: [u8; 16] = [0, 0xF0, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-    /// The slowest word is `LeakAll`: it waits for at most two spikes, and then processes all neurons in use. Each of
-    /// the two spikes, and `LeakAll` itself, takes 2 clock cycles for each neuron in use.
+    /// The maximum for the slowest word, `LeakAll`, rounded up. This word waits for at most two spikes, and then
+    /// processes all neurons in use. Each of the two spikes, and `LeakAll` itself, takes 2 clock cycles for each neuron
+    /// in use.
     const MAX_CLOCKS: u32 = 1_600;
     const QUEUE: u32 = 128;
     const OPEN_LOOP: u16 = 1;

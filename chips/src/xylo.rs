@@ -36,21 +36,21 @@ pub fn pack_counts(counts: [u8; 16]) -> [u32; 2] {
     [packed as u32, (packed >> 32) as u32]
 }
 
-/// One of the two banks of input registers, which the chip reads in turn.
+/// One of the two banks of input registers. The chip reads the two banks in turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum InputBank {
-    /// The first bank.
+    /// The bank whose registers begin at [`XyloMap::input`].
     First,
-    /// The second bank.
+    /// The bank whose registers begin two registers after [`XyloMap::input`].
     Second,
 }
 
 /// The register addresses and masks of a chip of the Xylo family.
 ///
 /// Checked only against the sources of `rockpool`: `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for
-/// A2. Both poll for the end of a time step as [`step`](Xylo::step) does.
+/// A2. Both sources poll for the end of a time step as [`step`](Xylo::step) does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -59,7 +59,8 @@ pub struct XyloMap {
     pub input: u16,
     /// Register that triggers a time step; write-only.
     pub control: u16,
-    /// The only value that may be written to [`control`](Self::control). (Bit 0 of the register resets the chip.)
+    /// Value that triggers a time step when it is written to [`control`](Self::control). No other value may be written
+    /// there. (Bit 0 of the register resets the chip.)
     pub trigger: u32,
     /// Register that shows whether the time step is done.
     pub status: u16,
@@ -69,8 +70,8 @@ pub struct XyloMap {
     pub outputs: u16,
     /// Mask of the bits of `outputs` in use: bit `i` is output `i`.
     pub output_bits: u32,
-    /// The bit that shows which input bank the next time step reads, as the address of its register and its mask. The
-    /// bit is 1 for the second bank. `None` if the public sources do not give this bit.
+    /// Register address and mask of the bit that shows which input bank the next time step reads. The bit is 1 for the
+    /// second bank. `None` if the public sources do not give this bit.
     pub next_bank: Option<(u16, u32)>,
 }
 
@@ -87,8 +88,8 @@ impl XyloMap {
         next_bank: Some((0x171, 1 << 16)),
     };
 
-    /// Xylo Audio A2: 8 outputs. The vendor must supply `trigger`, the word that triggers a time step: the open
-    /// `rockpool` leaves it to `samna`, whose source is not public.
+    /// Xylo Audio A2: 8 outputs. Ask the vendor for `trigger`, the value that triggers a time step. The vendor's open
+    /// library `rockpool` does not contain this value: there `samna`, whose source is not public, triggers the step.
     pub const fn a2(trigger: u32) -> Self {
         Self {
             input: 0x11,
@@ -105,18 +106,18 @@ impl XyloMap {
 
 /// Xylo Audio 3 and A2 in manual mode: set the counts, run a time step, and get the outputs that fired.
 ///
-/// Count the events of a time step with [`Bins<16>`](spikewire::Bins), with a limit of 15 so that events beyond it are
-/// counted as saturated.
+/// Count the events of a time step with [`Bins<16>`](spikewire::Bins). Set the limit of the bins to 15, so that they
+/// report events beyond this limit as saturated.
 ///
 /// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which
 ///   bank the next step reads, and writes the counts to that bank.
 /// - **Order:** set the counts, then run the step. While the chip runs a step the driver accepts no counts, and
 ///   [`step`](Self::step) waits for the step without triggering a second one.
-/// - **Counts stay** in the chip. A step without new counts uses the old counts of its bank again, unless they are
-///   [cleared](Self::clear_input), as in the vendor's programs.
+/// - **Counts stay** in the chip. A step without new counts uses the old counts of the bank that it reads. To prevent
+///   this, [clear](Self::clear_input) the counts, as the vendor's programs do.
 /// - **Faults:** the chip does not confirm writes, and the public sources do not say which registers can be read back.
 ///   Therefore the [`Registers`] that you supply must report every write that fails. If the write of counts is lost,
-///   the chip keeps the old counts. If the trigger is lost, it keeps the outputs of the step before.
+///   the chip keeps the old counts. If the trigger is lost, the chip keeps the outputs of the previous step.
 ///
 /// Checked against the vendor's sources alone, never against a chip.
 ///
@@ -136,7 +137,7 @@ impl<R: Registers> Xylo<R> {
         Self { registers, map, polls, is_under_way: false }
     }
 
-    /// Sets the counts of a time step in one bank.
+    /// Writes the spike counts of the 16 channels in a time step to one of the two banks of input registers.
     ///
     /// # Errors
     /// Returns an error if the bus failed; then set the counts again. Returns [`Unfinished`](ChipError::Unfinished) if
@@ -171,8 +172,8 @@ impl<R: Registers> Xylo<R> {
         Ok(Some(if is_second { InputBank::Second } else { InputBank::First }))
     }
 
-    /// Sets the counts that the next time step reads: in the bank that the step will read, or in both banks if
-    /// [`XyloMap::next_bank`] is `None`.
+    /// Writes the spike counts that the next time step reads. Writes them to the bank that this step will read, or to
+    /// both banks if [`XyloMap::next_bank`] is `None`.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -184,7 +185,7 @@ impl<R: Registers> Xylo<R> {
         self.set_input(InputBank::Second, counts)
     }
 
-    /// Sets the counts of both banks to 0.
+    /// Sets the spike counts of all channels to 0, in both banks of input registers.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).
@@ -196,10 +197,10 @@ impl<R: Registers> Xylo<R> {
     /// Runs a time step and returns the outputs that fired: bit `i` is output `i`.
     ///
     /// # Errors
-    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet: call `step` again, which goes on
-    /// waiting. Returns [`Bus`](ChipError::Bus) if the bus failed: call `step` again. If the bus failed after the
-    /// trigger, nothing is lost. If the bus failed at the trigger, the step may have begun, and the next call triggers
-    /// a second one.
+    /// Returns [`Unfinished`](ChipError::Unfinished) if the step is not done yet: call `step` again to go on waiting.
+    /// Returns [`Bus`](ChipError::Bus) if the bus failed: call `step` again. If the bus failed after the trigger,
+    /// nothing is lost. If the bus failed at the trigger, the step may have begun, and the next call triggers a second
+    /// one.
     pub fn step(&mut self) -> Result<u32, ChipError<R::Error>> {
         let XyloMap { control, trigger, status, done, outputs, output_bits, .. } = self.map;
         if !self.is_under_way {

@@ -69,7 +69,7 @@ impl<'a> Fields<'a> {
         Some(String::from_utf8_lossy(self.get(name)?).into_owned())
     }
 
-    /// Reads the field `name`, a time stored as seconds and nanoseconds; returns it in ns.
+    /// Reads the field `name`, a time stored as seconds and nanoseconds; returns the time in ns.
     fn time(&self, name: &str) -> Option<i64> {
         let mut field = self.get(name)?;
         let (seconds, nanoseconds) = (u32_from(&mut field)?, u32_from(&mut field)?);
@@ -140,7 +140,7 @@ fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
 }
 
 impl Chunked for Bag {
-    /// Offset of the record in the file. Its content is in `header` and `data`.
+    /// A record, given by its offset in the file. The record's content is in `header` and `data`.
     type Record = u64;
 
     fn walk(&self) -> &Walk {

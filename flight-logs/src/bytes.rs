@@ -95,7 +95,8 @@ fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
 }
 
 /// Decompresses `packed`, whose decompressed size should be `size` bytes. `how` is the name of the compression. Returns
-/// the decompressed bytes. Also returns a description of the fault if bytes are missing, or if there are too many.
+/// the bytes that could be decompressed. Also returns a description of the fault if the bytes are damaged, if too few
+/// or too many are decompressed, or if the compression is unknown.
 pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<String>) {
     let mut bytes = Vec::new();
     let mut limited =
@@ -121,28 +122,28 @@ pub(crate) fn unpack(how: &str, packed: &[u8], size: u64) -> (Vec<u8>, Option<St
     (bytes, fault)
 }
 
-/// Removes a little-endian `u16` from the front of `bytes`; returns `None` if they are too short.
+/// Removes a little-endian `u16` from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn u16_from(bytes: &mut &[u8]) -> Option<u16> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u16::from_le_bytes(*first))
 }
 
-/// Removes a little-endian `u32` from the front of `bytes`; returns `None` if they are too short.
+/// Removes a little-endian `u32` from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn u32_from(bytes: &mut &[u8]) -> Option<u32> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u32::from_le_bytes(*first))
 }
 
-/// Removes a little-endian `u64` from the front of `bytes`; returns `None` if they are too short.
+/// Removes a little-endian `u64` from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn u64_from(bytes: &mut &[u8]) -> Option<u64> {
     let (first, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u64::from_le_bytes(*first))
 }
 
-/// Removes `count` bytes from the front of `bytes`; returns `None` if they are too short.
+/// Removes `count` bytes from the front of `bytes`; returns `None` if fewer bytes are left.
 pub(crate) fn take<'a>(bytes: &mut &'a [u8], count: u64) -> Option<&'a [u8]> {
     let (first, rest) = bytes.split_at_checked(usize::try_from(count).ok()?)?;
     *bytes = rest;

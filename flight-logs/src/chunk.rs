@@ -73,7 +73,7 @@ impl Chunk {
     }
 }
 
-/// State of reading a log of records and chunks, common to the formats that have them.
+/// State of reading a log that consists of records and chunks.
 pub(crate) struct Walk {
     pub bytes: Bytes,
     pub faults: Faults,
@@ -110,7 +110,8 @@ impl Walk {
     }
 }
 
-/// A log that consists of records, some of which are chunks of records. Any such log implements [`Log`].
+/// A log that consists of records, some of which are chunks of records. A type that implements this trait also
+/// implements [`Log`].
 pub(crate) trait Chunked {
     /// A record outside of chunks, as the function `record` returns it.
     type Record;
@@ -122,7 +123,7 @@ pub(crate) trait Chunked {
     fn walk_mut(&mut self) -> &mut Walk;
 
     /// Reads the next record in the current chunk. If the record is a message, returns its entry and stores its content
-    /// in the state.
+    /// in [`Walk::message`].
     ///
     /// # Errors
     /// Returns an error if the log is damaged and damage is refused.
@@ -134,8 +135,8 @@ pub(crate) trait Chunked {
     /// Returns an error if the log is damaged and damage is refused.
     fn record(&mut self) -> Result<Option<Self::Record>>;
 
-    /// Processes a record outside of chunks. If the record is a message, returns its entry; if it is a chunk, makes it
-    /// the current one.
+    /// Processes a record outside of chunks. If the record is a message, returns its entry. If the record is a chunk,
+    /// makes it the current chunk.
     ///
     /// # Errors
     /// Returns an error if the log is damaged and damage is refused.

@@ -1,7 +1,7 @@
-//! Layouts of messages, parsed from the definitions in a log, and paths to the numbers and texts in a message.
+//! Layouts of messages, parsed from the message definitions in a log, and paths to the numbers and texts in a message.
 //!
-//! A definition has a line `type name` for each field. In ROS, definitions of nested messages follow after a line `MSG:
-//! package/Type`.
+//! A definition has a line `type name` for each field. In ROS, the definitions of nested messages follow, each after a
+//! line `MSG: package/Type`.
 
 use super::known::known;
 use std::collections::HashMap;
@@ -181,8 +181,8 @@ impl Definition {
         Parser::parse(&name, &|name| texts.get(name).cloned(), dialect)
     }
 
-    /// Creates the layout of a ROS 2 message. `look_up` returns the text of the definition of a type `package/Type`. It
-    /// must know the message's type, and the types of nested messages.
+    /// Creates the layout of a ROS 2 message. `look_up` returns the text of the definition of a type `package/Type`.
+    /// `look_up` must know the message's type, and the types of nested messages.
     ///
     /// # Errors
     /// Returns the reason if a line or a nested type cannot be understood, or if a message contains itself.
@@ -215,7 +215,7 @@ impl Definition {
         Some(Path(vec![Step::Field(index)]))
     }
 
-    /// Returns the number of padding bytes at the end of a PX4 message, which loggers usually leave out.
+    /// Returns the number of padding bytes at the end of a PX4 message. Loggers usually leave these bytes out.
     pub fn padding(&self) -> usize {
         let fields = self.root().fields.iter().rev();
         let padding = fields.take_while(|field| field.name.starts_with(PADDING));
@@ -227,7 +227,7 @@ impl Definition {
         padding.map(size).sum()
     }
 
-    /// Returns the layout of the message itself, without those of nested messages.
+    /// Returns the layout of the message itself, without the layouts of nested messages.
     pub fn root(&self) -> &Struct {
         self.structs.first().unwrap_or(const { &Struct { fields: Vec::new() } })
     }

@@ -1,4 +1,4 @@
-//! Errors as values that a program can match. A front end adds its own advice to their text.
+//! Errors of reading a log, as values that a program can match.
 
 use crate::wire;
 use std::path::Path;
@@ -9,13 +9,13 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Error of a log that is damaged or cannot be read.
 ///
-/// Its text names the file and, if possible, the byte. It gives no advice; [`ErrorKind::rest`] tells whether
-/// [`Damage::Skip`](crate::Damage::Skip) would read more.
+/// The error's text names the file and, if possible, the byte. The text gives no advice; [`ErrorKind::rest`] tells
+/// whether [`Damage::Skip`](crate::Damage::Skip) would read more of the log.
 #[derive(Debug)]
 pub struct Error {
     /// Path of the file, as the caller gave it.
     pub file: String,
-    /// Reason, with its details.
+    /// Reason for the error, with its details.
     pub kind: ErrorKind,
 }
 
@@ -111,8 +111,8 @@ impl Error {
 }
 
 impl ErrorKind {
-    /// Returns the part of the log that [`Damage::Skip`](crate::Damage::Skip) would read in spite of the error; `None`
-    /// if it would not read more.
+    /// Returns the part of the log that [`Damage::Skip`](crate::Damage::Skip) would read in spite of this error; `None`
+    /// if `Damage::Skip` gives the same error.
     pub fn rest(&self) -> Option<Rest> {
         match *self {
             Self::Fault { rest, .. } => Some(rest),

@@ -50,7 +50,7 @@ impl Faults {
     }
 
     /// Counts damage after which reading continues. `at` is the offset of the damage in the file, in bytes; `what`
-    /// describes it. The notes describe only the first damage of a log.
+    /// describes the damage. The notes describe only the first damage of a log.
     ///
     /// # Errors
     /// Returns an error if damage is refused.
@@ -60,7 +60,7 @@ impl Faults {
         Ok(())
     }
 
-    /// Counts a fault that is never refused, because good logs of this kind often have it.
+    /// Counts a fault that is never returned as an error, because undamaged logs of this kind often have such faults.
     pub(crate) fn lose(&mut self, at: u64, what: impl Display) {
         self.skipped += 1;
         if self.skipped == 1 {
@@ -68,7 +68,8 @@ impl Faults {
         }
     }
 
-    /// Notes damage after which nothing can be read. `at` is its offset in the file, in bytes; `what` describes it.
+    /// Notes damage after which nothing can be read. `at` is the offset of the damage in the file, in bytes; `what`
+    /// describes the damage.
     ///
     /// # Errors
     /// Returns an error if damage is refused.
@@ -78,7 +79,7 @@ impl Faults {
         Ok(())
     }
 
-    /// Counts a message that is longer than its definition; `at` is its offset in the file, in bytes.
+    /// Counts a message that is longer than its definition; `at` is the message's offset in the file, in bytes.
     pub fn long(&mut self, at: u64) {
         if self.long == 0 {
             self.first_long = at;
@@ -86,7 +87,7 @@ impl Faults {
         self.long += 1;
     }
 
-    /// Adds a note about the log that is not about damage.
+    /// Adds a note on something other than damage.
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
     }

@@ -1,4 +1,5 @@
-//! Definitions of common ROS 2 messages, for `SQLite` bags recorded before ROS 2 Iron, which contain no definitions.
+//! Definitions of common ROS 2 messages. `SQLite` bags recorded before ROS 2 Iron need them, because they contain no
+//! definitions.
 
 use super::definition::short;
 

@@ -103,8 +103,8 @@ pub trait Log {
 /// Reaction to damage in a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Damage {
-    /// Return an error at the first damage. Bad frames in a blackbox log are noted instead, because its recorder drops
-    /// some even in a good flight.
+    /// Return an error at the first damage. Bad frames in a blackbox log are only noted, because the recorder drops
+    /// frames even in a good flight.
     #[default]
     Refuse,
     /// Leave out the damaged parts, count them, and describe them in the notes.

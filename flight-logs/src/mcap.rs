@@ -75,8 +75,8 @@ impl Mcap {
         self.walk.chunk.begin(at, (chunk, fault), self.walk.is_over, &mut self.walk.faults)
     }
 
-    /// Parses a message record. Returns its entry, and the length of the message, which is at the end of the record.
-    /// Returns `None` if the record is too short or its channel is unknown.
+    /// Parses a message record. Returns the message's entry, and the length of the message's content, which is at the
+    /// end of the record. Returns `None` if the record is too short or the channel is unknown.
     fn entry(&self, mut record: &[u8], at: u64) -> Option<(Entry, usize)> {
         let channel = u16_from(&mut record)?;
         let sequence = u32_from(&mut record)?;
@@ -138,7 +138,7 @@ impl Mcap {
 }
 
 impl Chunked for Mcap {
-    /// Kind of the record, and its offset in the file. Its content is in `data`.
+    /// A record, given by its kind and its offset in the file. The record's content is in `data`.
     type Record = (u8, u64);
 
     fn walk(&self) -> &Walk {

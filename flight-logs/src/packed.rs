@@ -5,7 +5,7 @@ use bzip2::read::MultiBzDecoder;
 use flate2::read::MultiGzDecoder;
 use std::io::{BufReader, Read};
 
-/// Compression of a whole file. Parallel packers write a file as several streams; all of them are read.
+/// Compression of a whole file. Packers that use several cores write a file as several streams; all streams are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Packing {
@@ -35,7 +35,7 @@ impl Packing {
         }
     }
 
-    /// Returns a reader of the decompressed content of `input`, which must be at its first byte.
+    /// Returns a reader of the decompressed content. `input` must start with the first byte of the file.
     pub fn reader(self, input: impl Read + 'static) -> Box<dyn Read> {
         const BUFFER: usize = 1 << 18;
         fn buffered(input: impl Read + 'static) -> Box<dyn Read> {
@@ -47,7 +47,8 @@ impl Packing {
             Self::Bzip2 => buffered(MultiBzDecoder::new(input)),
             #[cfg(not(target_family = "wasm"))]
             Self::Xz => {
-                /// Limit of a file's dictionary, in KiB; `xz -9` needs half of it.
+                /// Limit of the memory for decompression, in KiB. A file written by `xz -9` needs about half of this
+                /// memory.
                 const MOST: u32 = 1 << 17;
                 let input = BufReader::new(input);
                 buffered(lzma_rust2::XzReader::new_mem_limit(input, true, MOST))

@@ -68,8 +68,8 @@ impl Reading {
         self.current_topic()?.text(field, self.log.message())
     }
 
-    /// Returns the time of the current message in µs: the time in its field `timestamp` if it has one, otherwise the
-    /// time at which it was recorded.
+    /// Returns the time of the current message in µs: the time in the message's field `timestamp`, or the time of
+    /// recording if there is no such field.
     ///
     /// # Errors
     /// Returns an error if there is no message, or if the message ends before its time.

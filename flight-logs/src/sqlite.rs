@@ -125,8 +125,7 @@ impl Database {
         Ok(Page { number, bytes })
     }
 
-    /// Returns the content of a row, which is `length` bytes long. The content starts in `cell`, and may continue on
-    /// overflow pages.
+    /// Returns the content of a row, `length` bytes. The content starts in `cell`, and may continue on overflow pages.
     fn payload(&mut self, cell: &[u8], length: u64) -> Result<Vec<u8>, String> {
         if length > self.pages * self.page {
             return Err(format!("a row of {length} bytes is larger than the file"));

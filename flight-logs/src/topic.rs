@@ -65,7 +65,7 @@ impl Topic {
         wire::text(self.wire, definition, &definition.text(field)?, message)
     }
 
-    /// Returns a time in a message, in ns, or `None` if its path leads beyond the end of an array.
+    /// Returns a time in a message, in ns, or `None` if a path in `stamp` leads beyond the end of an array.
     ///
     /// # Errors
     /// Returns an error if the message does not match its definition.

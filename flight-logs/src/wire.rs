@@ -18,8 +18,7 @@ pub enum Wire {
 pub enum Fault {
     /// The message ends before the field, or within it.
     Short,
-    /// A CDR message begins with two bytes that stand for its encoding. These bytes, given here, do not stand for plain
-    /// CDR.
+    /// The message is not in plain CDR. The value is the message's first two bytes, which identify its encoding.
     Encapsulation(u16),
     /// A field before this one is a wide text, whose length depends on the writer.
     WideText,

@@ -49,9 +49,7 @@ fn every_lock_file_and_every_list_of_packages_is_kept_up_to_date() {
     assert_eq!(kept("cargo"), with(|name| name == "Cargo.lock"));
     // The emulator's packages are locked where they are installed.
     assert_eq!(kept("npm"), with(|name| name == "package-lock.json"));
-    let lists = |name: &str| {
-        name.ends_with("requirements.txt") || ["colcon.txt", "ros2.txt"].contains(&name)
-    };
+    let lists = |name: &str| name.ends_with("requirements.txt") || name == "ros2.txt";
     assert_eq!(kept("pip"), with(lists));
 }
 

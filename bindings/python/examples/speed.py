@@ -69,25 +69,54 @@ def signal(samples):
     return (clean - 0.5 * np.random.default_rng(1).random(samples)).astype(np.float32)
 
 
-def vectors(long, ends):
-    """The same work on whole arrays in NumPy, and the scheme: name, call, samples, scheme."""
+def vectors(ends):
+    """The same work on whole arrays in NumPy, in its shortest form, and the scheme: name, call of array and axis, scheme."""
     low, range_ = np.float32(ends["min"]), np.float32(ends["max"] - ends["min"])
     random = np.random.default_rng(2)
 
-    def contrast():
-        steps = np.diff(long, prepend=long[:1])
-        return (steps > 0.3).view(np.int8) - (steps < -0.3).view(np.int8)
+    def contrast(x, axis):
+        time, later, earlier = (slice(None),) * (axis % x.ndim), slice(1, None), slice(None, -1)
+        spikes, steps = np.zeros(x.shape, np.int8), x[(*time, later)] - x[(*time, earlier)]
+        np.subtract((steps > 0.3).view(np.int8), (steps < -0.3).view(np.int8), out=spikes[(*time, later)])
+        return spikes
 
-    def phase():
-        digits = np.minimum((long - low) * (256 / range_), 255).astype(np.uint8)
-        return np.unpackbits(digits[:, None], axis=1)
+    def phase(x, _):
+        digits = np.minimum((x - low) * (256 / range_), 255).astype(np.uint8)
+        return np.unpackbits(digits[..., None], axis=-1)
 
-    def chance():
-        return (random.random(len(long), dtype=np.float32) < (long - low) / range_).astype(np.int8)
+    def chance(x, _):
+        return (random.random(x.shape, dtype=np.float32) < (x - low) / range_).view(np.int8)
 
-    yield "NumPy, differences", contrast, len(long), sw.TemporalContrast(threshold=0.3)
-    yield "NumPy `unpackbits`", phase, len(long), sw.WeightedPhase(slots=8, **ends)
-    yield "NumPy `random`", chance, len(long), sw.Bernoulli(**ends)
+    yield "differences", contrast, sw.TemporalContrast(threshold=0.3)
+    yield "`unpackbits`", phase, sw.WeightedPhase(slots=8, **ends)
+    yield "`random`", chance, sw.Bernoulli(**ends)
+
+
+def shapes(long, ends):
+    """Arrays as batches have them, beside NumPy: samples in a second, and what one channel takes."""
+    still = np.broadcast_to(long[: 64 * 784].reshape(64, 784), (100, 64, 784))
+    arrays = [
+        ("(1000000,)", long[:1_000_000], -1),
+        ("(64, 784, 100)", np.resize(long, (64, 784, 100)), -1),
+        ("(100, 512, 6), time first", np.resize(long, (100, 512, 6)), 0),
+        ("(64, 784) through 100 steps", still, 0),
+        ("(120000, 10)", np.resize(long, (120_000, 10)), -1),
+    ]
+    print("\n| shape | NumPy | M samples/s | spikewire | M samples/s | times | µs a channel |")
+    print("|---|---|--:|---|--:|--:|--:|")
+    for shape, x, axis in arrays:
+        for name, call, scheme in vectors(ends):
+            pairs = [
+                (rates(lambda: call(x, axis), x.size, 1)[0], rates(lambda: scheme.encode(x, False, axis), x.size, 1)[0])
+                for _ in range(ROUNDS)
+            ]
+            theirs, own = np.array(pairs).T
+            channel = x.shape[axis] / np.median(own)
+            print(
+                f"| {shape} | {name} | {spread(theirs)} | `{type(scheme).__name__}` | {spread(own)} "
+                f"| {spread(own / theirs)} | {channel:.3f} |",
+                flush=True,
+            )
 
 
 def others(x, long, ends):
@@ -181,7 +210,7 @@ def main():
             slow.append(f"{name} is {times:.0f} times as fast, not {wanted}")
     print("\n| on whole arrays | M samples/s | spikewire | M samples/s | times |")
     print("|---|--:|---|--:|--:|")
-    for name, call, samples, scheme in [*vectors(long, ends), *others(x, long, ends)]:
+    for name, call, samples, scheme in others(x, long, ends):
         pairs = [
             (samples / seconds(call) * 1e-6, len(long) / seconds(lambda: scheme.encode(long, progress=False)) * 1e-6)
             for _ in range(ROUNDS)
@@ -192,6 +221,7 @@ def main():
             f"| {spread(own / theirs)} |",
             flush=True,
         )
+    shapes(long, ends)
     if check and slow:
         sys.exit("; ".join(slow))
 

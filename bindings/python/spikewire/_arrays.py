@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import warnings
 
 import numpy as np
@@ -16,7 +18,7 @@ TAKEN = (np.float32, np.float64, np.int16)
 WHOLE = 1 << 24
 
 
-def samples(x: ArrayLike, sample: str = "f32") -> NDArray:
+def samples(x: ArrayLike, sample: str = "f32") -> NDArray[Any]:
     """An array of samples whose last axis is time; copied only where its type or byte order must change."""
     x = unmasked(x)
     if x.ndim == 0:
@@ -34,14 +36,14 @@ def samples(x: ArrayLike, sample: str = "f32") -> NDArray:
     return x.astype(x.dtype.newbyteorder("=") if x.dtype.newbyteorder("=") in TAKEN else np.float64)
 
 
-def tell_cut(sample: str, *arrays: NDArray) -> None:
+def tell_cut(sample: str, *arrays: NDArray[Any]) -> None:
     """Warns the caller's caller of samples that lie outside the range of a fixed-point `sample` type."""
     for x in arrays:
         if words := _native.cut(sample, x):
             warnings.warn(words, stacklevel=3)
 
 
-def unmasked(x: ArrayLike) -> NDArray:
+def unmasked(x: ArrayLike) -> NDArray[Any]:
     """An array without a mask; what is masked has no value that could be coded."""
     mask = np.ma.getmask(x)
     if np.any(mask):
@@ -63,7 +65,7 @@ def cells(codes: ArrayLike, shape: tuple[int, int], rows_of: str) -> tuple[NDArr
     return codes.reshape(-1), outer_of(codes, shape, rows_of)
 
 
-def outer_of(codes: NDArray, shape: tuple[int, int], rows_of: str) -> tuple[int, ...]:
+def outer_of(codes: NDArray[Any], shape: tuple[int, int], rows_of: str) -> tuple[int, ...]:
     """The shape of what codes decode to."""
     inner = row(shape)
     outer = codes.shape[: codes.ndim - len(inner)]
@@ -81,8 +83,10 @@ def row(shape: tuple[int, int]) -> tuple[int, ...]:
     return (neurons,) if neurons > 1 else ()
 
 
-def time_last(x: NDArray, axis: int) -> NDArray:
+def time_last(x: NDArray[Any], axis: int) -> NDArray[Any]:
     """A view whose last axis is the one of time."""
+    if axis is None:
+        raise ValueError(f"axis is that of time, one of {x.ndim}, and not None")
     if not -x.ndim <= axis < x.ndim:
         raise ValueError(f"axis {axis}: the array has {x.ndim} axes")
     return np.moveaxis(x, axis, -1)

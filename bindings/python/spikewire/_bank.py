@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,23 +27,24 @@ class Bank:
 
     def __init__(self, scheme: Scheme, channels: int):
         self._encoder = scheme.encoder(channels)
-        self.scheme, self.channels = scheme, channels
+        self.scheme: Scheme = scheme
+        self.channels: int = channels
         self._done = 0
 
     def __repr__(self) -> str:
         return f"Bank({self.scheme!r}, channels={self.channels})"
 
-    def encode(self, x: ArrayLike, period: float) -> NDArray:
+    def encode(self, x: ArrayLike, period: float) -> NDArray[Any]:
         """The events of the next samples, (channels, samples), one every `period` µs; the bank goes on from there."""
         return self._events(self._encoder.encode(x), period)
 
-    def finish(self, period: float) -> NDArray:
+    def finish(self, period: float) -> NDArray[Any]:
         """The events of the samples that wait for later ones. The bank is as at its start then."""
         events = self._events(self._encoder.finish(), period)
         self._done = 0
         return events
 
-    def _events(self, codes: NDArray[np.int8], period: float) -> NDArray:
+    def _events(self, codes: NDArray[np.int8], period: float) -> NDArray[Any]:
         neurons, slots = self._encoder._native.shape()
         codes = codes.reshape(self.channels, -1, slots, neurons)
         found = events(codes, period, None, self._done)
@@ -51,7 +52,7 @@ class Bank:
         return found
 
 
-def events(codes: NDArray, period: float, times: ArrayLike | None = None, first: int = 0) -> NDArray:
+def events(codes: NDArray[Any], period: float, times: ArrayLike | None = None, first: int = 0) -> NDArray[Any]:
     """The events of codes (channels, samples, sub-timesteps, neurons), from the sample of this number on."""
     channels, length, slots, neurons = codes.shape
     if channels * neurons > 1 << 16:

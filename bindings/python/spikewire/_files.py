@@ -83,7 +83,7 @@ def read_ulog(path: str | Path, topic: str, *fields: str, accept_cut: bool = Fal
     return read(path, topic=topic, field=fields, accept_cut=accept_cut)
 
 
-def read_events(source: str | Path | bytes, format: str) -> NDArray:
+def read_events(source: str | Path | bytes, format: str) -> NDArray[Any]:
     """The events of a file, or of ``bytes``, as a structured array; see :data:`~spikewire.EVENTS`.
 
     `format` is one of the laptop program's: ``"es"``, ``"evt2"``, ``"link"``, ``"edvs:e0"`` to ``"edvs:e4"``,
@@ -98,7 +98,7 @@ def read_events(source: str | Path | bytes, format: str) -> NDArray:
     return events
 
 
-def write_events(events: NDArray, format: str, path: str | Path | None = None) -> bytes:
+def write_events(events: NDArray[Any], format: str, path: str | Path | None = None) -> bytes:
     """Events, a structured array with ``t``, ``x`` and ``p``, as ``bytes`` of a format, and in a file if `path` is given.
 
     >>> import numpy as np, spikewire as sw

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _native
 from ._filters import Filter
 from ._link import Receiver, Sender
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ._scheme import Scheme
 
 
 class Flight:
@@ -47,9 +53,9 @@ class Flight:
         #: The unit of each channel; empty if it is not known.
         self.units: list[str] = [own[2] for own in channels]
         #: Counts for one unit of each channel.
-        self.counts = np.array([own[3] for own in channels])
+        self.counts: NDArray[Any] = np.array([own[3] for own in channels])
         #: The scheme of each channel.
-        self.schemes = [schemes[scheme]._of(dict(own[4]), sample) for own in channels]
+        self.schemes: list[Scheme] = [schemes[scheme]._of(dict(own[4]), sample) for own in channels]
         #: The time from sample to sample in µs.
         self.period: int = period
         #: Samples from one keyframe or heartbeat to the next.

@@ -33,15 +33,15 @@ def score(x: ArrayLike, scheme: Scheme, rate: float | None = None) -> dict[str, 
 class Tuned:
     """A scheme with the parameters that were found for it."""
 
-    def __init__(self, told: tuple, sample: str):
+    def __init__(self, told: tuple[Any, ...], sample: str):
         from ._schemes import schemes
 
         name, options, figures, comments = told
         kind = schemes[name]
         #: What flies: the parameters found, for `start` or where a signal begins the default.
-        self.scheme = kind._of(dict(options), sample)
+        self.scheme: Scheme = kind._of(dict(options), sample)
         #: Figures on the blocks tuned on, on those held out, and on the whole; costs; notes of what speaks against it.
-        self.figures = json.loads(figures)
+        self.figures: dict[str, Any] = json.loads(figures)
         self._comments = comments
 
     def to_rust(self, name: str = "CHANNEL") -> str:
@@ -132,14 +132,14 @@ def tune(
 class Advice:
     """What a signal is like, and which scheme suits it. Printed, it is a page to read."""
 
-    def __init__(self, told: tuple, sample: str):
+    def __init__(self, told: tuple[Any, ...], sample: str):
         page, figures, best = told
         #: What a person reads.
         self.page = page
         #: All of it: the look at the signal, the schemes that come near enough, and why others do not.
-        self.figures = json.loads(figures)
+        self.figures: dict[str, Any] = json.loads(figures)
         #: The scheme advised: :class:`Tuned`, or ``None`` if there is none.
-        self.best = Tuned(best, sample) if best else None
+        self.best: Tuned | None = Tuned(best, sample) if best else None
 
     def __repr__(self) -> str:
         return self.page

@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,7 @@ from ._stream import Decoder, Encoder
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+Own = TypeVar("Own", bound="Scheme")
 
 #: What a parameter takes, by its kind.
 KINDS = {
@@ -37,7 +38,7 @@ class Scheme:
     """
 
     #: What the catalogue says of it.
-    _info: dict
+    _info: dict[str, Any]
 
     def __init__(self, sample: str = "f32", paper: bool = False, **parameters: Any):
         kinds = {own["name"]: own["kind"] for own in self._info["parameters"]}
@@ -93,7 +94,7 @@ class Scheme:
         """
         return self._coder.shape()[1]
 
-    def fit(self, x: ArrayLike, per_channel: bool = False, axis: int = -1) -> Scheme:
+    def fit(self: Own, x: ArrayLike, per_channel: bool = False, axis: int = -1) -> Own:
         """This scheme with the parameters that `x` tells: the one that flies.
 
         It is one for all channels, or with `per_channel` has a value for each. `axis` is the one of time.
@@ -120,7 +121,7 @@ class Scheme:
         return self._of(options, self._sample, {name: self._given[name] for name in kept if name in self._given})
 
     @classmethod
-    def _of(cls, options: dict, sample: str, given: dict | None = None) -> Scheme:
+    def _of(cls: type[Own], options: dict[str, Any], sample: str, given: dict[str, Any] | None = None) -> Own:
         """Of the catalogue's values; where a signal begins is no parameter of what flies, and a seed is the caller's."""
         named = {own["name"]: own for own in cls._info["parameters"]}
         own = {name: value for name, value in options.items() if named[name]["found"] != "the first sample"}
@@ -176,7 +177,7 @@ class Scheme:
         tell_cut(self._sample, x)
         return Spikes(self, fitted, flat, x.shape, shape, axis)
 
-    def decode(self, spikes: Spikes | ArrayLike, first: ArrayLike | None = None, axis: int = -1) -> NDArray:
+    def decode(self, spikes: Spikes | ArrayLike, first: ArrayLike | None = None, axis: int = -1) -> NDArray[Any]:
         """The values of `spikes`: of :class:`Spikes`, or of an array as their ``array`` is.
 
         An array does not say where a signal began. So a code of steps needs its `first` sample, one for each channel
@@ -234,7 +235,7 @@ class Scheme:
         told = ", ".join(f"{name}={value!r}" for name, value in given.items())
         return f"{type(self).__name__}({told})"
 
-    def _key(self) -> tuple:
+    def _key(self) -> tuple[Any, ...]:
         given = {name: id(own) if isinstance(own, np.random.Generator) else own for name, own in self._given.items()}
         given = [(name, tuple(own) if isinstance(own, list) else own) for name, own in _plain(given)]
         return self.name, self._sample, self._paper, tuple(sorted(given, key=lambda own: own[0]))

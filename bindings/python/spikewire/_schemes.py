@@ -62,8 +62,13 @@ paper:
     return type(info["type_name"], (Scheme,), body)
 
 
+class _ByName(dict):
+    def __missing__(self, name):
+        raise KeyError(f"there is no scheme {name!r}; there are {', '.join(self)}")
+
+
 #: The classes by their short names, in the order of the catalogue.
-schemes = {info["name"]: _class(info) for info in _native.schemes()}
+schemes = _ByName((info["name"], _class(info)) for info in _native.schemes())
 NAMES = [own.__name__ for own in schemes.values()]
 globals().update({own.__name__: own for own in schemes.values()})
 __all__ = NAMES

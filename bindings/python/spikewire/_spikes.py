@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.lib.mixins import NDArrayOperatorsMixin
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _native, _progress
 from ._arrays import cells, row
@@ -16,8 +17,15 @@ if TYPE_CHECKING:
     from ._scheme import Scheme
 
 
-class Spikes:
+class Spikes(NDArrayOperatorsMixin):
     """The spikes of an array of samples, and all that decoding needs.
+
+    They calculate and compare as ``array`` does, cell by cell, and what comes of it is an array of NumPy.
+
+    >>> import numpy as np, spikewire as sw
+    >>> spikes = sw.StepForward(threshold=0.4).encode([0.0, 1.0, 1.0, 0.0])
+    >>> int(np.count_nonzero(spikes == 1)), int(spikes.sum()), (2 * spikes).tolist()
+    (2, 1, [0, 2, 2, -2])
 
     ``array`` holds them: ``int8`` of the samples' shape, -1 for a spike down, 1 for one up and more where a code sends
     several spikes a sample. Codes of populations add an axis of neurons at the end, and those with sub-timesteps one of
@@ -25,7 +33,7 @@ class Spikes:
     """
 
     def __init__(
-        self, scheme: Scheme, fitted: Any, flat: NDArray[np.int8], shape: tuple, cell_shape: tuple, axis: int = -1
+        self, scheme: Scheme, fitted: Any, flat: NDArray[np.int8], shape: tuple[Any, ...], cell_shape: tuple[Any, ...], axis: int = -1
     ):
         self._scheme, self._fitted, self._shape = scheme, fitted, cell_shape
         self._axes, self._axis = len(shape), axis % len(shape)
@@ -72,7 +80,7 @@ class Spikes:
     @property
     def count(self) -> int:
         """How many spikes there are in all."""
-        return int(np.abs(self.array.astype(np.int64)).sum())
+        return int(np.abs(self.array).view(np.uint8).sum(dtype=np.int64))
 
     @property
     def samples(self) -> int:
@@ -84,7 +92,7 @@ class Spikes:
         """Percent of the samples without a spike, where each has one at most."""
         return (1 - self.count / max(self.samples, 1)) * 100
 
-    def decode(self, progress: bool | Callable[[int, int], object] | None = None) -> NDArray:
+    def decode(self, progress: bool | Callable[[int, int], object] | None = None) -> NDArray[Any]:
         """What a decoder makes of them: ``float32`` of ``f32``, ``int16`` of ``i16``, else ``float64``."""
         flat, outer = self._flat()
         channels = int(np.prod(outer[:-1]))
@@ -96,7 +104,7 @@ class Spikes:
                 values = self._fitted.decode(flat, channels, tell).reshape(outer)
         return np.moveaxis(values, -1, self._axis)
 
-    def events(self, period: float = 1, times: ArrayLike | None = None) -> NDArray:
+    def events(self, period: float = 1, times: ArrayLike | None = None) -> NDArray[Any]:
         """The spikes as a structured array, in the order of time; see :data:`~spikewire.EVENTS`.
 
         A sample lasts `period` µs, or `times` has each sample's time in µs. Channels count their neurons on: the
@@ -146,11 +154,55 @@ class Spikes:
         parts = self._fitted.parts() if self._fitted else None
         return _again, (self._scheme, parts, flat, outer, self._shape, self._axis)
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray:
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         if copy is False and dtype not in (None, self.array.dtype):
             raise ValueError(f"spikes are {self.array.dtype}; {dtype} needs a copy")
         array = self.array if dtype is None else self.array.astype(dtype, copy=False)
         return array.copy() if copy else array
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **keywords: Any) -> Any:
+        if any(isinstance(own, Spikes) for own in keywords.get("out", ())):
+            raise TypeError("spikes are not written to; their array is")
+        arrays = (own.array if isinstance(own, Spikes) else own for own in inputs)
+        return getattr(ufunc, method)(*arrays, **keywords)
+
+    def __dlpack__(self, **keywords: Any) -> Any:
+        return self.array.__dlpack__(**keywords)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return self.array.__dlpack_device__()
+
+    @property
+    def ndim(self) -> int:
+        """How many axes ``array`` has."""
+        return self.array.ndim
+
+    @property
+    def size(self) -> int:
+        """How many cells ``array`` has."""
+        return self.array.size
+
+    @property
+    def dtype(self) -> np.dtype[np.int8]:
+        """``int8``."""
+        return self.array.dtype
+
+    @property
+    def T(self) -> NDArray[np.int8]:
+        """``array`` with its axes in reverse order."""
+        return self.array.T
+
+    def astype(self, dtype: DTypeLike, **keywords: Any) -> NDArray[Any]:
+        """``array`` in another type, as ``numpy.ndarray.astype``."""
+        return self.array.astype(dtype, **keywords)
+
+    def sum(self, axis: int | tuple[int, ...] | None = None, **keywords: Any) -> Any:
+        """The sum of the cells, up less down, as ``numpy.ndarray.sum``; :attr:`count` counts both."""
+        return self.array.sum(axis, **keywords)
+
+    def mean(self, axis: int | tuple[int, ...] | None = None, **keywords: Any) -> Any:
+        """The mean of the cells, as ``numpy.ndarray.mean``."""
+        return self.array.mean(axis, **keywords)
 
     def __len__(self) -> int:
         return len(self.array)

@@ -65,7 +65,7 @@ class Encoder:
     def __reduce__(self) -> Any:
         return type(self), (self._scheme, self._channels), self._native.state()
 
-    def __setstate__(self, state: tuple) -> None:
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
         self._native.set_state(state)
 
 
@@ -95,7 +95,7 @@ class Decoder:
             tell_cut(scheme.sample, np.array(firsts))
         self._shape = scheme._coder.shape()
 
-    def decode(self, codes: ArrayLike) -> NDArray:
+    def decode(self, codes: ArrayLike) -> NDArray[Any]:
         """The values of the next codes, an array as :meth:`Encoder.encode` returns it.
 
         A code that no encoder sends is an error, and none of the rows is taken.
@@ -112,5 +112,5 @@ class Decoder:
         # Where the decoder began does not matter to one that goes on.
         return type(self), (self._scheme, 0.0, self._channels), self._native.state()
 
-    def __setstate__(self, state: tuple) -> None:
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
         self._native.set_state(state)

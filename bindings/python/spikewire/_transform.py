@@ -25,7 +25,9 @@ class ToSpikes:
     """
 
     def __init__(self, scheme: Scheme, axis: int = -1, dtype: Any = np.int8):
-        self.scheme, self.axis, self.dtype = scheme, axis, np.dtype(dtype)
+        self.scheme: Scheme = scheme
+        self.axis: int = axis
+        self.dtype: np.dtype[Any] = np.dtype(dtype)
 
     def __call__(self, x: Any) -> Any:
         is_tensor = type(x).__module__.partition(".")[0] == "torch"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -64,7 +64,7 @@ class Strict:
         self.scheme, self.channels, self.inner = scheme, channels, inner
         self.first = None if first is None else np.broadcast_to(np.ravel(first), (channels,))
 
-    def decode(self, rows: NDArray, first: ArrayLike | None = None) -> NDArray[np.float64]:
+    def decode(self, rows: NDArray[Any], first: ArrayLike | None = None) -> NDArray[np.float64]:
         """The values (channels, rows) of the same rows (rows, cells) in each channel."""
         decoder = self.scheme.decoder(self.first if first is None else first, self.channels)
         codes = np.broadcast_to(rows.astype(np.int8), (self.channels, *rows.shape))
@@ -72,7 +72,7 @@ class Strict:
         return values.astype(np.float64)
 
 
-def mean(strict: Strict, weights: NDArray) -> NDArray:
+def mean(strict: Strict, weights: NDArray[Any]) -> NDArray[Any]:
     if (weights < 0).any():
         raise ValueError(f"{strict.scheme.name} takes the mean by weights, which must be 0 or more")
     cells = weights.shape[2]
@@ -86,7 +86,7 @@ def mean(strict: Strict, weights: NDArray) -> NDArray:
     return np.where(last < 0, start, np.take_along_axis(means, np.maximum(last, 0), axis=1))
 
 
-def steps(strict: Strict, weights: NDArray) -> NDArray:
+def steps(strict: Strict, weights: NDArray[Any]) -> NDArray[Any]:
     silent = np.zeros((2, weights.shape[2]))
     up = silent.copy()
     up[1, 0] = 1
@@ -100,7 +100,7 @@ def steps(strict: Strict, weights: NDArray) -> NDArray:
     return strict.decode(silent)[:, :1] + difference[:, 1:] * parts.cumsum(axis=1)
 
 
-def filtered(strict: Strict, weights: NDArray) -> NDArray:
+def filtered(strict: Strict, weights: NDArray[Any]) -> NDArray[Any]:
     length = weights.shape[1]
     silent = np.zeros((length, weights.shape[2]))
     impulse = silent.copy()
@@ -114,7 +114,7 @@ def filtered(strict: Strict, weights: NDArray) -> NDArray:
     return base
 
 
-def digits(strict: Strict, weights: NDArray) -> NDArray:
+def digits(strict: Strict, weights: NDArray[Any]) -> NDArray[Any]:
     cells = weights.shape[2]
     values = strict.decode(np.vstack([np.zeros(cells), np.eye(cells)]))
     return values[:, :1] + np.einsum("ctn,cn->ct", weights, values[:, 1:] - values[:, :1])

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{Lane, Samples};
+use crate::array::{self, Gathered, Lane, Samples};
 use crate::channel::{self, Bad};
 use crate::error::value;
 use crate::stream::{Decoder, Encoder};
@@ -124,38 +124,54 @@ impl Coder {
         self.scheme.info().name
     }
 
+    /// Whether what is not given follows from a channel's first samples alone, so that all channels have the rest in
+    /// common.
+    fn is_same_for_all(&self) -> Result<bool> {
+        let is_one = self.asked.channels(self.scheme.info())?.is_none();
+        Ok(is_one && self.scheme.needs_signal(&self.asked).is_none())
+    }
+
     fn fitted(&self, lanes: &[Lane], is_shared: bool) -> Result<Fitted> {
-        for (channel, lane) in lanes.iter().enumerate() {
-            if lane.len() == 0 {
-                bail!("channel {channel} has no samples");
-            }
-            if let Some(bad) = lane.bad(self.sample) {
-                return Err(told(channel, 0, &bad));
-            }
-        }
-        let groups: Vec<&[Lane]> =
-            if is_shared { vec![lanes] } else { lanes.iter().map(std::slice::from_ref).collect() };
-        let settle = |(place, group): (usize, &&[Lane])| {
+        let past = lanes.first().map_or(0, |lane| lane.len().min(self.looks_back()));
+        let first = |lane: &Lane| lane.part(0..past).to_vec();
+        let firsts = || match past {
+            1 => lanes.iter().filter_map(Lane::first).collect(),
+            _ => lanes.iter().flat_map(first).collect(),
+        };
+        let settle = |(place, group): (usize, &[Lane])| {
             let calibrated = self.scheme.needs_signal(&self.asked).map(|_| {
-                let mut calibrated = Calibrated::new(self.sample);
-                group.iter().for_each(|lane| calibrated.observe(&lane.to_vec()));
+                let mut calibrated = Calibrated::of(self.sample, &self.asked);
+                for lane in group {
+                    calibrated.observe(&lane.to_vec());
+                }
                 calibrated
             });
             let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
-            let first = lane.part(0..lane.len().min(self.looks_back())).to_vec();
-            let settled = self.channel(place, groups.len())?.settle(&first, calibrated.as_ref());
+            let channels = if is_shared { 1 } else { lanes.len() };
+            let settled = self.channel(place, channels)?.settle(&first(lane), calibrated.as_ref());
             if lanes.len() > 1 && !is_shared {
                 settled.with_context(|| format!("channel {place}"))
             } else {
                 settled
             }
         };
-        let channels = if is_wide(lanes.len(), lanes.iter().map(Lane::len).sum()) {
-            groups.par_iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?
+        let (scheme, sample, count) = (self.scheme, self.sample, lanes.len());
+        if is_shared {
+            let channels = vec![settle((0, lanes))?];
+            return Ok(Fitted::new(scheme, sample, channels, None, 1));
+        }
+        if count > 1 && self.is_same_for_all()? {
+            let channels = vec![settle((0, &lanes[..1]))?];
+            let is_given = self.asked.get("start").is_some() || !scheme.info().has_first_value();
+            let begins = (!is_given).then(|| Begins { past, samples: firsts() });
+            return Ok(Fitted::new(scheme, sample, channels, begins, count));
+        }
+        let channels: Vec<_> = if is_wide(count, lanes.iter().map(Lane::len).sum()) {
+            lanes.par_chunks(1).enumerate().map(settle).collect::<Result<_>>()?
         } else {
-            groups.iter().enumerate().map(settle).collect::<Result<Vec<_>>>()?
+            lanes.chunks(1).enumerate().map(settle).collect::<Result<_>>()?
         };
-        Ok(Fitted { scheme: self.scheme, sample: self.sample, channels })
+        Ok(Fitted::new(scheme, sample, channels, None, count))
     }
 }
 
@@ -193,7 +209,15 @@ impl Coder {
     fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
         let lanes = samples.lanes();
         let is_wide = is_wide(lanes.len(), lanes.iter().map(Lane::len).sum());
-        work::detached(py, is_wide, || self.fitted(&lanes, is_shared))?.map_err(value)
+        if let (Some(0), false) = (samples.shape().last(), lanes.is_empty()) {
+            return Err(value(anyhow!("channel 0 has no samples")));
+        }
+        let whole = samples.in_memory();
+        let fitted = || match array::bad(whole, &lanes, self.sample) {
+            Some((channel, bad)) => Err(told(channel, 0, &bad)),
+            None => self.fitted(&lanes, is_shared),
+        };
+        work::detached(py, is_wide, fitted)?.map_err(value)
     }
 
     /// It with draws that start from this seed.
@@ -243,24 +267,69 @@ impl Coder {
 pub(crate) struct Fitted {
     scheme: &'static dyn RunTime,
     sample: SampleType,
-    /// Those of one stand for all.
+    /// Those of one stand for all, but for the samples with which a channel begins.
     channels: Vec<Settings>,
+    begins: Option<Begins>,
+    /// Number of channels; 1 if the same settings serve any number.
+    count: usize,
+    /// Whether a codec of one channel can start anew as that of another: they have the same settings, and draw nothing.
+    serves_all: bool,
+}
+
+/// The first samples of each channel, from which its encoder starts.
+#[derive(Clone)]
+struct Begins {
+    /// Number of samples of a channel.
+    past: usize,
+    samples: Vec<f64>,
+}
+
+impl Begins {
+    fn of(&self, channel: usize) -> &[f64] {
+        self.samples.chunks(self.past.max(1)).nth(channel).unwrap_or_default()
+    }
 }
 
 impl Fitted {
-    fn settings(&self, channel: usize) -> Result<&Settings> {
+    fn new(
+        scheme: &'static dyn RunTime,
+        sample: SampleType,
+        channels: Vec<Settings>,
+        begins: Option<Begins>,
+        count: usize,
+    ) -> Self {
+        let serves_all = matches!(&*channels, [own] if own.get("seed").is_none());
+        Self { scheme, sample, channels, begins, count, serves_all }
+    }
+
+    fn common(&self, channel: usize) -> Result<&Settings> {
         let own = self.channels.get(channel).or(self.channels.first());
         own.ok_or_else(|| anyhow!("there is no channel"))
     }
 
+    fn settings(&self, channel: usize) -> Result<Settings> {
+        let common = self.common(channel)?;
+        let begins = self.begins.as_ref();
+        Ok(begins.map_or_else(|| common.clone(), |all| common.beginning(all.of(channel))))
+    }
+
     fn start(&self, channel: usize) -> Result<Codec> {
-        let settings = self.settings(channel)?.with_stream(channel as u64);
+        let mut settings = self.settings(channel)?;
+        settings.stream = channel as u64;
         Ok(self.scheme.codec_from(&settings, settings.first_value())?)
+    }
+
+    /// Starts a channel: anew on the codec of another one, if that can serve all.
+    fn start_on(&self, codec: Option<Codec>, channel: usize) -> Result<Codec> {
+        let Some(mut codec) = codec.filter(|_| self.serves_all) else { return self.start(channel) };
+        let common = &self.common(channel)?.first;
+        codec.restart(self.begins.as_ref().map_or(common, |all| all.of(channel)));
+        Ok(codec)
     }
 
     /// How many cells a row has.
     fn width(&self) -> Result<usize> {
-        let shape = self.scheme.shape(self.settings(0)?)?;
+        let shape = self.scheme.shape(self.common(0)?)?;
         Ok(shape.neurons * shape.slots)
     }
 }
@@ -283,6 +352,10 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
 
+/// So many channels are coded one after the other by one thread, and gathered from memory together: where channels are
+/// neighbours, the numbers of a moment lie in one line of the cache.
+const RUN: usize = 16;
+
 /// Returns whether so many channels of so many numbers in all are worth more threads than one.
 pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
     /// About what one thread does while another wakes up.
@@ -294,7 +367,7 @@ pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
 impl Fitted {
     /// How many neurons and sub-timesteps a channel has.
     fn shape(&self) -> PyResult<(usize, usize)> {
-        let shape = self.settings(0).and_then(|settings| Ok(self.scheme.shape(settings)?));
+        let shape = self.common(0).and_then(|settings| Ok(self.scheme.shape(settings)?));
         shape.map(|shape| (shape.neurons, shape.slots)).map_err(value)
     }
 
@@ -304,8 +377,9 @@ impl Fitted {
     }
 
     /// The parameters of each channel, as a file lists them.
-    fn parameters(&self) -> Vec<Vec<(&'static str, String)>> {
-        self.channels.iter().map(texts).collect()
+    fn parameters(&self) -> PyResult<Vec<Vec<(&'static str, String)>>> {
+        let texts = |channel| Ok(texts(&self.settings(channel)?));
+        (0..self.count).map(texts).collect::<Result<_>>().map_err(value)
     }
 
     /// The parameters of a channel as keywords that bring them about again.
@@ -329,16 +403,18 @@ impl Fitted {
         let mut access = output.readwrite();
         let cells = access.as_slice_mut()?;
         let is_wide = is_wide(lanes.len(), total * width);
+        let whole = samples.in_memory();
         let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {
-            let encode = |(place, (lane, room)): (usize, (&Lane, &mut [i8]))| {
-                self.encode_lane(place, *lane, room, width, meter)
+            let encode = |(run, (lanes, room)): (usize, (&[Lane], &mut [i8]))| {
+                let gathered = Gathered::new(lanes, whole, PIECE);
+                self.encode_run(run * RUN, lanes, &gathered, room, meter)
             };
-            let size = (length * width).max(1);
+            let size = (RUN * length * width).max(1);
             if is_wide {
                 let rooms = cells.par_chunks_mut(size);
-                lanes.par_iter().zip(rooms).enumerate().try_for_each(encode)
+                lanes.par_chunks(RUN).zip(rooms).enumerate().try_for_each(encode)
             } else {
-                lanes.iter().zip(cells.chunks_mut(size)).enumerate().try_for_each(encode)
+                lanes.chunks(RUN).zip(cells.chunks_mut(size)).enumerate().try_for_each(encode)
             }
         })?;
         done.map_err(value)?;
@@ -403,14 +479,15 @@ impl Fitted {
     }
 
     /// The scheme, the sample type, and each channel's parameters and first samples, from which it is made again.
-    fn parts(&self) -> (&'static str, String, Vec<Parts>) {
-        let parts = |settings: &Settings| {
-            let texts = texts(settings).into_iter();
+    fn parts(&self) -> PyResult<(&'static str, String, Vec<Parts>)> {
+        let parts = |channel| {
+            let settings = self.settings(channel)?;
+            let texts = texts(&settings).into_iter();
             let texts = texts.map(|(name, text)| (name.to_owned(), text)).collect();
-            (texts, settings.first.clone())
+            Ok((texts, settings.first))
         };
-        let channels = self.channels.iter().map(parts).collect();
-        (self.scheme.info().name, self.sample.to_string(), channels)
+        let channels = (0..self.count).map(parts).collect::<Result<_>>().map_err(value)?;
+        Ok((self.scheme.info().name, self.sample.to_string(), channels))
     }
 
     /// Made of what [`parts`](Self::parts) gives.
@@ -423,32 +500,47 @@ impl Fitted {
             settings.first = first;
             Ok(settings)
         };
-        let channels = channels.into_iter().map(settings).collect::<Result<_>>();
-        Ok(Self { scheme, sample, channels: channels.map_err(value)? })
+        let channels = channels.into_iter().map(settings).collect::<Result<Vec<_>>>();
+        let channels = channels.map_err(value)?;
+        let count = channels.len();
+        Ok(Self::new(scheme, sample, channels, None, count))
     }
 }
 
 impl Fitted {
-    fn encode_lane(
+    /// Encodes neighbouring channels, the first of which has the number `from`. The samples are good, as those that tell
+    /// the settings are.
+    fn encode_run(
         &self,
-        place: usize,
-        lane: Lane,
+        from: usize,
+        lanes: &[Lane],
+        gathered: &Gathered,
         room: &mut [i8],
-        width: usize,
         meter: &Meter,
     ) -> Result<()> {
-        let mut channel = self.start(place).with_context(|| format!("channel {place}"))?;
-        let mut made = 0;
-        for start in (0..lane.len()).step_by(PIECE) {
-            if meter.is_stopped() {
-                return Ok(());
+        let (width, length) = (self.width()?, lanes.first().map_or(0, Lane::len));
+        let mut kept = None;
+        for (place, room) in room.chunks_mut((length * width).max(1)).enumerate() {
+            let lane = &lanes[place];
+            let copied = gathered.lane(place, length).or(lane.in_memory());
+            let place = from + place;
+            let named = || format!("channel {place}");
+            let started = self.start_on(kept.take(), place).with_context(named)?;
+            let codec = kept.insert(started);
+            let mut made = 0;
+            for start in (0..length).step_by(PIECE) {
+                if meter.is_stopped() {
+                    return Ok(());
+                }
+                let (part, cells) = (start..length.min(start + PIECE), &mut room[made * width..]);
+                made += match copied {
+                    Some(samples) => codec.encode_cells(samples.part(part), cells),
+                    None => lane.part(part).encode(codec, cells),
+                };
             }
-            let part = lane.part(start..lane.len().min(start + PIECE));
-            let coded = channel::encode(&mut channel, self.sample, part, &mut room[made * width..]);
-            made += coded.map_err(|bad| told(place, start, &bad))?;
-            meter.add(part.len());
+            codec.finish_cells(&mut room[made * width..]);
         }
-        channel.finish_cells(&mut room[made * width..]);
+        meter.add(lanes.len() * length);
         Ok(())
     }
 }

@@ -50,6 +50,25 @@ def test_channels_are_coded_each_by_itself(scheme, sample, x):
 
 
 @pytest.mark.parametrize("scheme, sample", cases())
+def test_many_channels_with_the_same_parameters(scheme, sample, x):
+    """Codecs are started anew from channel to channel, and channels that lie side by side are copied together."""
+    own, _ = of(scheme, sample, x)
+    own = own.fit(x)
+    lanes = np.stack([np.roll(row, 7 * place)[:60] for place in range(20) for row in x]).reshape(4, 10, 60)
+    both = own.encode(lanes)
+    beside = own.encode(np.ascontiguousarray(np.moveaxis(lanes, -1, 0)), axis=0)
+    assert np.array_equal(np.moveaxis(beside.array, 0, 2), both.array)
+    again, values = pickle.loads(pickle.dumps(both)), both.decode()
+    assert again.parameters == both.parameters and np.array_equal(again.decode(), values)
+    for channel in range(1 if "seed" in own.parameters else 40):
+        place = divmod(channel, 10)
+        alone = own.encode(lanes[place])
+        assert np.array_equal(alone.array, both.array[place])
+        assert np.array_equal(alone.decode(), values[place])
+        assert alone.parameters == [both.parameters[channel]]
+
+
+@pytest.mark.parametrize("scheme, sample", cases())
 def test_chunks_are_coded_as_the_whole(scheme, sample, x):
     own, _ = of(scheme, sample, x)
     own = own.fit(x)

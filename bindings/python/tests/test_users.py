@@ -359,3 +359,41 @@ def test_an_encoder_at_work_says_so():
     threads = [threading.Thread(target=work) for _ in range(4)]
     [thread.start() for thread in threads], [thread.join() for thread in threads]
     assert told and all("this encoder is at work in another thread" in words for words in told)
+
+
+# Arrays.
+
+
+def test_spikes_are_an_array(x):
+    spikes = sw.SendOnDelta(threshold=0.05, spikes=4).encode(x)
+    array = spikes.array
+    assert np.count_nonzero(spikes == 1) == np.count_nonzero(array == 1) > 0
+    for own, same in [
+        (spikes != 0, array != 0),
+        (spikes > array, array > array),
+        (spikes * 2 - spikes, array),
+        (abs(spikes), abs(array)),
+        (np.add.reduce(spikes, axis=1), array.sum(1)),
+        (spikes.sum(), array.sum()),
+        (spikes.sum(axis=0), array.sum(0)),
+        (np.mean(spikes, axis=0), array.mean(0)),
+        (spikes.T, array.T),
+        (spikes.astype(np.float32), array.astype(np.float32)),
+        (np.from_dlpack(spikes), array),
+    ]:
+        assert np.array_equal(own, same) and type(own) is type(same)
+    assert all(getattr(spikes, name) == getattr(array, name) for name in ["ndim", "size", "dtype", "shape"])
+    total = np.zeros(array.shape)
+    np.add(total, spikes, out=total)
+    assert np.array_equal(total, array)
+    with pytest.raises(TypeError, match="spikes are not written to"):
+        np.add(total, 1, out=spikes)
+    assert spikes.count == np.abs(array.astype(int)).sum()
+
+
+def test_words_for_a_wrong_scheme_or_axis(x):
+    with pytest.raises(KeyError, match="there is no scheme 'x'; there are tbr, "):
+        sw.schemes["x"]
+    with pytest.raises(ValueError, match="axis is that of time, one of 2, and not None"):
+        sw.StepForward(threshold=0.1).encode(x, axis=None)
+    assert "x" not in sw.schemes and sw.schemes.get("x") is None

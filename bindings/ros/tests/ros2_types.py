@@ -10,10 +10,6 @@ class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
     sec: types.int32 = 0
     nanosec: types.uint32 = 0
 
-    @property
-    def nanoseconds(self) -> int:
-        return self.sec * 10**9 + self.nanosec
-
 
 @dataclass
 class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):

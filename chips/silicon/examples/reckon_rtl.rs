@@ -1,9 +1,10 @@
 //! Compares the model of `ReckOn` with the chip's register-transfer code, clock cycle by clock cycle. Usage:
 //! `reckon_rtl SIMULATION [CLOCKS [SEED]]`.
 //!
-//! SIMULATION is the program that Verilator makes of the register-transfer code, driven by `rtl/reckon.cpp`. Model and
-//! simulation get the same random programs, networks, samples and faults. Their pins and registers must be equal after
-//! each clock cycle and each edge of a pin, and their memories after each session.
+//! SIMULATION is a program that simulates the register-transfer code: Verilator builds it from this code and from
+//! `rtl/reckon.cpp`. The model and the simulation get the same random sessions. A session sets registers, loads a
+//! network and runs samples, with faults in between. The pins and registers of the two must be equal after each clock
+//! cycle and each edge of a pin. The memories of the two must be equal after each session.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
@@ -138,7 +139,7 @@ impl Both {
         self.spi(register, &[value], 1, false);
     }
 
-    /// Writes registers, some with values that networks use, some with values that no network should have.
+    /// Writes random values to the registers: some that networks use, and some that no network should have.
     fn configure(&mut self) {
         let inputs = [1, 7, 15, 23, 40][self.below(5) as usize] + self.below(2);
         let neurons = [1, 3, 15, 17, 31][self.below(5) as usize] + u32::from(self.one_in(4));

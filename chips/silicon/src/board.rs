@@ -14,7 +14,7 @@ use spikewire_chips::AerPort;
 
 use super::chip::{Chip, Kind};
 
-/// The model of a chip that a board can carry: its clock, and the pins of its SPI.
+/// A model of a chip for a simulated board: runs the chip's clock, and drives and reads the chip's SPI pins.
 pub trait Model: Default {
     /// Runs the chip for `clocks` clock cycles.
     fn run(&mut self, clocks: u32);
@@ -47,7 +47,7 @@ pub enum CallFault {
     After,
 }
 
-/// The chip, the state of its wires, and the faults that are planned.
+/// The chip, its clock settings, and the planned faults of its wires.
 #[derive(Debug)]
 pub struct Pins<C> {
     /// The model of the chip.
@@ -56,16 +56,16 @@ pub struct Pins<C> {
     pub ratio: u32,
     /// Number of the chip's clock cycles that one call of the port takes.
     pub call_clocks: u32,
-    /// Extra clock cycles of the chip between the read of an output and its ACK; each output takes the next entry, or 0
-    /// at the end.
+    /// Extra clock cycles of the chip between the read of an output and the ACK for it. Each output takes the next
+    /// entry, or 0 if no entry is left.
     pub output_delays: VecDeque<u32>,
     /// Number of SPI clock cycles so far.
     pub spi_clocks: u64,
-    /// Planned faults of SPI clock pulses, each with the number of its pulse, in ascending order.
+    /// Planned faults of SPI clock pulses, each with the number of the pulse, in ascending order.
     pub clock_faults: VecDeque<(u64, ClockFault)>,
     /// Number of calls of the port so far.
     pub calls: u64,
-    /// Planned faults of calls of the port, each with the number of its call, in ascending order.
+    /// Planned faults of port calls, each with the number of its call, in ascending order.
     pub call_faults: VecDeque<(u64, CallFault)>,
     /// Whether the chip's pin `SCHED_FULL` is wired to the microcontroller.
     pub has_full_pin: bool,
@@ -110,7 +110,7 @@ impl<C: Model> Board<C> {
         Spi(self.clone())
     }
 
-    /// Returns a port that drives the chip's other pins.
+    /// Returns a port that drives the chip's pins other than SPI.
     pub fn port(&self) -> Port<C> {
         Port(self.clone())
     }
@@ -183,7 +183,7 @@ fn transact(
     Ok(())
 }
 
-/// Removes and returns the first fault if it is planned for `now`.
+/// Removes and returns the first planned fault if it is planned for `now`, the number of a clock pulse or of a call.
 fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
     let &(at, fault) = faults.front()?;
     (at == now).then(|| {
@@ -197,8 +197,8 @@ fn due<T: Copy>(faults: &mut VecDeque<(u64, T)>, now: u64) -> Option<T> {
 pub struct Port<C>(Board<C>);
 
 impl<C: Model> Port<C> {
-    /// Runs the chip for the clock cycles of a call, then acts on the pins. If the call has a fault, returns the number
-    /// of the call as the error.
+    /// Runs the chip for the clock cycles of a call, then applies `act` to the pins. If the call has a fault, returns
+    /// the number of the call as the error.
     pub(crate) fn call<T>(&mut self, act: impl FnOnce(&mut Pins<C>) -> T) -> Result<T, u64> {
         let mut pins = self.0.pins();
         let call = pins.calls;

@@ -16,7 +16,7 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     const NEURON_BYTES: u16;
     /// Number of spikes and virtual events that the queue holds.
     const QUEUE: usize;
-    /// Whether a spike stays in the queue after it was applied to all neurons, until the output bus is free.
+    /// Whether a spike that was applied to all neurons stays in the queue until the output bus is free.
     const POPS_AFTER_OUTPUT: bool;
     /// Whether the gate shuts only when the controller is idle.
     const GATE_WAITS: bool;
@@ -30,12 +30,13 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     /// Returns the bits of a neuron after an event, and whether the neuron fires. Ignores the bit that disables the
     /// neuron.
     fn update(neuron: u128, drive: Drive, registers: &Registers) -> (u128, bool);
-    /// Returns whether the neuron's disabling bit is set, so that it never fires.
+    /// Returns whether the neuron's disabling bit is set, so that the neuron never fires.
     fn is_disabled(neuron: u128) -> bool;
-    /// Returns whether a bistability event may change this synapse.
+    /// Returns whether a bistability event, which moves a weight by 1 towards 0 or 7, may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Returns whether a spike from the queue goes to the output bus while the chip applies the spike to `neuron`. Only
-    /// for registers with which the output bus carries the spikes of the queue.
+    /// Returns whether the chip puts a spike from the queue on the output bus while it applies the spike to `neuron`.
+    /// Called only if the output bus carries the spikes from the queue, and
+    /// [`POPS_AFTER_OUTPUT`](Self::POPS_AFTER_OUTPUT) is false.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 
@@ -48,18 +49,21 @@ pub enum Input {
     Bistability(Option<u8>),
     /// A spike on one synapse: the presynaptic and the postsynaptic neuron.
     Synapse(u8, u8),
-    /// An event that goes to the queue: the bits of a virtual event, or 0 for a spike; then the neuron.
+    /// An event that goes to the queue. For a virtual event the first value is its
+    /// [`virtual_bits`](Drive::virtual_bits); for a spike it is 0. The second value is the neuron.
     Queued(u8, u8),
 }
 
 /// The event that acts on a neuron, as the signals that the controller gives to the neuron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Drive {
-    /// Whether an event acts on the neuron. False if the neuron is accessed over SPI.
+    /// Whether an event acts on the neuron. False if the neuron is only read or written over SPI.
     pub is_event: bool,
-    /// Whether the event is a time step of the controller.
+    /// Whether the event is a time step from the input word [`Leak`](Input::Leak). False for a virtual leak of ODIN,
+    /// which is a virtual event.
     pub is_leak: bool,
-    /// The bits of a virtual event; 0 for other events.
+    /// Bits of the input word of a virtual event: the weight for tinyODIN; the weight, the sign and whether the event
+    /// is a leak for ODIN. 0 for other events.
     pub virtual_bits: u8,
     /// The 4 bits of the synapse through which the event acts.
     pub synapse: u8,
@@ -125,7 +129,7 @@ struct Control {
     is_bistability: bool,
 }
 
-/// A tinyODIN or an ODIN, by its [`Kind`].
+/// The model of a tinyODIN or an ODIN; the type `K` selects which of the two.
 #[derive(Clone, Debug)]
 pub struct Chip<K> {
     /// Level of the reset pin RST.
@@ -247,7 +251,8 @@ impl<K: Kind> Chip<K> {
         self.queue.len()
     }
 
-    /// Returns whether the gate is shut as the controller sees it, after synchronisation.
+    /// Returns whether the chip is gated. After a write to register 0 this changes only some clock cycles later, when
+    /// the new value has passed the synchroniser to the chip's clock.
     pub fn is_gated(&self) -> bool {
         self.clocked.gate[1]
     }
@@ -290,8 +295,8 @@ impl<K: Kind> Chip<K> {
         self.word = word;
     }
 
-    /// Runs the chip for `clocks` clock cycles. Stops early if no further clock cycle can change anything; the skipped
-    /// cycles are not counted.
+    /// Runs the chip for `clocks` clock cycles. Skips the rest of them if no further clock cycle can change anything;
+    /// [`clocks`](Self::clocks) counts the skipped cycles, too.
     pub fn run(&mut self, clocks: u32) {
         self.clocks += u64::from(clocks);
         for _ in 0..clocks {
@@ -531,7 +536,7 @@ impl<K: Kind> Chip<K> {
         }
     }
 
-    /// Reads or writes the memory of neurons; returns the number of the neuron that fires, if it fires.
+    /// Reads or writes the memory of neurons; returns the number of the neuron if the neuron fires.
     fn neuron_memory(
         &mut self,
         control: &Control,

@@ -1,12 +1,13 @@
-//! Models of the chips tinyODIN, ODIN and [`ReckOn`], exact to the clock cycle. They were written from the chips'
-//! public register-transfer code; nothing is copied from it.
+//! Models of the chips tinyODIN, ODIN and [`ReckOn`], exact to the clock cycle. The models were written from the chips'
+//! public register-transfer code; none of that code is copied.
 //!
 //! `ReckOn` has a module of its own, [`reckon`]. The models of tinyODIN and ODIN share their [SPI slave](spi), [output
 //! bus](output), [pins](board) and [controller](chip), and differ in their [`Kind`]: [`TinyOdin`] or [`Odin`].
 //!
-//! Exact to the clock cycle are the synchronisers, the controller, the scheduler's queue, the order of a sweep, the
-//! neurons, the gate and the write-back over SPI. Not modelled are ODIN's learning (`ca_en` is taken as 0), its
-//! Izhikevich neurons, its bursts, and the monitoring on the output bus.
+//! In the models of tinyODIN and ODIN, these parts are exact to the clock cycle: the synchronisers, the controller, the
+//! scheduler's queue, the order in which a spike visits the neurons, the neurons, the gate, and writes over SPI. ODIN's
+//! learning, Izhikevich neurons, bursts and monitoring on the output bus are not modelled. (The model assumes that
+//! `ca_en`, the bit of a neuron that turns learning on, is 0.)
 
 #![no_std]
 #![allow(

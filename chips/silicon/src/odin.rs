@@ -3,8 +3,9 @@
 
 use super::chip::{Drive, Input, Kind, Registers};
 
-/// The properties of ODIN. Its registers are: 0 gate, 1 open loop, 2 to 17 signs of neurons, 19 source of outputs, 21
-/// monitored neuron, 23 whether unmapped synapses learn, 24 whether unmapped synapses act.
+/// The properties of ODIN. Its registers: 0 gates the chip; 1 opens the loop; 2 to 17 hold the signs of neurons; 19
+/// selects the source of outputs; 21 is the monitored neuron; 23 lets synapses without the mapping bit learn; 24 lets
+/// these synapses act.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Odin;
 

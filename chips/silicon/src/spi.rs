@@ -13,7 +13,7 @@ pub struct SpiSlave {
     pub is_writing: bool,
     /// Address of the last access to a memory.
     pub memory_address: u16,
-    /// Number of the memory: 1 neurons, 2 synapses.
+    /// Memory of the last access: 1 for neurons, 2 for synapses.
     pub memory: u8,
     /// For a write: the byte in bits 0 to 7, and in bits 8 to 15 the mask of the bits that keep their value.
     pub data: u16,
@@ -22,7 +22,7 @@ pub struct SpiSlave {
 /// A complete write to a configuration register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Number of the register.
+    /// Number of the register to write.
     pub register: u16,
     /// Value to write: the last 20 bits of the frame.
     pub value: u32,

@@ -2,7 +2,8 @@
 
 use super::chip::{Drive, Input, Kind, Registers};
 
-/// The properties of tinyODIN. Its registers are: 0 gate, 1 open loop, 2 source of outputs, 3 highest neuron in use.
+/// The properties of tinyODIN. Its registers: 0 gates the chip; 1 opens the loop; 2 selects the source of outputs; 3 is
+/// the highest neuron in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TinyOdin;
 
@@ -70,7 +71,7 @@ fn leaked(potential: u16, leak: u16) -> u16 {
     }
 }
 
-/// Adds a signed 4-bit weight to a potential, saturating at 12 bits.
+/// Adds a signed 4-bit weight to a signed 12-bit potential. The sum saturates at -2048 and 2047.
 fn driven(potential: u16, weight: u8) -> u16 {
     let signed = i32::from((potential << 4) as i16 >> 4);
     let weight = i32::from((weight << 4) as i8 >> 4);

@@ -5,18 +5,19 @@ use core::num::NonZeroU32;
 use super::AerPort;
 use spikewire::Event;
 
-/// The phase that a handshake has reached, or the phase in which it timed out.
+/// A phase of the 4-phase handshake of an input word. In an error it is the phase in which the chip did not answer in
+/// time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
-    /// ACK is still high from the previous word, or the handshake of the previous word has not ended. The new word was
-    /// not sent.
+    /// The handshake of the new word has not begun: ACK is still high from the previous word, or the previous word's
+    /// handshake has not ended. The new word was not sent.
     Idle,
-    /// ACK did not rise after REQ rose. The word is pending: it stays on the bus, with REQ high, until the chip takes
-    /// it or is reset.
+    /// REQ rose, and ACK has not risen yet. The word is pending: it stays on the bus, with REQ high, until the chip
+    /// takes it or is reset.
     Acknowledge,
-    /// ACK did not fall after REQ fell. The chip has taken the word.
+    /// REQ fell, and ACK has not fallen yet. The chip has taken the word.
     Release,
 }
 
@@ -38,7 +39,7 @@ impl<E> From<E> for AerError<E> {
 pub(super) enum Carries {
     /// A word from [`Running::send`](super::Running::send).
     Word,
-    /// A probe: a word that the chip acknowledges only if it runs.
+    /// A probe: a word that the chip acknowledges only if the chip runs.
     Probe,
     /// A leak event, which is a time step.
     Step,
@@ -46,8 +47,8 @@ pub(super) enum Carries {
     Event(Event),
 }
 
-/// State of the ACK on the output bus, which the driver controls. After a port call that failed, the level of the pin
-/// is unknown.
+/// State of the output bus's ACK. The driver controls this pin; after a port call that failed, the level of the pin is
+/// unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     /// ACK is low; the next REQ announces a new output.
@@ -62,12 +63,13 @@ enum Answer {
 
 /// The microcontroller's side of the input bus and the output bus.
 ///
-/// The chip reads the word on its input bus for as long as it works on that word. Then the chip acknowledges whichever
-/// REQ it finds. Therefore a word stays on the bus until the chip acknowledges it, even if that takes several calls.
+/// The chip reads the word on its input bus for as long as it works on that word. When it is done and REQ is high, it
+/// raises ACK, even if the word on the bus was replaced meanwhile. Therefore the driver leaves a word on the bus until
+/// the chip acknowledges it, even if that takes several calls.
 #[derive(Debug)]
 pub(super) struct Aer<P> {
     pub(super) port: P,
-    /// Number of pin reads before a wait times out, if each read takes at least one clock cycle of the chip.
+    /// Number of pin reads before a wait times out, not yet multiplied by `reads_per_clock`.
     polls: u32,
     /// Number of pin reads that fit into one clock cycle of the chip.
     reads_per_clock: NonZeroU32,
@@ -112,8 +114,8 @@ impl<P: AerPort> Aer<P> {
     /// the chip takes the pending word at this moment: the chip then waits for REQ to fall, and the reset drops the
     /// word before the word has an effect.
     ///
-    /// Returns the origin of the pending word if there is one and the driver saw no ACK for it. Also returns whether an
-    /// output was lost.
+    /// Returns the origin of the word that the reset drops; `None` if no word was pending, or if the driver has seen an
+    /// ACK for the word. Also returns whether an output was lost.
     pub(super) fn reset(&mut self) -> Result<(Option<Carries>, bool), P::Error> {
         if self.phase == Phase::Acknowledge && matches!(self.port.input_acknowledge(), Ok(true)) {
             self.phase = Phase::Release;
@@ -128,7 +130,7 @@ impl<P: AerPort> Aer<P> {
         Ok((is_under_way.then_some(self.carries), is_output_lost))
     }
 
-    /// Advances the handshakes of both buses as far as a few pin reads allow.
+    /// Advances the handshakes of both buses with a few pin reads, and does not wait for the chip.
     pub(super) fn poll(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         // The first call raises ACK, the second lowers it.
         for _ in 0..2 {

@@ -17,10 +17,10 @@ const VIRTUAL: u8 = 2;
 pub enum FormatError {
     /// The bytes do not begin with `SWN1`.
     Magic,
-    /// The bytes contain a network for a different chip than the driver's.
+    /// The bytes contain a network for a different chip, or a flag that this version does not know.
     Chip,
-    /// The network has no neurons, or more than 256 neurons, inputs or rows of synapses. A network for `ReckOn` may
-    /// also have no inputs, no outputs, or more than 16 outputs.
+    /// The network has no neurons, or more than 256 neurons, inputs or rows of synapses. For a network for `ReckOn`,
+    /// this error can also mean that it has no inputs, no outputs, or more than 16 outputs.
     Size,
     /// The bytes or the buffer have the wrong length.
     Length {
@@ -29,7 +29,8 @@ pub enum FormatError {
         /// Length of the bytes or the buffer given.
         given: usize,
     },
-    /// A neuron or a weight is out of its range. Or an output is not a neuron of the network, or occurs twice.
+    /// A value of a neuron or a weight is out of its range, an output is not a neuron of the network, or two outputs
+    /// are the same neuron.
     Value,
 }
 
@@ -49,7 +50,7 @@ impl fmt::Display for FormatError {
 
 impl core::error::Error for FormatError {}
 
-/// A network as bytes, for programs that know the network only at run time. It takes about half the memory of a
+/// A network as bytes, for programs that know the network only at run time. The bytes take about half the memory of a
 /// [`Network`](super::Network).
 ///
 /// | bytes | content |
@@ -229,7 +230,7 @@ fn outputs_of<I: Input>(network: &impl Describe<I>) -> impl Iterator<Item = u8> 
     (0..256).map_while(neuron_of)
 }
 
-/// Packs two weights into each byte, the first in the low half.
+/// Packs two weights into each byte, the first in the low half, and passes each byte to `put`.
 fn pack<I: Input>(
     mut weights: impl Iterator<Item = i8>,
     put: &mut impl FnMut(u8),

@@ -1,6 +1,6 @@
 //! The counters of a chip's driver.
 
-/// The driver's counters of resets, and of time steps, events, words and outputs that were skipped, lost, late or sent
+/// The driver's counters: of resets, of what was lost, dropped or skipped, of late events, and of events that were sent
 /// again. Each counter saturates at its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -8,8 +8,9 @@
 pub struct Counters {
     /// Number of resets, including the first one.
     pub resets: u32,
-    /// Number of time steps that were never sent to the chip. If more than 255 time steps are due, a call skips the
-    /// oldest ones. A reset drops a time step that the chip has not acknowledged.
+    /// Number of time steps that the driver skipped or dropped. If more than 255 time steps are due at a call of
+    /// [`advance`](super::Running::advance) or [`feed`](super::Running::feed), the call skips the oldest ones. A reset
+    /// drops a time step that the chip has not acknowledged.
     pub skipped_steps: u32,
     /// Number of events that were fed after their time step was over.
     pub late_events: u32,
@@ -24,6 +25,6 @@ pub struct Counters {
     /// Number of outputs lost at resets: the chip had raised REQ for the output, but the driver had not read it yet.
     pub lost_outputs: u32,
     /// Number of times that the chip's queue was seen to become full; each time, any number of spikes between neurons
-    /// may be lost. Always 0 without the [pin](super::AerPort::queue_full).
+    /// may be lost. Always 0 if the pin [`SCHED_FULL`](super::AerPort::queue_full) is not wired.
     pub overflows: u32,
 }

@@ -10,8 +10,11 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Sends all events of `events` to the chip, and the time steps that pass between these events. Returns the number
     /// of events sent. Each event is sent as the input that `to_input` returns for it, for example by
     /// [`Describe::input_for`](super::Describe::input_for). If `to_input` returns `None`, the event is dropped and
-    /// [counted](super::Counters::unmapped_events). Keyframes and breaks are skipped. To feed from a queue, pass the
-    /// `waiting()` of its consumer: this source ends even if events arrive faster than the chip takes them.
+    /// [counted](super::Counters::unmapped_events). Items that are not events, such as keyframes, are skipped.
+    ///
+    /// To feed from a queue, pass the result of `waiting()` on the queue's consumer. This source contains only the
+    /// items that are in the queue at the time of that call. Therefore `feed` returns even if events arrive faster than
+    /// the chip takes them.
     ///
     /// The events' ticks must not decrease. An event whose time step is over is sent in the current time step, and
     /// counted as [late](super::Counters::late_events).

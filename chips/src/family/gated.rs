@@ -7,8 +7,8 @@ use super::wire::Address;
 use super::{AerPort, ChipError, Input, OdinChip, Outcome, Running, State};
 use crate::error::at_most;
 
-/// Time that the driver waits for the answer to a probe, in clock cycles of the chip; the time step of one neuron takes
-/// 10.
+/// Number of the chip's clock cycles for which the driver waits for the answer to a probe. A probe is a time step of
+/// one neuron, and takes 10 clock cycles.
 const PROBE_CLOCKS: u32 = 1_000;
 
 /// A gated chip: its memories can be accessed, and it takes no events. Its loop is open (spikes do not reach other
@@ -19,9 +19,9 @@ const PROBE_CLOCKS: u32 = 1_000;
 /// doubled, and also if a lost and a doubled pulse cancel out. After such an error all memory is in doubt: reset the
 /// chip, and write all of its memory again.
 ///
-/// **Time:** writing a neuron of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at 656 kHz; writing a neuron of ODIN takes
-/// 59 frames; writing a synapse takes 14 frames. For whole networks [`load`](Self::load) takes only 2 frames for each
-/// byte.
+/// **Time:** writing a neuron of tinyODIN takes 23 frames of 5 bytes, 1.4 ms at an SCK of 656 kHz; writing a neuron of
+/// ODIN takes 59 frames; writing a synapse takes 14 frames. For whole networks [`load`](Self::load) takes only 2 frames
+/// for each byte.
 #[derive(Debug)]
 pub struct Gated<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -34,20 +34,20 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
 
     /// Writes the registers and lets the chip run.
     ///
-    /// **Checks:** after each register the driver checks that chip and bus are in sync, so that a lost or doubled clock
-    /// pulse is an error. Two faults within the frame of a register and its check may cancel out and go unnoticed; they
-    /// may leave a wrong register or wrong potentials. Finally the driver sends a probe, a time step of one neuron;
-    /// only a chip whose gate is open answers. If that neuron leaks, the driver raises its potential by the leak
-    /// beforehand, so that the network is unchanged afterwards.
+    /// **Checks:** after each register the driver checks that chip and bus are in sync. It returns an error if a clock
+    /// pulse was lost or doubled. It does not notice two faults that cancel out within the frame of a register and its
+    /// check; such a pair may leave a wrong register or wrong potentials. Finally the driver sends a probe: a time step
+    /// of one neuron, which only a running chip acknowledges. If that neuron leaks, the driver first raises its
+    /// potential by the leak, so that the probe leaves the neuron as it was.
     ///
-    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at 656 kHz; 206 frames for ODIN. A probed neuron that leaks
-    /// from a potential other than 0 takes 17 more frames. Each neuron that cannot be probed takes 4 (tinyODIN) or 16
-    /// (ODIN) more frames.
+    /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at an SCK of 656 kHz; 206 frames for ODIN. If the probed
+    /// neuron leaks from a potential other than 0, the call takes 17 more frames. The driver passes over neurons that a
+    /// time step would harm; each of them takes 4 (tinyODIN) or 16 (ODIN) more frames.
     ///
     /// # Errors
-    /// Returns an error if a value is out of its range, or [`NoProbe`](ChipError::NoProbe); the chip is then still
-    /// gated. Also returns an error if the bus or the port failed, if the chip reads back a wrong value, or if it does
-    /// not answer; then reset the chip.
+    /// Returns an error if a value is out of its range. Returns [`NoProbe`](ChipError::NoProbe) if a time step would
+    /// harm every neuron. After these two errors the chip is still gated. Also returns an error if the bus or the port
+    /// failed, if memory reads back a wrong value, or if the chip does not answer; then reset the chip.
     pub fn run(self, registers: &I::Registers) -> Outcome<Running<'a, I, D, P>, D, P> {
         I::check_registers(registers)?;
         let chip = self.chip;
@@ -72,10 +72,11 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         self.chip.store(bytes.map(|(byte, value)| (Address::neuron(neuron, byte), 0, value)))
     }
 
-    /// Reads the parameters and the state of a neuron, and checks that chip and bus are in sync.
+    /// Reads the parameters and the state of a neuron. Checks that chip and bus are in sync: that no clock pulse was
+    /// lost or doubled.
     ///
     /// # Errors
-    /// Returns an error if the bus failed or is out of sync: then reset the chip.
+    /// Returns an error if the bus failed, or if chip and bus are out of sync: then reset the chip.
     pub fn neuron(&mut self, neuron: u8) -> Outcome<I::Neuron, D, P> {
         Ok(I::neuron(self.chip.fetch(bytes_of::<I>(neuron))?))
     }
@@ -91,10 +92,11 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         self.chip.store([(Address::synapse(pre, post), keep, value)].into_iter())
     }
 
-    /// Reads the synapse from `pre` to `post`, and checks that chip and bus are in sync.
+    /// Reads the synapse from `pre` to `post`. Checks that chip and bus are in sync: that no clock pulse was lost or
+    /// doubled.
     ///
     /// # Errors
-    /// Returns an error if the bus failed or is out of sync: then reset the chip.
+    /// Returns an error if the bus failed, or if chip and bus are out of sync: then reset the chip.
     pub fn synapse(&mut self, pre: u8, post: u8) -> Outcome<I::Synapse, D, P> {
         let [byte, ..] = self.chip.fetch([Address::synapse(pre, post)].into_iter())?;
         Ok(I::synapse(if post & 1 == 0 { byte & 0xF } else { byte >> 4 }))
@@ -110,11 +112,11 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         self.chip.store([(Address::neuron(neuron, byte), 0, value)].into_iter())
     }
 
-    /// Reads a byte of a neuron, and checks that chip and bus are in sync.
+    /// Reads a byte of a neuron. Checks that chip and bus are in sync: that no clock pulse was lost or doubled.
     ///
     /// # Errors
-    /// Returns an error if `byte` is not below [`Input::NEURON_BYTES`]. Also returns an error if the bus failed or is
-    /// out of sync: then reset the chip.
+    /// Returns an error if `byte` is not below [`Input::NEURON_BYTES`]. Also returns an error if the bus failed, or if
+    /// chip and bus are out of sync: then reset the chip.
     pub fn neuron_byte(&mut self, neuron: u8, byte: u8) -> Outcome<u8, D, P> {
         at_most("byte", byte.into(), u32::from(I::NEURON_BYTES) - 1)?;
         let [value, ..] = self.chip.fetch([Address::neuron(neuron, byte)].into_iter())?;
@@ -124,7 +126,7 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Checks that the chip is gated and in sync with the bus. [`run`](Self::run) makes the same check.
     ///
     /// # Errors
-    /// Returns an error if the bus failed, or if the chip reads back a wrong value: then reset the chip.
+    /// Returns an error if the bus failed, or if memory reads back a wrong value: then reset the chip.
     pub fn check_sync(&mut self) -> Outcome<(), D, P> {
         self.chip.check_sync()
     }

@@ -9,8 +9,8 @@ pub trait Input: Copy {
     /// The input that lets all neurons take a time step. The chip has no timer of its own, so the driver sends this
     /// input.
     const LEAK_ALL: Self;
-    /// The highest neuron that can be [probed](Self::probe). [`reset`](super::OdinChip::reset) disables this neuron if
-    /// it was never written.
+    /// The highest neuron that [`probe`](Self::probe) accepts. [`reset`](super::OdinChip::reset) disables this neuron
+    /// if it was never written.
     const PROBED: u8;
     /// Number of bytes in a neuron, 16 at most.
     const NEURON_BYTES: u8;
@@ -37,13 +37,13 @@ pub trait Input: Copy {
     /// A neuron that never fires.
     const DISABLED: Self::Neuron;
 
-    /// Returns the word that stands for this input on the bus.
+    /// Encodes this input as a word of the input bus.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range, or if a virtual event has weight 0.
     fn word<B, P>(self) -> Result<u32, ChipError<B, P>>;
 
-    /// Returns the input that is a spike on row `pre` of the synapses.
+    /// Returns the input that sends a spike through all synapses in row `pre`.
     fn spike(pre: u8) -> Self;
 
     /// Returns the input that lets one neuron take a time step; `neuron` is at most [`PROBED`](Self::PROBED). A running
@@ -62,8 +62,8 @@ pub trait Input: Copy {
     /// Decodes a neuron from the bytes of the chip's memory.
     fn neuron(bytes: [u8; 16]) -> Self::Neuron;
 
-    /// Returns the state that a time step turns into the state `neuron` without firing. Returns `None` if there is no
-    /// such state.
+    /// Returns the state from which one time step leads to the state `neuron` without firing. Returns `None` if there
+    /// is no such state.
     fn before_step(neuron: &Self::Neuron) -> Option<Self::Neuron>;
 
     /// Encodes a signed weight as the 4 bits of a synapse.
@@ -81,11 +81,13 @@ pub trait Input: Copy {
     /// Decodes a synapse from its 4 bits.
     fn synapse(bits: u8) -> Self::Synapse;
 
-    /// Whether all synapses of a presynaptic neuron have the same sign, which a register stores.
+    /// Whether all synapses of a presynaptic neuron must have the same sign, because the chip stores the sign in a
+    /// register and not in each synapse.
     const SIGNS_BY_ROW: bool;
 
-    /// Returns the registers for a network that uses the neurons from 0 to `last_neuron`. Bit `n % 16` of `inhibitory[n
-    /// / 16]` is 1 if neuron `n` inhibits.
+    /// Returns the registers for a network that uses the neurons from 0 to `last_neuron`. If `is_open_loop` is true,
+    /// the spikes of neurons do not reach other neurons. Bit `n % 16` of `inhibitory[n / 16]` is 1 if neuron `n` is
+    /// inhibitory.
     fn registers(last_neuron: u8, is_open_loop: bool, inhibitory: [u16; 16]) -> Self::Registers;
 
     /// Calls `write` with the number and the value of each register, except for the one that gates the chip.

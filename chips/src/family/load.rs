@@ -21,16 +21,16 @@ pub struct Progress {
 const NEURONS: u16 = 256;
 
 impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
-    /// Writes a network to the chip, disables all neurons that it does not use, and then reads everything back. Leaves
-    /// synapses onto the disabled neurons as they are. Calls `progress` after each neuron and each row.
+    /// Writes a network to the chip, disables all neurons that the network does not use, and then reads everything
+    /// back. Leaves synapses onto the disabled neurons as they are. Calls `progress` after each neuron and each row.
     ///
     /// **Time:** two frames of 5 bytes, a write and a read, for each byte of memory. A neuron takes 4 bytes (tinyODIN)
     /// or 16 bytes (ODIN), and two synapses take one byte. 256 neurons of tinyODIN with 256 rows take 67 584 frames,
-    /// 4.1 s at 656 kHz.
+    /// 4.1 s at an SCK of 656 kHz.
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
-    /// or if the chip reads back a wrong value; then reset the chip.
+    /// or if memory reads back a wrong value; then reset the chip.
     pub fn load(
         &mut self,
         network: &impl Describe<I>,
@@ -86,8 +86,9 @@ fn frames<I: Input>(network: &impl Describe<I>) -> u32 {
     neurons.wrapping_mul(bytes).wrapping_add(disabled).wrapping_add(synapses)
 }
 
-/// Calls `visit` for every byte of the chip's memories that the network uses. Its arguments are the byte's address, a
-/// mask of the bits that the network does not use, and a value with all other bits.
+/// Calls `visit` for every byte of the chip's memories that the network uses, and for the byte that disables each
+/// unused neuron. `visit` gets the byte's address, a mask of the bits that do not matter, and the value of the other
+/// bits.
 fn each_byte<I: Input, B, P>(
     network: &impl Describe<I>,
     mut visit: impl FnMut(Address, u8, u8) -> Result<(), ChipError<B, P>>,

@@ -41,31 +41,33 @@ pub use port::AerPort;
 pub use running::Running;
 pub use steps::{Steps, StepsLayer, StepsState};
 
-/// A chip of the ODIN family, on an SPI device and a port.
+/// The driver of a chip of the ODIN family, on an SPI device and a port (the chip's pins other than SPI).
 ///
 /// - **SPI:** mode 0, SCK at most a quarter of the chip's clock. The chip has no chip select. Therefore no other device
 ///   may share its SPI bus, and the chip-select pin of the SPI device stays unconnected.
-/// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip, whose memories can be accessed; [`Gated::run`] gives a
-///   [`Running`] chip, which takes events; [`Running::gate`] gives a [`Gated`] chip again. Each type has only the calls
-///   that are safe in its state. [`gated`](Self::gated) and [`running`](Self::running) give access to a chip that was
-///   left in that state.
+/// - **States:** [`reset`](Self::reset) gives a [`Gated`] chip: its activity is stopped, and its memories can be
+///   accessed. [`Gated::run`] gives a [`Running`] chip, which takes events; [`Running::gate`] gives a [`Gated`] chip
+///   again. Each type has only the calls that are safe in its state. [`gated`](Self::gated) and
+///   [`running`](Self::running) give access to a chip that was left in that state.
 /// - **Synchronisation:** a lost or doubled clock pulse puts chip and bus out of sync. Calls on a gated chip detect
 ///   such a fault; if the fault is in the last frame of a call, the next call detects it. If a lost and a doubled pulse
 ///   cancel out within one access to memory, calls detect this, too. If they cancel out within the frame of a register
 ///   and its check, this goes unnoticed, because registers cannot be read back. After an error of the bus, or a byte
 ///   that reads back differently, the driver refuses all calls until the next reset. All memory is then in doubt: load
 ///   it again.
-/// - **Waits:** the driver reads the pins a given number of times, then returns an error.
+/// - **Waits:** the driver waits for the chip by reading pins. The argument `polls` of [`new`](Self::new) limits the
+///   number of reads; after the last read, the driver returns an error.
 /// - **Pending words:** a word that the chip has not acknowledged when a wait ends stays pending. Every call that sends
 ///   a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
-/// - **Unsent events:** an event that could not be sent is kept, and is sent first at the next call, even after a
-///   reset.
+/// - **Unsent events:** the driver keeps an event that [`Running::feed`] could not send. The next call of `feed` sends
+///   this event first, even after a reset.
 /// - **Losses** are counted; see [`counters`](Self::counters).
 ///
 /// # What to know about the chips
-/// - In closed loop a leak overtakes the spikes that wait in the chip's queue; in open loop it does not.
-/// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the outputs are the inputs, not the neurons
-///   that fire.
+/// - In closed loop (the spikes of neurons reach other neurons) a leak overtakes the spikes that wait in the chip's
+///   queue. In open loop (the spikes go only to the output bus) a leak overtakes no spike.
+/// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the output bus carries the inputs, not the
+///   neurons that fire.
 /// - A neuron in use with threshold 0, as in memory that was never written, fires at every event and every leak.
 /// - An overflow of the queue is invisible unless [`AerPort::queue_full`] is wired.
 #[derive(Debug)]
@@ -102,8 +104,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// times.
     ///
     /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If polls are
-    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies their number. With fewer polls, words that
-    /// take long time out, and a later call must finish them.
+    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies the number of polls. With fewer polls,
+    /// the wait for a slow word times out, and a later call must finish the word.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -127,11 +129,11 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Sets the length of a time step in µs: [`Running::feed`] and [`Running::advance`] then send a leak event for
-    /// every `step` µs that pass. By default they send none.
+    /// Sets the length of a time step to `step` µs. [`Running::feed`] and [`Running::advance`] then send a leak event
+    /// for every `step` µs that pass. Without this setting they send no leak events.
     ///
-    /// Call [`Running::advance`] at least every 70 minutes. If a tick comes more than 70 minutes after the previous
-    /// one, the driver takes it for a late tick and sends no leak.
+    /// Call [`Running::advance`] at least every 70 minutes. The driver takes a tick (a time stamp) more than 70 minutes
+    /// after the previous tick for a late one, and then sends no leak event.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
@@ -139,8 +141,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
 
     /// Sets the number of pin reads that fit into one clock cycle of the chip. The default is 1; set more if the
     /// microcontroller is much faster than the chip. The driver multiplies the pin reads of every wait by this number.
-    /// If the number is too low, words time out, and [`Running::gate`] may gate a chip that is still working, whose
-    /// potentials are then wrong.
+    ///
+    /// If the number is too low, the driver stops waiting before the chip is done. Handshakes of words then time out,
+    /// and [`Running::gate`] may gate a chip that is still working. The neurons' potentials are then wrong.
     #[must_use]
     pub fn with_reads_per_clock(mut self, reads: NonZeroU32) -> Self {
         self.aer.set_reads_per_clock(reads);
@@ -155,7 +158,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// [`Running::feed`] that the chip has not acknowledged, the driver keeps the event and sends it again.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.
+    /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Gated<'_, I, D, P>, D, P> {
         self.state = State::NotReset;
         let (under_way, is_output_lost) = self.aer.reset().map_err(ChipError::Port)?;
@@ -173,7 +176,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Returns a chip that an earlier call left gated.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), or [`NotGated`](ChipError::NotGated) if the chip runs.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, or [`NotGated`](ChipError::NotGated)
+    /// if the chip runs.
     pub fn gated(&mut self) -> Outcome<Gated<'_, I, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

@@ -5,17 +5,17 @@ use crate::ChipError;
 use spikewire::{Code, Event, Polarity, Scheme, Tick};
 
 /// The neurons and weights of a network, as [constant data](Network) or as [bytes](super::NetworkBytes).
-/// [`Gated::load`](super::Gated::load) writes them to the chip.
+/// [`Gated::load`](super::Gated::load) writes the network to the chip.
 ///
 /// The network's neurons are the chip's neurons from 0 on. An input is either a row of synapses onto all neurons, or a
-/// virtual event for one neuron. In open loop the chip's rows of synapses from row 0 on belong to the inputs. In closed
-/// loop the first rows belong to the neurons, and the rows of the inputs follow.
+/// virtual event for one neuron. If the network is not recurrent, the inputs have the chip's rows of synapses from row
+/// 0 on. If it is recurrent, the neurons have the first rows, and the rows of the inputs follow.
 pub trait Describe<I: Input> {
     /// Returns the number of neurons, 1 to 256.
     fn neurons(&self) -> u16;
 
-    /// Returns the parameters of a neuron; those of a [disabled](Input::DISABLED) neuron if the network has no neuron
-    /// of this number.
+    /// Returns the parameters of a neuron. If the network has no neuron of this number, returns the parameters of a
+    /// [disabled](Input::DISABLED) neuron.
     fn neuron(&self, neuron: u8) -> I::Neuron;
 
     /// Returns the number of inputs.
@@ -25,7 +25,7 @@ pub trait Describe<I: Input> {
     /// synapses.
     fn virtual_input(&self, input: u16) -> Option<(u8, i8)>;
 
-    /// Returns the weight from an input that has a row of synapses to neuron `post`.
+    /// Returns the weight from input `input` to neuron `post`. Used only for an input that has a row of synapses.
     fn input_weight(&self, input: u16, post: u8) -> i8;
 
     /// Returns whether the spikes of neurons reach other neurons.
@@ -40,10 +40,10 @@ pub trait Describe<I: Input> {
     /// Returns the chip's input for an event that a bank of encoders of this scheme sends, or `None` if the network has
     /// no such input.
     ///
-    /// Neuron `n` of the encoders is input `n` of the network. A [signed](Code::IS_SIGNED) code, such as that of
-    /// step-forward, takes two inputs for each neuron: input `2 n` for [`Polarity::Up`], input `2 n + 1` for
-    /// [`Polarity::Down`]. Rate codes have the same type of spikes, but never send [`Polarity::Down`], so that their
-    /// odd inputs stay silent.
+    /// An event with address `n` goes to input `n` of the network. A [signed](Code::IS_SIGNED) code, such as that of
+    /// step-forward, takes two inputs for each address: input `2 n` for [`Polarity::Up`], input `2 n + 1` for
+    /// [`Polarity::Down`]. Rate codes are signed, too, but never send [`Polarity::Down`], so that their odd inputs stay
+    /// silent.
     ///
     /// ```
     /// use spikewire_chips::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
@@ -72,7 +72,7 @@ pub trait Describe<I: Input> {
         self.input(event.address.checked_mul(2)?.checked_add(falls)?)
     }
 
-    /// Returns what to send to the chip for input `input` of the network, or `None` if the network has no such input.
+    /// Returns the chip's input that acts as input `input` of the network, or `None` if the network has no such input.
     /// The number of an input is not the address of an event: see [`input_for`](Self::input_for).
     fn input(&self, input: u16) -> Option<I> {
         if input >= self.inputs() {
@@ -84,9 +84,9 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// Returns a callback that takes the neurons that fire, for [`Running::poll`](super::Running::poll) and the other
-    /// calls. It passes the neurons that are outputs to `sink`, as events at `tick` whose address is the number of the
-    /// output, and ignores all other neurons.
+    /// Returns a callback for [`Running::poll`](super::Running::poll) and the other calls that report neurons that
+    /// fire. If the neuron is an output of the network, the callback passes an event to `sink`. The event has the time
+    /// `tick`, and its address is the number of the output. The callback ignores all other neurons.
     fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
         move |neuron| {
             if let Some(address) = self.output(neuron) {
@@ -129,18 +129,18 @@ pub trait Describe<I: Input> {
     }
 }
 
-/// How the inputs of a network reach its neurons.
+/// The connections from a network's inputs to its neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs<const IN: usize, const N: usize> {
-    /// Each input has a row of synapses: its weights to all neurons.
+    /// A row of synapses for each input: the weights from that input to all neurons.
     Rows([[i8; N]; IN]),
-    /// Each input is a virtual event, which acts on one neuron without a synapse. An entry is that neuron and the
-    /// weight. In tinyODIN only the first 16 neurons can receive virtual events.
+    /// A virtual event for each input. It acts on one neuron without a synapse. An entry is that neuron and the weight.
+    /// In tinyODIN only the first 16 neurons can receive virtual events.
     Virtual([(u8, i8); IN]),
 }
 
 impl<const IN: usize, const N: usize> Inputs<IN, N> {
-    /// Connects input `n` to neuron `n` with this weight, and to no other neuron.
+    /// Gives each input a row of synapses in which input `n` has this weight to neuron `n`, and 0 to all other neurons.
     #[must_use]
     pub const fn one_to_one(weight: i8) -> Self {
         let mut rows = [[0; N]; IN];
@@ -197,9 +197,10 @@ pub struct Network<I: Input, const IN: usize, const N: usize, const OUT: usize> 
     /// The inputs, and their weights.
     pub inputs: Inputs<IN, N>,
     /// The weights between neurons: row `n` has the weights from neuron `n` to all neurons. Neurons without a row have
-    /// no effect on other neurons. If there are no rows, the loop is open.
+    /// no effect on other neurons. If there are no rows, the chip runs in open loop: spikes of neurons go only to the
+    /// output bus.
     pub recurrent: &'static [[i8; N]],
-    /// The neuron of each output, in the order of the outputs.
+    /// For each output, the number of the neuron whose spikes are this output.
     pub outputs: [u8; OUT],
 }
 

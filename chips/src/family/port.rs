@@ -61,8 +61,8 @@ pub trait AerPort {
     /// See [`set_input`](Self::set_input).
     fn set_reset(&mut self, is_high: bool) -> Result<(), Self::Error>;
 
-    /// Reads `SCHED_FULL`, which is high while the chip's queue is full, so that spikes between neurons are lost.
-    /// Returns `None`, as the default does, if the pin is not wired.
+    /// Reads `SCHED_FULL`, which is high while the chip's queue is full; spikes between neurons are lost then. Returns
+    /// `None` if the pin is not wired. The default implementation always returns `None`.
     ///
     /// # Errors
     /// See [`set_input`](Self::set_input).

@@ -12,7 +12,8 @@ const HANDSHAKE_CLOCKS: u32 = 32;
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
 /// A running chip: it takes events, and its memories cannot be accessed. After an error the chip still runs, unless the
-/// failed call consumed this value.
+/// `# Errors` section of the call says to reset the chip. If [`gate`](Self::gate) fails and the chip still runs,
+/// [`OdinChip::running`] returns a new value of this type.
 #[derive(Debug)]
 pub struct Running<'a, I: Input, D, P> {
     pub(super) chip: &'a mut OdinChip<I, D, P>,
@@ -23,13 +24,13 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Self { chip }
     }
 
-    /// Sends one input to the chip, and passes neurons that fire meanwhile to `on_output`. When this returns, the chip
-    /// has taken the input, but works on it for another 2 clock cycles for every neuron in use.
+    /// Sends one input to the chip, and passes neurons that fire meanwhile to `on_output`. When this call returns, the
+    /// chip has taken the input, but may work on it for about 2 more clock cycles for every neuron in use.
     ///
     /// # Errors
-    /// Returns an error if the input is invalid, the chip does not answer, or the port failed. With
-    /// [`Phase::Idle`](super::Phase::Idle) the input was not sent. With any other [`Handshake`](ChipError::Handshake)
-    /// error the input is pending, and must not be sent again.
+    /// Returns an error if the input is invalid, the chip does not answer, or the port failed. A
+    /// [`Handshake`](ChipError::Handshake) error with [`Phase::Idle`](super::Phase::Idle) means that the input was not
+    /// sent. Any other `Handshake` error means that the input is pending: do not send it again.
     pub fn send(&mut self, input: I, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let word = input.word()?;
         let aer = &mut self.chip.aer;
@@ -49,14 +50,15 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
     /// Waits until the chip has processed all its input, and passes neurons that fire meanwhile to `on_output`.
     ///
     /// No pin shows that the chip is at rest. Therefore this call waits until no output has come for the longest time
-    /// that the chip can work without an output. In open loop that time is a few sweeps, each of 2 clock cycles for
-    /// every neuron in use. In closed loop that time is one sweep for each spike that the queue can hold: 66 000 clock
-    /// cycles for tinyODIN with 256 neurons.
+    /// that the chip can work without an output. This time is a number of *sweeps*. In a sweep the chip applies one
+    /// spike to all neurons in use, with 2 clock cycles for each neuron. If the loop is open (spikes do not reach other
+    /// neurons), this call waits for 4 sweeps. If the loop is closed, this call waits for one sweep for each spike that
+    /// fits into the chip's queue, and for 2 more: about 67 000 clock cycles for tinyODIN with 256 neurons.
     ///
     /// # Errors
     /// Returns [`Busy`](ChipError::Busy) if outputs keep coming, for example from a network that drives itself; see
     /// [`open_loop`](Self::open_loop). Returns another error if the chip does not take the pending word, or if the port
-    /// failed. In both cases the chip still runs.
+    /// failed. After any of these errors the chip still runs.
     pub fn quiesce(&mut self, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         let chip = &mut *self.chip;
         chip.aer.finish(&mut on_output)?;
@@ -75,12 +77,12 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         }
     }
 
-    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does, and gates it. The chip's memories can then
-    /// be accessed; its neurons keep their potentials.
+    /// Waits until the chip is at rest, as [`quiesce`](Self::quiesce) does. Then gates the chip: stops its activity, so
+    /// that its memories can be accessed. The neurons keep their potentials.
     ///
     /// # Errors
-    /// Returns the errors of [`quiesce`](Self::quiesce), after which the chip still runs. Also returns an error if the
-    /// bus failed, or if the chip reads back a different value than was written; then reset the chip.
+    /// Returns the errors of [`quiesce`](Self::quiesce); the chip then still runs. Returns another error if the bus
+    /// failed, or if memory reads back a different value than was written. After such an error, reset the chip.
     pub fn gate(mut self, on_output: impl FnMut(u8)) -> Outcome<Gated<'a, I, D, P>, D, P> {
         self.quiesce(on_output)?;
         self.chip.shut()?;

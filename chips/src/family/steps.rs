@@ -11,11 +11,11 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 ///
 /// While the inputs of a step arrive, all potentials are offset downwards, so that no neuron reaches its threshold.
 /// Then events on an extra row of weights raise the first layer. Each of these events raises the layer by one *rung*.
-/// At the end the offset is gone, and the neurons above their thresholds fire. Their spikes go to the next layer, which
-/// is raised in turn. Finally, events on a second extra row lower all neurons again. Leaks are sent between the
-/// lowering events. A leak moves a potential, with the present offset, towards 0. Leaks at several offsets together
-/// reduce a potential by a share of its value, as in training. A neuron that fired may end above its reset value; leaks
-/// that only this neuron receives remove the excess.
+/// After the last of these events the offset is gone, and the neurons above their thresholds have fired. Their spikes
+/// go to the next layer, which is raised in turn. Finally, events on a second extra row lower all neurons again. Leaks
+/// are sent between the lowering events. A leak moves the sum of a potential and its offset at that moment towards 0.
+/// Leaks at several offsets together reduce a potential by a share of its value, as in training. A neuron that fired
+/// may end above its reset value; leaks that only this neuron receives remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
@@ -25,8 +25,8 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 ///     TinyOdinNeuron, neurons_from,
 /// };
 ///
-/// // Two inputs (rises and falls of a rate) and three neurons, whose rungs are 7. `spikewire network` writes such
-/// // constants.
+/// // Two inputs (rises and falls of a rate) and three neurons. A rung raises each potential by 7.
+/// // `spikewire network` writes such constants.
 /// static STEPS: Steps = Steps {
 ///     inputs: 2,
 ///     has_bias: false,
@@ -86,29 +86,32 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// The neurons' initial potentials contain the offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps<'a> {
-    /// Number of inputs, without the bias.
+    /// Number of inputs. The bias (see [`has_bias`](Self::has_bias)) does not count.
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// Number of rows of synapses that each input takes, and each neuron whose spikes act on neurons. The weight of an
-    /// input or neuron is the sum of the weights in its rows.
+    /// Number of rows of synapses for each input, and also for each neuron whose spikes act on neurons. The weight of
+    /// an input or neuron is the sum of the weights in its rows.
     pub rows: u16,
-    /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
+    /// The layers, from the input to the output. The first layer has the chip's neurons from 0 on. Each other layer has
+    /// the neurons that follow those of the layer before.
     pub layers: &'a [StepsLayer],
-    /// Number of events (rungs) that raise each layer in a step. The same number of events later lowers all neurons.
+    /// Number of events that raise the potentials of each layer in a step. Each event raises them by one rung. At the
+    /// end of the step, the same number of events lowers the potentials of all neurons.
     pub rungs: u16,
-    /// The leaks of all neurons, as a list for each step. After the last list, the next step takes the first list
-    /// again. An entry in a list is one leak: the number of lowering events that come before the leak. Entries are in
-    /// ascending order.
+    /// The leaks of all neurons: one list for each step. After the last list, the next step takes the first list again.
+    /// A list has one entry for each leak: the number of lowering events that the driver sends before this leak. The
+    /// entries are in ascending order.
     pub leaks: &'a [&'a [u16]],
-    /// Number of events that raise all neurons before the leaks of [`own_leaks`](Self::own_leaks) are sent. The same
-    /// number of events lowers all neurons after these leaks. 0 if these leaks need no raising.
+    /// Number of events that raise the potentials of all neurons before the leaks of [`own_leaks`](Self::own_leaks).
+    /// After these leaks, the same number of events lowers the potentials again. With 0, these leaks are sent without
+    /// raising the potentials.
     pub lift: u16,
     /// For each neuron, the number of leaks that only this neuron receives after it has fired.
     pub own_leaks: &'a [u16],
 }
 
-/// A layer of a network that runs in [`Steps`].
+/// A layer of a network that [`Steps`] describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepsLayer {
     /// Number of neurons in the layer.
@@ -117,7 +120,7 @@ pub struct StepsLayer {
     pub loops: bool,
 }
 
-/// The state of a network that runs in [`Steps`], between two steps. It takes 36 bytes.
+/// The state that a network in [`Steps`] has between two steps: 36 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepsState {
     /// The neurons that fired in the last step.
@@ -157,7 +160,8 @@ impl Fired {
 }
 
 impl Steps<'_> {
-    /// Returns the number of the row that raises the first layer; the rows that raise the other layers follow.
+    /// Returns the number of the row of synapses that raises the potentials of the first layer. The rows that raise the
+    /// other layers follow.
     #[must_use]
     pub fn first_rise(&self) -> u16 {
         let sources = self.inputs.saturating_add(self.has_bias.into());
@@ -170,7 +174,8 @@ impl Steps<'_> {
         sources.saturating_mul(self.rows)
     }
 
-    /// Returns the number of rows of synapses that the steps need, including those that raise and lower neurons.
+    /// Returns the number of rows of synapses that the network needs in the chip, including the rows that raise and
+    /// lower potentials.
     #[must_use]
     pub fn all_rows(&self) -> u16 {
         let gates = match (self.rungs, self.lift) {
@@ -185,7 +190,7 @@ impl Steps<'_> {
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Runs one time step of a network. `inputs` are the numbers of the inputs that fire, in any order. A number that
     /// is not an input of the network is dropped and [counted](super::Counters::unmapped_events). Neurons that fire are
-    /// passed to `on_output` immediately, each at most once in a step. They include neurons of all layers;
+    /// passed to `on_output` immediately, each at most once in a step. These neurons belong to any layer;
     /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
     ///
     /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. Each input or spike

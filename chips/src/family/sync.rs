@@ -1,4 +1,5 @@
-//! Checks that the gate is shut and that chip and bus are in sync. Reads and writes memory with these checks.
+//! Checks that the chip is gated (its activity is stopped) and in sync with the bus. Reads and writes memory with these
+//! checks.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -29,8 +30,8 @@ fn anchor() -> Address {
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
-    /// Shuts the gate of a chip at rest, opens its loop, and checks that the gate is shut and that chip and bus are in
-    /// sync.
+    /// Gates a chip at rest, and opens its loop, so that spikes no longer reach other neurons. Then checks that the
+    /// chip is gated and in sync with the bus.
     pub(super) fn shut(&mut self) -> Outcome<(), D, P> {
         self.state = State::NotReset;
         self.registers = None;
@@ -40,16 +41,17 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_sync()
     }
 
-    /// Opens the gate, after an access to a byte that does not exist. The reason for this access: if the gate is shut
-    /// later while tinyODIN works, the chip overwrites the byte that was last accessed over SPI, in each neuron that it
-    /// has not processed yet.
+    /// Opens the gate, which lets the chip run. First reads a byte that does not exist, to protect the neurons' bytes:
+    /// if the gate is later shut while tinyODIN works, the chip overwrites a byte of each neuron that it has not
+    /// processed yet. The index of this byte is the one that was last accessed over SPI.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
     }
 
-    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`]. If all bytes are 0 the neuron was
-    /// never written; it is then disabled, which sets a bit.
+    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`], and stores it as the beacon. Then
+    /// checks that chip and bus are in sync. If all these bytes are 0, the neuron was never written. This call then
+    /// disables the neuron, which makes one byte differ from 0.
     pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
         let last = I::NEURON_BYTES.saturating_sub(1);
         for byte in (0..=last).rev() {
@@ -95,12 +97,13 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Writes bytes, each with a mask of the bits to keep, then checks that chip and bus are in sync, and reads the
-    /// bytes back.
+    /// Writes bytes, then checks that chip and bus are in sync, and reads the bytes back. Each item of `bytes` is an
+    /// address, a mask and a value; bits that are 1 in the mask keep their value in memory.
     ///
-    /// A faulty write that goes to another address leaves the byte at its own address unchanged. To notice this, only
-    /// bytes that differ from memory are written, and the reads that find the differences are checked, too. The bits to
-    /// keep are compared as well.
+    /// A fault can divert a write to another address; the byte at the intended address then stays unchanged. The driver
+    /// can notice this only if the new value differs from the old one. Therefore it first reads the old bytes, checks
+    /// that chip and bus are in sync, and writes only the bytes that change. At the end it compares whole bytes,
+    /// including the bits that keep their value.
     pub(super) fn store(
         &mut self,
         bytes: impl Iterator<Item = (Address, u8, u8)> + Clone,
@@ -123,7 +126,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.expect_anchor()
     }
 
-    /// Reads up to 16 bytes, checks that chip and bus are in sync, and reads the bytes again.
+    /// Reads up to 16 bytes, checks that chip and bus are in sync, then reads the bytes again and compares them.
     pub(super) fn fetch(
         &mut self,
         addresses: impl Iterator<Item = Address> + Clone,
@@ -159,7 +162,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
+    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -171,7 +174,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.heed(result)
     }
 
-    /// Reads a byte, and returns an error unless it equals `value` outside the bits in `ignored`.
+    /// Reads a byte, and returns an error if it differs from `value`. Bits that are 1 in `ignored` are not compared.
     pub(super) fn expect_byte(
         &mut self,
         address: Address,
@@ -188,8 +191,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores the byte `value` at `address` as the beacon if it is a byte of a neuron, and if one of its bits in `mask`
-    /// is 1 and belongs to a parameter. (The chip does not change parameters.)
+    /// Stores the byte `value` at `address` as the beacon: a byte that is known not to be 0. Uses only bits of
+    /// parameters, which the chip does not change, and of these only the bits that are 1 in `mask`. Does nothing if all
+    /// these bits of `value` are 0, or if `address` is not in the memory of neurons.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

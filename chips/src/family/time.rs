@@ -11,17 +11,17 @@ use spikewire::Tick;
 /// Maximum number of leak events that one call sends.
 const MAX_LEAKS: u32 = 255;
 
-/// Limit in µs (67 s) up to which a tick can be late. A tick is late if it is earlier than the last leak event by at
-/// most this limit. A tick that seems to be even earlier is taken for a future tick, because the 32-bit clock wraps.
+/// Longest time by which a tick can be earlier than the last leak event, in µs (67 s). The 32-bit clock of ticks wraps.
+/// Therefore the driver takes a tick that seems to be earlier by more than this time for a future tick.
 const LATEST: u32 = 1 << 26;
 
-/// Returns the time from `last` to `now` in µs; `None` if `now` is at most 67 s earlier than `last`.
+/// Returns the time from `last` to `now` in µs. Returns `None` if `now` is earlier than `last` by up to [`LATEST`].
 fn passed(last: Tick, now: Tick) -> Option<u32> {
     let passed = now.micros().wrapping_sub(last.micros());
     (passed < LATEST.wrapping_neg()).then_some(passed)
 }
 
-/// The length of a time step, and the time at which the last leak event was due.
+/// The length of a time step, and the time at which the last leak event (the end of a time step) was due.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time {
     step: NonZeroU32,
@@ -34,21 +34,24 @@ impl Time {
         Self { step, last: None }
     }
 
-    /// Returns whether the time step of `tick` is over, that is, whether `tick` is earlier than the last leak event.
+    /// Returns whether `tick` lies before the last leak event, which ended the time step of `tick`.
     pub(super) fn is_over(&self, tick: Tick) -> bool {
         self.last.is_some_and(|last| passed(last, tick).is_none())
     }
 }
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
-    /// Sends the leak events that are due up to the tick `now`. The first call sends none and only stores `now`. Time
-    /// steps that pass while the chip is gated are due, too, if the chip is gated for less than 70 minutes. A call
-    /// sends at most 255 leak events. If more are due, the call drops the oldest ones and counts them as
-    /// [skipped](super::Counters::skipped_steps). (255 leaks of 1 may not bring a potential of 12 bits to 0.)
+    /// Sends the leak events that are due up to the time `now`. The first call sends none and only stores `now`. Leak
+    /// events also become due while the chip is gated, and the next call sends them. This works for less than 70
+    /// minutes between two calls.
+    ///
+    /// A call sends at most 255 leak events. If more are due, the call drops the oldest ones and counts them as
+    /// [skipped](super::Counters::skipped_steps). Such a drop can change potentials: 255 leaks of 1 do not always bring
+    /// a 12-bit potential to 0.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). After an error, the next call sends the leak events that this call
-    /// should have sent and did not.
+    /// did not send.
     pub fn advance(&mut self, now: Tick, mut on_output: impl FnMut(u8)) -> Outcome<(), D, P> {
         self.advance_with(now, &mut on_output)
     }

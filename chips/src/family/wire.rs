@@ -18,7 +18,8 @@ impl Address {
         Self(NEURON | u32::from(byte) << 8 | u32::from(neuron))
     }
 
-    /// Returns the address of a byte that does not exist, beyond the bytes of a neuron. It reads as 0.
+    /// Returns the address of a byte that does not exist, beyond the bytes of a neuron. A read of this address returns
+    /// 0.
     pub(super) fn nowhere() -> Self {
         Self::neuron(255, 0x7F)
     }
@@ -52,7 +53,7 @@ impl<D: SpiDevice> Wire<D> {
         self.write(register.into(), value)
     }
 
-    /// Writes those bits of a memory byte whose bit in the mask `keep` is 0. The other bits keep their value.
+    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
     pub(super) fn write_byte(
         &mut self,
         address: Address,
@@ -62,9 +63,9 @@ impl<D: SpiDevice> Wire<D> {
         self.write(WRITE | address.0, u32::from(keep) << 8 | u32::from(value))
     }
 
-    /// Reads a byte, which comes back as the last byte of the frame. The driver sends data that is all ones, which the
-    /// chip ignores. If a lost or doubled clock pulse turns the read into a write, these ones mask all bits, so that
-    /// memory does not change.
+    /// Reads a byte, which comes back as the last byte of the frame. The driver sends data in which every bit is 1; in
+    /// a read the chip ignores this data. If a lost or doubled clock pulse turns the read into a write, the data masks
+    /// all bits, so that memory does not change.
     pub(super) fn read_byte(&mut self, address: Address) -> Result<u8, D::Error> {
         let mut frame = frame(READ | address.0, 0xF_FFFF);
         self.device.transfer_in_place(&mut frame)?;

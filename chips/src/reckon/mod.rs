@@ -35,21 +35,22 @@ use wire::{Address, Wire};
 ///   the bus, of a handshake or of a step, the driver refuses all calls until the next reset.
 /// - **Checks:** the driver reads memories back. Registers cannot be read. Therefore, after each register, the driver
 ///   writes two words to an address that no network uses, and reads each of them back. This detects a clock pulse that
-///   was lost or doubled before.
+///   was lost or doubled earlier.
 /// - **Undetected faults:** if one clock pulse is lost and another is doubled, chip and bus are in sync again
-///   afterwards. Three cases of such a pair may go unnoticed. In the first case, one of the two faults lies in the
-///   frame of a register or in the frame before: the register may keep its old value or take a wrong one, or a
-///   different register may be written. In the second case, the pair lies in the first bits of a frame that writes
-///   weights between neurons: it may write a register instead. The driver notices this unless the memory held the same
-///   weights before. In the third case, the pair turns a read into a write while a load compares memory.
-///   [`Programmed::verify`] after the load detects this in weights and parameters, but not in the potential of a neuron
-///   or an output.
-/// - **Waits:** the driver reads the pins a given number of times, then returns an error.
+///   afterwards. Such a pair of faults may go unnoticed in three cases:
+///   1. One of the two faults lies in the frame that writes a register, or in the frame before. The register may then
+///      keep its old value or take a wrong one, or the chip may write a different register.
+///   2. Both faults lie in the first bits of a frame that writes weights between neurons. The frame may then write a
+///      register instead. The driver does not notice this if the memory already held the same weights.
+///   3. The pair turns a read into a write while [`Programmed::load`] compares memory. [`Programmed::verify`] after the
+///      load detects this in weights and parameters, but not in the potential of a neuron or an output.
+/// - **Waits:** the driver waits for the chip by reading pins. The argument `polls` of [`new`](Self::new) limits the
+///   number of reads; after the last read, the driver returns an error.
 ///
 /// # A time step
-/// The inputs sent before a tick act after that tick. At the second tick, neurons leak and fire, and then their spikes
-/// act. At the third tick, the outputs show these spikes. With N inputs and N neurons, a step takes 2 N + 4 clock
-/// cycles of the chip, and N more for each event.
+/// Inputs that are sent before a tick act after that tick. At the next tick, neurons leak and fire, and then their
+/// spikes act. At the tick after that, the outputs show these spikes. With N inputs and N neurons, a step takes 2 N + 4
+/// clock cycles of the chip, and N more for each event.
 ///
 /// # What to know about the chip
 /// - After reset learning is on: at the first tick with `TARGET_VALID` the chip would wait for a target without end.
@@ -59,14 +60,14 @@ use wire::{Address, Wire};
 ///   2 N + 4 clock cycles, which a driver that reads its pins rarely would miss. Therefore the driver always sets the
 ///   chip to send an answer in each step. The pin then stays low until the last byte of the answer is taken, and a step
 ///   without an answer is an error.
-/// - If `SAMPLE` falls while the chip learns, and the chip is not set to send an answer in each step, it goes on
-///   learning without end, through all weights.
-/// - The chip processes neurons in pairs, up to the largest of three numbers: that of neurons, of inputs and of
-///   outputs. A pair that the network does not use fires at every step if its memory holds a threshold of 0. Therefore
-///   [`Programmed::load`] writes all 128 pairs.
+/// - If `SAMPLE` falls while the chip learns, the chip goes on learning without end, through all weights. The setting
+///   to send an answer in each step, which the driver always makes, prevents this.
+/// - The chip processes neurons in pairs, up to the largest of the numbers of neurons, inputs and outputs. A pair that
+///   the network does not use fires at every step if its memory holds a threshold of 0. Therefore [`Programmed::load`]
+///   writes all 128 pairs.
 /// - If the number of neurons is odd, the last neuron would never fire. Therefore the driver gives the chip a number
 ///   that is one higher.
-/// - A frame that announces more than one word to a register writes them all to the same register.
+/// - If a frame announces more than one word for a register, the chip writes all of the words to that register.
 /// - An input sent twice within a step counts once. Inputs that are sent after the last tick of a sample are lost.
 /// - Reset clears no memory.
 /// - With a [`keep`](ReckOnPair::keep) above 32 768, a potential that grows beyond its range wraps around and changes
@@ -124,7 +125,7 @@ pub struct ReckOn<D, P> {
     sizes: Sizes,
 }
 
-/// The highest number of an input, of a neuron and of an output in the network.
+/// The numbers of the network's last input, last neuron and last output, as the driver gives them to the chip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Sizes {
     input: u8,
@@ -150,12 +151,14 @@ const RESET_US: u32 = 10;
 const OPEN: u16 = 0;
 
 impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
-    /// Longest time step, in clock cycles of the chip: all 256 neurons fire, and the chip learns.
+    /// Duration of the longest time step, in clock cycles of the chip. In this step all 256 neurons fire, and the chip
+    /// learns.
     pub const MAX_CLOCKS: u32 = 76_000;
 
     /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
     /// times. [`MAX_CLOCKS`](Self::MAX_CLOCKS) polls suffice if each poll takes at least one clock cycle of the chip.
-    /// If several polls fit into one clock cycle, multiply `MAX_CLOCKS` by their number, rounded up.
+    /// If several polls fit into one clock cycle, multiply `MAX_CLOCKS` by the number of polls in a clock cycle,
+    /// rounded up.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         let wire = Wire { device };
         let sizes = Sizes { input: 255, neuron: 255, output: 15 };
@@ -167,7 +170,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// their content; its registers do not.
     ///
     /// # Errors
-    /// Returns an error if the port or the bus failed, or if the chip reads back a different value than was written.
+    /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Programmed<'_, D, P>, D, P> {
         self.state = State::NotReset;
         self.clear_pins().map_err(ChipError::Port)?;
@@ -191,10 +194,11 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         port.set_infer(false)
     }
 
-    /// Returns a chip that an earlier call left with open memories.
+    /// Returns a chip that an earlier call left stopped, with its memories open to access.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), or [`NotGated`](ChipError::NotGated) if the chip runs.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, or [`NotGated`](ChipError::NotGated)
+    /// if the chip runs.
     pub fn programmed(&mut self) -> Outcome<Programmed<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),
@@ -220,8 +224,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// Returns a chip that an earlier call left within a sample.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated) if the chip does not run, or
-    /// [`NotStarted`](ChipError::NotStarted) if it is between samples.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, [`Gated`](ChipError::Gated) if the
+    /// chip does not run, or [`NotStarted`](ChipError::NotStarted) if the chip is between samples.
     pub fn sample(&mut self) -> Outcome<ReckOnSample<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

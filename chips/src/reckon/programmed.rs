@@ -25,12 +25,12 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// Reads everything back. Calls `progress` after each pair and each row of weights.
     ///
     /// **Time:** two transfers of 8 bytes, a write and a read, for each 32-bit word. The pairs take 512 words, and the
-    /// weights take one word for every four. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at 1
-    /// MHz.
+    /// weights take one word for every four. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at an
+    /// SCK of 1 MHz.
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,
-    /// or if the chip reads back a wrong value; then reset the chip, and load again.
+    /// or if memory reads back a wrong value; then reset the chip, and load again.
     pub fn load(
         &mut self,
         network: &impl DescribeReckOn,
@@ -98,7 +98,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         chip.check_sync()
     }
 
-    /// Reads the weight from an input to a neuron, which learning may have changed.
+    /// Reads the weight from an input to a neuron. Learning may have changed this weight.
     ///
     /// # Errors
     /// Returns an error if the bus failed or is out of sync: then reset the chip.
@@ -152,8 +152,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         self.chip.check_sync()
     }
 
-    /// Writes the registers and lets the chip run. Then checks that the memories are closed. When they are closed,
-    /// every read returns the same word: the one that the last read of open memories returned.
+    /// Writes the registers and lets the chip run. Then checks that the chip has closed its memories: a read of any
+    /// address must then return the word that was last read while the memories were open.
     ///
     /// # Errors
     /// Returns an error if a value is out of its range; nothing was changed then. Also returns an error if the bus

@@ -80,8 +80,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Started<'a, D, P> {
 }
 
 impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
-    /// Sends a spike of an input, which acts after the next tick. An input that is sent twice within a step acts only
-    /// once.
+    /// Sends a spike of an input. The spike acts after the next tick. An input that is sent twice within a step acts
+    /// only once.
     ///
     /// # Errors
     /// Returns an error if the network has no such input. Also returns an error if the chip does not answer, or if the
@@ -91,13 +91,13 @@ impl<'a, D: SpiDevice, P: ReckOnPort> ReckOnSample<'a, D, P> {
         self.chip.send(input, false)
     }
 
-    /// Ends a time step and begins the next one. Waits until the chip is ready, ticks, and takes the chip's answer,
-    /// which proves that the chip has done the step. Returns the answer if the setting is
+    /// Ends a time step and begins the next one. Waits until the chip is ready, sends a tick (a pulse of `TIME_TICK`),
+    /// and takes the chip's answer, which proves that the chip has done the step. Returns the answer if the setting is
     /// [`PotentialsEachStep`](ReckOnAnswers::PotentialsEachStep), otherwise `None`.
     ///
     /// # Errors
     /// Returns an error if the target does not fit the network or the settings; nothing was sent then. Also returns an
-    /// error if the chip does not finish its step, if it does not take the tick, or if the port failed: then reset the
+    /// error if the chip does not take the tick or does not finish the step, or if the port failed: then reset the
     /// chip.
     pub fn step(&mut self, step: ReckOnStep<'_>) -> Outcome<Option<ReckOnAnswer>, D, P> {
         self.check(&step)?;

@@ -7,12 +7,12 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnAnswers {
-    /// Returns a label after the sample: the number of the output with the most points. In each step with
+    /// A label after the sample: the number of the output with the most points. In each step with
     /// [`counts`](super::ReckOnStep::counts) set, the output with the highest potential gets a point.
     Label,
-    /// Returns the outputs' potentials after the sample.
+    /// The outputs' potentials after the sample.
     Potentials,
-    /// Returns the outputs' potentials after every step and after the sample.
+    /// The outputs' potentials after every step and after the sample.
     PotentialsEachStep,
 }
 
@@ -31,15 +31,15 @@ impl ReckOnAnswers {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReckOnTask {
-    /// A target is the number of the output that should have the highest potential. Give it in the first step of a
-    /// sample that learns.
+    /// The target is a label: the number of the output that should have the highest potential. Give the label once in a
+    /// sample, in the first step that learns.
     Classification,
-    /// A target is a potential for each output. Give it in every step that learns.
+    /// The target is a potential for each output. Give the potentials in every step that learns.
     Regression,
 }
 
-/// How the chip learns, by eligibility propagation (e-prop). Every field is a register of the chip; the chip's
-/// documentation describes how they act together.
+/// The parameters of learning by eligibility propagation (e-prop). Every field is a register of the chip; the chip's
+/// documentation describes how the registers act together.
 ///
 /// A step that learns takes up to 8 704 clock cycles more. Weights change by 1, with a probability that depends on the
 /// learning signal. To make a run repeatable, seed the chip's random generators: write registers 85 to 92 with
@@ -50,15 +50,16 @@ pub enum ReckOnTask {
 pub struct ReckOnLearning {
     /// Whether the weights from inputs, between neurons and to outputs learn, in this order.
     pub learns: [bool; 3],
-    /// Number of extra binary places of the traces of inputs, neurons and outputs, in this order; 0 to 7 each.
+    /// Number of extra fractional bits of the traces, 0 to 7 each. (A trace is a measure of recent spikes.) The three
+    /// numbers are for the traces from which the weights from inputs, between neurons and to outputs learn, in this
+    /// order.
     pub traces: [u8; 3],
-    /// Shift of the learning signal, 0 to 15.
+    /// Left shift of the learning signal, 0 to 15. (After this shift, the chip divides the signal by 4096.)
     pub signal: u8,
-    /// Four potentials, ascending. They divide the range of the potential into five, and [`slopes`](Self::slopes) has a
-    /// value for each of the five.
+    /// Four potentials, in ascending order. They divide the potentials of a neuron into five ranges. For each range,
+    /// [`slopes`](Self::slopes) gives a slope of the surrogate gradient.
     pub thresholds: [i16; 4],
-    /// A slope for each of the five ranges of a neuron's potential, -16 to 15. The slope stands in for the derivative
-    /// of firing.
+    /// Slope of the surrogate gradient in each of the five ranges of a neuron's potential, -16 to 15.
     pub slopes: [i8; 5],
     /// Shifts that set how likely a weight is to change, as pairs of a right shift and a left shift, 0 to 31 each. The
     /// three pairs are for the weights from inputs, between neurons and to outputs, in this order.
@@ -77,7 +78,7 @@ pub struct ReckOnSettings {
     /// The kind of target from which the chip learns. [`Label`](ReckOnAnswers::Label) answers need
     /// [`Classification`](ReckOnTask::Classification).
     pub task: ReckOnTask,
-    /// The parameters of learning; `None` switches learning off. (After a reset it is on.)
+    /// The parameters of learning; `None` switches learning off. (After a reset, learning is on.)
     pub learning: Option<ReckOnLearning>,
 }
 

@@ -1,5 +1,5 @@
-//! SPI without chip select: a header of 32 bits, then 32-bit words, which the chip delimits by counting clock pulses
-//! from its reset.
+//! SPI without chip select. A frame is a header of 32 bits, followed by 32-bit words. The chip finds the bounds of
+//! frames by counting clock pulses from its reset.
 
 use embedded_hal::spi::SpiDevice;
 
@@ -33,7 +33,7 @@ impl Address {
         Self(5 << 28 | (neuron as u32) << 2)
     }
 
-    /// Returns the address of a word that no network uses, for checks.
+    /// Returns the address that the sync check writes to: the address of a word that no network uses.
     pub(super) const fn anchor() -> Self {
         Self::output(0x1AA)
     }
@@ -69,7 +69,7 @@ impl<D: SpiDevice> Wire<D> {
     }
 }
 
-/// Makes a frame: the header, with a count of one word, and the word.
+/// Makes a frame of a header and one word. Sets the number of words in the header to 1.
 fn frame(header: u32, word: u32) -> [u8; 8] {
     (u64::from(header | 1 << 16) << 32 | u64::from(word)).to_be_bytes()
 }

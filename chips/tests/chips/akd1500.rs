@@ -160,8 +160,8 @@ fn memory(words: impl Iterator<Item = u32>) -> Memory {
     Memory { words, ..Memory::default() }
 }
 
-/// Disturbs each byte of a write and of its reading back with each fault in turn. `program` must return an error, or
-/// memory must be right. The next call, without a fault, must succeed.
+/// Tries each kind of fault on each byte that `program` sends, both while it writes and while it reads back. `program`
+/// must return an error, or memory must be right. The next call, without a fault, must succeed.
 #[test]
 fn one_fault_on_the_bus_is_an_error_or_did_no_harm_and_the_next_call_mends_it() {
     let words: Vec<u32> = (0..61).map(|n| 0x0101_0101 * n + 0x8000_0001).collect();

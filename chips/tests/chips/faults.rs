@@ -1,5 +1,5 @@
-//! Tests that the driver of tinyODIN and ODIN causes none of the faults that calls in the wrong order cause in these
-//! chips, even if clock pulses are lost or doubled.
+//! Tests of the driver of tinyODIN and ODIN. Accesses in the wrong order damage memory or potentials in these chips.
+//! The driver must prevent this, even if clock pulses are lost or doubled.
 
 use std::num::NonZeroU32;
 
@@ -41,8 +41,7 @@ fn events(addresses: impl IntoIterator<Item = u16>) -> impl Iterator<Item = Even
     addresses.into_iter().map(event)
 }
 
-/// Fills the memory of neurons with neurons whose potential is 0, without leak and with thresholds that they do not
-/// reach.
+/// Writes all neurons with potential 0, no leak, and a threshold that they do not reach.
 fn at_rest(board: &TinyBoard) {
     board.pins().chip.neurons.fill(neuron(2047, 0, 0));
 }
@@ -109,7 +108,8 @@ proptest! {
     }
 }
 
-/// The gate is shut too early here, as if the driver read the pins too few times for each clock cycle of the chip.
+/// Shuts the gate, which stops the chip's activity, while the chip still works on a spike. The driver does this if
+/// `with_reads_per_clock` was given a number that is too low.
 #[test]
 fn parameters_stay_whole_even_where_the_gate_shuts_on_a_chip_that_works() {
     for clocks in 0..200 {
@@ -436,8 +436,8 @@ fn a_lost_and_a_doubled_clock_within_one_access_are_an_error_or_right() {
     assert!(pairs_within_an_access(77) > 10_000);
 }
 
-/// Two faults may cancel out in the last frames of a sync check and leave a wrong value in the byte that the check
-/// writes. The driver must return an error.
+/// To check that chip and bus are in sync, the driver writes a byte and reads it back. Two faults in the last frames of
+/// this check may cancel out, and leave a wrong value in that byte. The driver must then return an error.
 #[test]
 fn a_pair_within_a_sync_check_is_an_error() {
     use ClockFault::{Doubled, Lost};

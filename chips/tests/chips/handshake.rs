@@ -1,5 +1,5 @@
-//! The frames on the SPI bus of tinyODIN and ODIN and their order, handshakes and time steps, tested on the chips'
-//! models.
+//! Tests of the frames on the SPI bus and their order, of handshakes, and of time steps, on the models of tinyODIN and
+//! ODIN.
 
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;
@@ -24,8 +24,8 @@ const OPEN: TinyOdinRegisters = TinyOdinRegisters {
     last_neuron: 255,
 };
 
-/// Makes a board with a running chip, whose first `firing` neurons fire at every event, and a driver for the chip.
-/// `clocks` is the time of a port call.
+/// Makes a board with a running chip, whose first `firing` neurons fire at every event, and a driver for the chip. A
+/// port call takes `clocks` clock cycles of the chip.
 fn running(clocks: u32, polls: u32, firing: usize) -> (TinyBoard, Tiny) {
     let board = TinyBoard::new(4, clocks);
     let mut chip = TinyOdin::new(board.spi(), board.port(), polls);
@@ -72,7 +72,9 @@ impl<D: SpiDevice> SpiDevice for Recorder<D> {
 
 #[test]
 fn reads_per_clock_multiply_the_polls_of_every_wait() {
-    /// Returns the number of port calls that the driver makes before it gives up on a chip whose gate is shut.
+    /// Sends a word to a chip that is gated, and therefore never acknowledges it. Returns the number of port calls that
+    /// the driver makes before it gives up. `reads` is the number of pin reads for each clock cycle of the chip, and
+    /// `polls` the limit that is multiplied by it.
     fn polls(reads: u32, polls: u32) -> u64 {
         let board = Board::<silicon::TinyOdin>::new(8, 1);
         board.pins().chip.neurons.fill(0x1000);
@@ -221,8 +223,8 @@ fn an_error_at_every_transfer_asks_for_a_reset() {
     }
 }
 
-/// A port whose input ACK a test can hold at a level, and whose output bus a test can keep busy. Counts the reads of
-/// the output bus's REQ.
+/// A port that passes calls on to `port`, with two faults that a test can switch on: the input bus's ACK stays at one
+/// level, or the output bus always seems busy. Counts the reads of the output bus's REQ.
 struct Held<P> {
     port: P,
     acknowledge: Rc<Cell<Option<bool>>>,
@@ -519,9 +521,9 @@ fn the_same_handshake_carries_odins_words() {
     assert_eq!(board.pins().chip.taken, [0x0_FFFF, 0x1_0705, 0x7F], "the probe comes first");
 }
 
-/// The upper bounds are what an earlier driver took, in clock cycles of the chip, if each pin read takes one clock
-/// cycle. A spike took 32.9, 136.4 and 518.5 with 12, 64 and 256 neurons in use; a virtual event took 15.5; an output
-/// took 11.6.
+/// The driver is no slower than an earlier version. Each pin read takes one clock cycle of the chip here. In the
+/// earlier version, a spike took 32.9 clock cycles with 12 neurons in use, 136.4 with 64, and 518.5 with 256. A virtual
+/// event took 15.5 clock cycles, and an output took 11.6.
 #[test]
 fn throughput_is_that_of_the_chip() {
     for (neurons, most) in [(12, 32.9), (64, 136.4), (256, 518.5)] {

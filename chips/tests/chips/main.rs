@@ -21,8 +21,8 @@ mod xylo;
 use flight_data::Record;
 use proptest::test_runner::{Config, FileFailurePersistence};
 
-/// Configures a property test to try `count` cases, times the environment variable `CASES_TIMES`. Cases that failed
-/// before, whose seeds are in `<test>.proptest-regressions`, come first; the others are drawn from the seed in
+/// Configures a property test to try `count` cases, multiplied by the environment variable `CASES_TIMES`. Cases that
+/// failed before, whose seeds are in `<test>.proptest-regressions`, come first; the others are drawn from the seed in
 /// `.cargo/config.toml`.
 fn cases(count: u32) -> Config {
     let times = std::env::var("CASES_TIMES").map_or(1, |times| times.parse().unwrap());

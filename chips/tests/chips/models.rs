@@ -1,5 +1,6 @@
-//! Tests of the models of tinyODIN and ODIN without the drivers: how long words take, and what goes wrong if a driver
-//! makes accesses in the wrong order. The expected figures come from a simulation of the chips' register-transfer code.
+//! Tests of the models of tinyODIN and ODIN without the drivers. The tests check how long the chips work on an input
+//! word, and what goes wrong if a driver gates a chip or accesses its memories at the wrong moment. The expected
+//! figures come from a simulation of the chips' register-transfer code.
 
 #![allow(
     clippy::cast_possible_wrap,

@@ -72,7 +72,8 @@ fn a_network_is_described_neuron_by_neuron() {
     assert_eq!(Inputs::<3, 2>::one_to_one(5), tall, "the last drives none");
 }
 
-/// A code with one neuron and two polarities has one input for each polarity.
+/// A signed code such as [`StepForward`] takes two inputs for each address, one for each polarity. A code without signs
+/// takes one input for each address.
 #[test]
 fn events_find_their_inputs() {
     let step = StepForward::<f32>::new(1.0);
@@ -334,7 +335,7 @@ fn network(
     }
 }
 
-/// Writing a network as bytes fails if the network would not come back unchanged.
+/// Writing a network as bytes must fail if the bytes would not give the same network when read.
 #[test]
 fn a_network_that_bytes_cannot_hold_is_not_written() {
     let network = network(&[3], &[50], true, false);
@@ -420,7 +421,7 @@ proptest! {
     }
 }
 
-/// A reference for ODIN, which applies inputs to the neurons one after the other, without queue and timing.
+/// A reference model of ODIN, without queue and timing. It applies each input to the neurons one after the other.
 #[derive(Clone, Debug)]
 struct Twin {
     neurons: Vec<u128>,

@@ -160,7 +160,7 @@ fn a_network_as_bytes_is_the_same_and_damaged_bytes_are_refused() {
     assert_eq!(buffer[5], 2, "it has no flag but that of neurons that return to 0");
 }
 
-/// A network of 65 540 neurons is refused: the number must not wrap to 4 in 16 bits.
+/// A network of 65 540 neurons must be refused. Cut to 16 bits, 65 540 would become 4, a valid number of neurons.
 #[test]
 fn a_network_of_far_too_many_neurons_is_refused() {
     static LARGE: ReckOnNetwork<1, 65_540, 1> = ReckOnNetwork {
@@ -343,8 +343,9 @@ fn loading_says_how_far_it_is() {
     assert_eq!(last.done, last.total);
 }
 
-/// Loads a network whose outputs take two words in each row. Registers 65 to 68 mark the pairs whose `keep` is 32 768
-/// or more, including the unused pairs.
+/// Loads a network whose outputs take two words in each row. Registers 65 to 68 have one bit for each pair of neurons,
+/// including the unused pairs. The bit is 1 if `keep`, the share of the potential that a time step keeps, is 32 768 or
+/// more.
 #[test]
 fn many_pairs_and_outputs_are_loaded() {
     static MOSTLY_GROW: [ReckOnPair; 33] = {
@@ -370,7 +371,7 @@ fn many_pairs_and_outputs_are_loaded() {
     assert_eq!(grows, [u32::MAX, !1, u32::MAX, u32::MAX], "one of 128 does not");
 }
 
-/// The slopes are written to registers of five bits with a sign.
+/// Each slope of the surrogate gradient is written to its register as a signed number of five bits.
 #[test]
 fn slopes_are_written_with_their_sign() {
     let board = Board::new(10, 1);
@@ -391,7 +392,7 @@ struct Lines {
     bytes: Cell<Option<u32>>,
 }
 
-/// A port whose lines can show the faults in `lines`.
+/// A port that passes calls on to `port`, but shows the faults that `lines` selects.
 struct FaultyPort<'a> {
     port: Port,
     lines: &'a Lines,
@@ -447,8 +448,8 @@ impl ReckOnPort for FaultyPort<'_> {
     }
 }
 
-/// Begins a sample on a chip that was never loaded, which has 16 outputs; then sets faults with `set`, and returns the
-/// result of `act`.
+/// Begins a sample on a chip without a network. (The potentials in an answer of such a chip are those of 16 outputs.)
+/// Then sets faults with `set`, and returns the result of `act`.
 fn with_faults<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),
@@ -664,9 +665,9 @@ fn assert_holds(board: &Board, network: &impl DescribeReckOn, at: &str) {
     assert_eq!(pins.chip.register_value(69), 110, "{at}");
 }
 
-/// Makes calls in random order, with up to three SPI clock pulses lost or doubled and up to two calls of the port
-/// failing. Asserts that after each `Ok` the chip has the network that was loaded, and that every answer is that of
-/// plain arithmetic.
+/// Makes calls in random order, while up to three SPI clock pulses are lost or doubled and up to two calls of the port
+/// fail. Asserts that the chip holds [`NETWORK`] whenever `load` or `verify` returns `Ok`, and that every answer is the
+/// one that [`Plain`] computes in plain arithmetic.
 fn search(seed: u64, count: &mut [u32; 2]) {
     let mut random = Pcg32::seed_from_u64(seed);
     let mut below = |end: u32| random.next_u32() % end;

@@ -9,7 +9,8 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// A way to compare two chips: the function that reads the content to compare, and the calls of the driver before it.
+/// A way to compare two chips. For each chip, the second function makes further calls of the driver; then the first
+/// function returns the content to compare.
 type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
@@ -27,9 +28,9 @@ fn whole_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (registers, memories.chain(outputs.map(|(_, word)| word)).collect())
 }
 
-/// Returns all registers, and the part of the memories that `verify` reads for [`NETWORK`]: the parameters of each pair
-/// of neurons, and the first word of each row of weights. This word holds the weights to two neurons or to one output.
-/// Leaves out potentials.
+/// Returns all registers, and the words of memory that `verify` compares with [`NETWORK`]: the parameters of each pair
+/// of neurons, and the first 32 bits of the rows of weights, which hold all weights of the network. The result contains
+/// no potentials, because `verify` does not compare them.
 fn network_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     let word = |row: u128| row & u128::from(u32::MAX);
     let rows = (0..256).map(|neuron| word(chip.recurrent_weights[neuron << 4]));
@@ -77,13 +78,14 @@ const NETWORK: ReckOnNetwork<1, 2, 1> = ReckOnNetwork {
     shared: ReckOnShared { shifts: [0; 3], keep: 110, resets_to_zero: true },
 };
 
-/// Number of 32-bit words that loading [`NETWORK`] writes: four for each of 128 pairs of neurons, one for the input,
-/// and two for each of 256 neurons.
+/// Number of 32-bit words that loading [`NETWORK`] writes: four for each of 128 pairs of neurons, one for the weights
+/// from the input, and two for each of 256 neurons (one for weights to neurons, one for weights to outputs).
 const LOADED: u64 = 512 + 1 + 256 + 256;
 
 /// Compares all registers and memories, immediately after the access.
 const AT_ONCE: Comparison = (whole_content, |_| Ok(()));
-/// Calls `verify`, which notices reads that a fault turned into writes. Then compares only what the network needs.
+/// Calls `verify`, which returns an error if a fault turned a read into a write and changed the memory of the network.
+/// Then compares all registers, and the words of memory that `verify` checks.
 const VERIFIED: Comparison = (network_content, |chip| chip.programmed()?.verify(&NETWORK));
 
 const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];
@@ -97,10 +99,11 @@ fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usi
     both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
 }
 
-/// Tries pairs of faults in an access. Tries `some` random pairs whose faults are less than `reach` clock pulses apart.
-/// If `all_in_first`, also tries all pairs within the first frame. Leaves out a pair if one of its faults lies in the
-/// frame of a register, which `is_register` recognises, or in the frame before. Asserts that the access returns an
-/// error, or has the same effect as without faults. Returns the number of pairs tried.
+/// Makes an access many times, each time with a pair of faults: one lost and one doubled clock pulse. Tries `some`
+/// random pairs, whose faults are less than `reach` clock pulses apart. If `all_in_first` is set, also tries all pairs
+/// within the first frame. Leaves out pairs with a fault in a frame that writes a register, or in the frame before;
+/// `is_register` returns whether the frame with a given number writes a register. Asserts that each access returns an
+/// error or has the same effect as without faults. Returns the number of pairs tried.
 fn pairs<T: PartialEq + std::fmt::Debug>(
     (some, all_in_first): (usize, bool),
     reach: u64,
@@ -173,8 +176,9 @@ fn a_lost_and_a_doubled_clock_within_an_access_are_an_error_or_right() {
     assert!(accesses((30, false)) > 500);
 }
 
-/// The read of a weight must not become a write unnoticed. A clock pulse that is doubled before the second read turns
-/// this read into a write of 0. A pulse that is lost at the end of the read hides the shift.
+/// The driver reads a weight twice, and must notice if faults turn the second read into a write. A doubled clock pulse
+/// before the second read shifts its frame by one bit: the chip then writes 0. A lost pulse at the end of this frame
+/// brings chip and bus into sync again.
 #[test]
 fn a_weight_that_is_read_is_not_written_where_it_ends() {
     let faults = [(5 * FRAME - 1, Doubled), (6 * FRAME - 1, Lost)];

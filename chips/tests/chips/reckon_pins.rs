@@ -1,5 +1,5 @@
-//! Tests of the driver of `ReckOn` with slow pins: the driver reads them rarely and late, and must return the same
-//! answers as with fast pins, for networks of any size.
+//! Tests of the driver of `ReckOn` with slow pins: each call of the port takes many clock cycles of the chip, and the
+//! driver must return the same answers as with fast pins, for networks of any size.
 
 use std::cell::Cell;
 
@@ -11,12 +11,13 @@ use spikewire_chips::{
     ReckOnSettings, ReckOnShared, ReckOnStep, Started,
 };
 
-/// A network with random weights, a given number of neurons, up to eight inputs and three outputs.
+/// A network with random weights and three outputs. It has as many inputs as neurons, but never more than eight inputs.
 struct RandomNetwork {
     neurons: u16,
 }
 
-/// Returns the random weight of a kind (0 from inputs, 1 between neurons, 2 to outputs) for this sender and receiver.
+/// Returns a random weight that depends only on the arguments. `kind` is 0 for weights from inputs, 1 between neurons,
+/// and 2 to outputs.
 fn weight(kind: u64, from: u16, to: u16) -> i8 {
     let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
     Pcg32::seed_from_u64(place).next_u32() as i8
@@ -49,12 +50,13 @@ impl DescribeReckOn for RandomNetwork {
     }
 }
 
-/// Duration of the port's calls: clock cycles of the chip before a pin is read or set, and after it.
+/// Pace of the port: the chip's clock cycles that pass in each call before the pin is read or set, and those that pass
+/// afterwards. Also selects a tick that is lost.
 #[derive(Default)]
 struct Pace {
     before: Cell<u32>,
     after: Cell<u32>,
-    /// Number of the tick that does not reach the chip, from 0 on; `None` if all ticks do.
+    /// Number of the tick that does not reach the chip, where the first tick is 0; `None` if all ticks reach the chip.
     lost: Cell<Option<u32>>,
     /// Number of ticks so far.
     ticks: Cell<u32>,
@@ -130,8 +132,8 @@ const SETTINGS: [ReckOnSettings; 3] = [
     ReckOnSettings::POTENTIALS,
 ];
 
-/// Makes a board, and a driver for its chip. Each call of the driver's port lasts as long as `pace` says at that
-/// moment.
+/// Makes a board, and a driver for its chip. Each call of the driver's port takes the clock cycles that `pace` holds at
+/// the time of the call.
 fn on<'a>(pace: &'a Pace) -> (Board, ReckOn<Spi, Slow<'a>>) {
     let board = Board::new(10, 0);
     let port = Slow { port: board.port(), board: board.clone(), pace };
@@ -162,8 +164,9 @@ fn sample<'a, 'b>(
     Ok(((answers, fired), started))
 }
 
-/// Each port call takes 26 clock cycles. In small networks the ready pin is low for less time than that: in a step with
-/// up to 10 neurons, and at the tick that begins a sample with up to 25 neurons. The answers must not change.
+/// Calls of the port that take up to 26 clock cycles must not change the answers. With up to 10 neurons, the ready pin
+/// is low for at most that time in each step, so that the driver may miss it. With up to 25 neurons, this is so only at
+/// the first tick of a sample.
 #[test]
 fn pins_that_are_read_seldom_change_no_answer() {
     for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {
@@ -198,8 +201,8 @@ fn pins_that_are_read_seldom_change_no_answer() {
     }
 }
 
-/// If a tick does not reach the chip, the driver returns an error instead of the answer to a different step, for any
-/// duration of the port's calls.
+/// If a tick does not reach the chip, the driver must return an error, and never the answer to a different step. The
+/// test tries fast and slow calls of the port.
 #[test]
 fn a_tick_that_is_lost_is_an_error_before_an_answer_is_wrong() {
     for neurons in [2, 16, 64] {

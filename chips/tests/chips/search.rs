@@ -1,9 +1,9 @@
-//! A random search for faults: makes calls of tinyODIN's driver in any order, with late acknowledgements of outputs,
-//! and with up to three SPI clock pulses lost or doubled. Whenever a call returns `Ok`, the chip's memories and
-//! registers must be what the caller expects.
+//! A random search for errors of tinyODIN's driver. A *schedule* is a sequence of random calls and faults: the calls
+//! come in any order, outputs are acknowledged late, and up to three SPI clock pulses are lost or doubled. Whenever a
+//! call returns `Ok`, the chip's memories and registers must be what the caller expects.
 //!
-//! `cargo test` tries a few schedules; `cargo test --release -p spikewire-chips --test chips -- --ignored schedules` tries
-//! 100 000.
+//! `cargo test` tries a few hundred schedules. This command tries 100 000:
+//! `cargo test --release -p spikewire-chips --test chips -- --ignored schedules`.
 
 use std::num::NonZeroU32;
 
@@ -74,19 +74,19 @@ impl Random {
     }
 }
 
-/// What the caller of the driver expects of the chip.
+/// The state of the chip that the caller of the driver expects.
 struct Known {
     neurons: Vec<u128>,
     synapses: Vec<u32>,
     registers: Option<TinyOdinRegisters>,
     fired: Vec<u8>,
     out: Vec<u8>,
-    /// Whether the chip ran in closed loop, so that the test cannot predict the potentials.
+    /// Whether the chip ran in closed loop. If true, the test cannot predict the potentials.
     is_stale: bool,
 }
 
 impl Known {
-    /// Takes the chip's present memories as expected, for a chip that was just reset.
+    /// Returns the chip's present memories as the expected state, for a chip that was just reset.
     fn of(board: &TinyBoard) -> Self {
         let pins = board.pins();
         let (neurons, synapses) = (pins.chip.neurons.clone(), pins.chip.synapses.clone());
@@ -107,7 +107,7 @@ impl Known {
         }
     }
 
-    /// Applies an input to the expected neurons.
+    /// Updates the expected neurons as the chip does for an input.
     fn take(&mut self, input: TinyOdinInput) {
         let Some(TinyOdinRegisters { last_neuron, .. }) = self.registers else { return };
         let none = Drive { is_event: true, is_leak: false, virtual_bits: 0, synapse: 0, pre: 0 };
@@ -172,7 +172,7 @@ impl Known {
     }
 }
 
-/// Numbers of calls, of errors and of gatings so far.
+/// Numbers of calls, of errors, and of successful calls of `gate` so far.
 #[derive(Debug, Default)]
 struct Tally {
     calls: u32,
@@ -180,7 +180,8 @@ struct Tally {
     gates: u32,
 }
 
-/// Makes the random calls of one schedule. Panics if a call returns `Ok` and the chip is not as expected.
+/// Makes the random calls of the schedule that `seed` determines, with at most `most_faults` lost or doubled clock
+/// pulses. Panics if a call returns `Ok` and the chip is not as expected.
 fn schedule(seed: u64, most_faults: u32, tally: &mut Tally) {
     let mut random = Random(Pcg32::seed_from_u64(seed));
     let board = TinyBoard::new(2 + random.below(63), 1 + random.below(3));
@@ -373,8 +374,8 @@ fn running(
     }
 }
 
-/// Updates what the test expects of a chip that was just gated. If the loop was closed, the test stops comparing spikes
-/// and potentials.
+/// Updates the expected state of a chip that was just gated. If the chip ran in closed loop (spikes reach other
+/// neurons), the test cannot predict spikes and potentials, and the next comparison leaves them out.
 fn finish(known: &mut Known) {
     if !known.is_open_loop() {
         known.fired.clear();

@@ -7,18 +7,18 @@ use spikewire_chips::{
     Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
 };
 
-/// A neuron of the reference, in plain arithmetic. Its potential does not contain the offset by which the chip lowers
-/// all potentials during a step.
+/// A neuron of the reference: the test's own computation of the network, with which the chip's spikes must agree.
+/// `potential` leaves out the offset by which the chip lowers all potentials during a step.
 #[derive(Clone, Debug)]
 struct Neuron {
     threshold: i32,
     leak: i32,
     /// Amount by which an event that raises the neuron (a rung) changes its potential.
     rung: i32,
-    /// Number of leaks that only this neuron receives after a spike.
+    /// Number of leaks that act only on this neuron, at the end of each step in which it fires.
     own: u16,
-    /// Weights from the previous layer (without the bias and the neuron's own layer). A neuron of the previous layer
-    /// has one weight for each of its rows of synapses; those of its first neuron come first.
+    /// Weights from the previous layer: [`Net::rows`] weights from its first neuron, then as many from its second
+    /// neuron, and so on. Contains no weights from the bias or from the neuron's own layer.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -31,9 +31,9 @@ struct Net {
     has_bias: bool,
     rows: usize,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// The chip lowers a neuron at rest to `below` rungs below 0, and its threshold is `above` rungs higher than that
-    /// of the reference.
+    /// Number of rungs by which each potential on the chip is lower than in the reference, between steps.
     below: u16,
+    /// Number of rungs by which each threshold on the chip is higher than in the reference.
     above: u16,
     leaks: Vec<Vec<u16>>,
     lift: u16,
@@ -155,8 +155,8 @@ impl Net {
     }
 }
 
-/// The network in the form that the driver loads. All rows of synapses are inputs, in open loop. The second field is
-/// the number of rows.
+/// The network in the form that the driver loads: without recurrent weights, and with every row of synapses as the row
+/// of an input. The second field is the number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

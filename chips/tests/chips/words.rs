@@ -105,8 +105,8 @@ fn a_virtual_event_of_odin_has_its_sign_apart() {
     }
 }
 
-/// A time step turns the state that `before_step` returns into the given state. If no state leads to the given state
-/// without firing, `before_step` returns `None`.
+/// `before_step` gets the state of a neuron after a time step, and must return the state before that step. It must
+/// return `None` if the neuron cannot have reached the given state without firing.
 #[test]
 fn before_a_time_step_a_neuron_of_odin_was_higher() {
     let neuron = |potential| OdinNeuron { threshold: 100, leak: 5, potential, ..OdinNeuron::REST };
@@ -124,7 +124,8 @@ fn before_a_time_step_a_neuron_of_odin_was_higher() {
     assert_eq!(before(OdinNeuron { learning: Some(learning), ..neuron(0) }), None);
 }
 
-/// Checks the numbers and values of the registers, the open loop, and the longest sweep.
+/// Checks the numbers and values of the registers, and whether they open the loop. Also checks the number of clock
+/// cycles that tinyODIN takes to apply one spike to all neurons in use.
 #[test]
 fn registers_are_those_of_the_documentation() {
     fn written<I: Input>(registers: &I::Registers) -> Vec<(u16, u32)> {

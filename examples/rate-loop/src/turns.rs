@@ -2,10 +2,11 @@
 
 use spikewire_chips::{ReckOnNetwork, ReckOnPair, ReckOnShared};
 
-/// Number of steps from inputs to the answer that shows their effect; a step is a tick, 5000 µs in the recording.
+/// Delay of the chip's answers, in steps: an answer shows the effect of the inputs of `LATE` steps before.
+/// A step is a tick, 5000 µs in the recording.
 pub const LATE: usize = 2;
 
-/// The value of 1 in an answer, in the units of the training.
+/// The value of 1 in an answer, in the units of the trained network.
 pub const UNIT: f32 = 0.0009810269;
 
 /// Neurons in each layer: 32 (node `neurons`); 3 outputs. Inputs: 25, of 25 neurons of 1 column.

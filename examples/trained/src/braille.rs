@@ -133,7 +133,7 @@ pub type Trained = Then<Layer1, Layer2>;
 pub static NETWORK: Trained = Layer::new(&WEIGHTS_1, &NEURONS_1).recurrent(Full(&OWN_1))
     .then(Layer::new(&WEIGHTS_2, &NEURONS_2));
 
-/// Steps from rest: the inputs that fire, and the neurons of each layer that must.
+/// Steps from rest: for each step, the inputs that fire, and the neurons of each layer that must then fire.
 #[rustfmt::skip]
 static STEPS: [(&[u16], [&[u16]; 2]); 10] = [
     (&[1, 10], [&[], &[]]),
@@ -152,8 +152,8 @@ static STEPS: [(&[u16], [&[u16]; 2]); 10] = [
 #[rustfmt::skip]
 static POTENTIALS: [f32; 7] = [-3.0928638, -1.5910146, 0.19192338, 1.2528577, -8.738899, 0.8767543, 1.4429147];
 
-/// Runs 10 steps whose spikes and potentials are known, bit by bit. Do not arm if it returns false: the flash, the
-/// compiler or the core has made another network of it.
+/// Returns whether 10 steps give the known spikes and potentials, bit by bit. If not, the flash, the compiler or
+/// the core has altered the network: do not arm.
 pub fn is_intact() -> bool {
     let mut state = NETWORK.state();
     let spikes_are = STEPS.iter().all(|(inputs, [fired_1, fired_2])| {

@@ -55,7 +55,7 @@ impl Encoding {
     }
 
     /// Returns the number of fields whose numbers are packed together in one group. `in_a_row` is the number of
-    /// neighbouring fields with this encoding.
+    /// successive fields with this encoding.
     pub(crate) fn group(self, in_a_row: usize) -> usize {
         match self {
             Self::UpToEight => in_a_row.min(8),

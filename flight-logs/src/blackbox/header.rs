@@ -15,7 +15,7 @@ pub(crate) struct Header {
     pub battery: i32,
     /// Fields of full frames.
     pub full: Fields,
-    /// Fields of frames that hold differences from the frame before.
+    /// Fields of frames that hold differences from the previous frame.
     pub changes: Fields,
     pub slow: Fields,
     pub gps: Fields,

@@ -24,8 +24,8 @@ pub(crate) const START: &[u8] = b"H Product:Blackbox";
 /// Name of the topic with the frames of the main loop.
 pub(crate) const MAIN: &str = "main";
 
-/// Longest plausible step between two frames, in µs and in iterations. A longer step counts as damage unless the
-/// following frames confirm it.
+/// Longest plausible step from one frame to the next, in µs and in loop iterations. A longer step counts as damage,
+/// unless the following frames confirm it.
 const LONGEST_JUMP: (i64, i64) = (10_000_000, 5000);
 
 /// Reader of a file with one or several blackbox logs.

@@ -10,9 +10,9 @@ use crate::window::Window;
 use crate::{Entry, Log, Result};
 use std::path::Path;
 
-/// First two bytes of a message. The third is its type.
+/// First two bytes of a message. The third byte is the message's type.
 const HEAD: &[u8] = &[0xa3, 0x95];
-/// Length of a message's header in bytes.
+/// Offset of the content in a message, in bytes: the length of the header.
 const CONTENT: usize = 3;
 
 /// Reader of a binary log.
@@ -129,7 +129,7 @@ enum Defined {
 }
 
 impl Defined {
-    /// Parses the content of an `FMT` message, which defines a format; returns `None` if it is invalid.
+    /// Parses the content of an `FMT` message, which defines a format; returns `None` if the content is invalid.
     fn of_format(content: &[u8]) -> Option<Self> {
         let (&[kind, length], rest) = content.split_first_chunk()?;
         let (name, rest) = rest.split_at_checked(4)?;

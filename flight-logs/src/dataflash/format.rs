@@ -151,8 +151,8 @@ fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, Str
     }
 }
 
-/// Finds the column with the time since boot, and its unit in ns. It is the first column, except in messages of the
-/// GPS, in which `TimeMS` is the satellites' time and `T` the time since boot.
+/// Returns the index of the column with the time since boot, and the unit of this time in ns. The first column has this
+/// time, except in messages of the GPS: there `TimeMS` is the satellites' time, and `T` the time since boot.
 fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
     const MICROSECOND: i64 = 1_000;
     const MILLISECOND: i64 = 1_000_000;

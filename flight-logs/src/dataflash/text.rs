@@ -36,8 +36,8 @@ impl Text {
         })
     }
 
-    /// Processes a line of the log; `at` is its offset in the file. Returns the message's entry, or `None` if the line
-    /// is no message.
+    /// Processes a line of the log; `at` is the offset of the line in the file. Returns the message's entry, or `None`
+    /// if the line is no message.
     fn line(&mut self, at: u64, line: &str) -> Result<Option<Entry>> {
         let (name, rest) = line.split_once(',').unwrap_or((line, ""));
         let name = name.trim();
@@ -108,7 +108,7 @@ impl Text {
         Ok(instance)
     }
 
-    /// Parses the columns of an `FMT` message, and stores the format; returns whether they are valid.
+    /// Parses the columns of an `FMT` message, and stores the format; returns false if the columns are invalid.
     fn define(&mut self, line: &str) -> bool {
         let mut words = line.splitn(5, ',').map(str::trim);
         let mut word = || words.next().unwrap_or_default();

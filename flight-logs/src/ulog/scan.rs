@@ -33,7 +33,8 @@ struct Found {
     first: usize,
 }
 
-/// Number, total length and greatest length of the dropouts, during which the logger could not write.
+/// Number, total duration and longest duration of the dropouts, in which the logger could not write. Durations are in
+/// ms.
 #[derive(Debug, Default)]
 struct Dropouts {
     count: u64,
@@ -109,7 +110,7 @@ pub(crate) struct Series {
 }
 
 impl<'a> Scan<'a> {
-    /// Finds all messages in a log, which must be at least as long as its header.
+    /// Finds all messages in a log. `bytes` must be at least as long as the file header.
     pub(crate) fn run(bytes: &'a [u8]) -> Self {
         let mut scan = Self {
             bytes,
@@ -168,8 +169,8 @@ impl<'a> Scan<'a> {
         (content.end <= end).then_some(Message { at, kind, content })
     }
 
-    /// Returns the message at offset `at` if it is valid. Also returns an invalid message that can be skipped, because
-    /// another message or the end of the log follows it.
+    /// Returns the message at offset `at`, if the message is valid or can be skipped. An invalid message can be skipped
+    /// if another message or the end of the log follows it.
     fn accepted(&self, at: usize, end: usize) -> Option<Message> {
         let message = self.header(at, end)?;
         if self.is_good(&message) {

@@ -48,8 +48,8 @@ pub(crate) struct ChannelOptions {
     )]
     columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: the column
-    /// with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas gives to times; in a ROS log: the time at which a
-    /// message was recorded
+    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a ROS log: the time at which
+    /// a message was recorded
     #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     time: Option<String>,
     /// Unit of the time column; default: the unit in its name, such as `time (us)` or `stamp_ns`, or else a guess from
@@ -127,7 +127,7 @@ impl ChannelOptions {
     }
 }
 
-/// The file to which a log from standard input was copied.
+/// Temporary copy of standard input; `None` if no copy was needed.
 static COPIED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 
 /// Returns the path from which a recording can be read. A log, a `NumPy` archive or a Parquet file on standard input is

@@ -11,8 +11,8 @@ const PERIOD: Duration = Duration::from_millis(500);
 /// Maximum number of addresses whose event rates are shown.
 const ADDRESSES: usize = 6;
 
-/// A status line on standard error. It is shown only if standard error is a terminal, and the command does not write
-/// its output to a terminal.
+/// A status line on standard error. The line is hidden if standard error is no terminal. It is also hidden if the
+/// command's output goes to a terminal.
 pub(crate) struct Live {
     line: Option<ProgressBar>,
     shown: Instant,

@@ -43,7 +43,7 @@ pub(crate) fn read(path: &str) -> Result<File, String> {
     File::read(path).map_err(|error| words::of_lab(&error))
 }
 
-/// The scheme, or `None` if none was named, with the sample type and the given parameters.
+/// The scheme if one was named, the sample type, and the parameters that were given.
 pub(crate) type Chosen = (Option<Scheme>, SampleType, Asked);
 
 impl Coding {
@@ -66,7 +66,7 @@ impl Coding {
     /// Returns the scheme, the sample type and the parameters, from the command line and the file of `--params`.
     ///
     /// # Errors
-    /// Returns an error if neither of the two names a scheme, or if they name different schemes.
+    /// Returns an error if neither command line nor file names a scheme, or if they name different schemes.
     pub(crate) fn one(&self) -> Checked<(Scheme, SampleType, Asked)> {
         let (scheme, sample, parameters) = self.chosen()?;
         let Some(scheme) = scheme else {
@@ -156,8 +156,8 @@ option_group!(
 const PARAMETERS: &str = "Parameters";
 const CALIBRATION: &str = "Instead of calibration";
 
-/// Adds an option to `command` for each parameter that `is_taken` accepts; the parameters are those of all schemes.
-/// Schemes with a parameter of the same name share one option.
+/// Adds an option to `command` for each parameter of any scheme that `is_taken` accepts. Schemes with a parameter of
+/// the same name share one option.
 pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) -> Command {
     for (name, owners) in parameters(is_taken) {
         let Some(&(_, parameter)) = owners.first() else { continue };
@@ -197,8 +197,7 @@ pub(crate) fn given(matches: &ArgMatches, is_taken: fn(&Parameter) -> bool) -> A
     asked
 }
 
-/// Parses the value of a parameter's option. For a filter, [`FREE`] is accepted too: `tune` then searches the taps
-/// themselves.
+/// Parses the value that an option gives to a parameter. If the parameter is a filter, the text may also be [`FREE`].
 ///
 /// # Errors
 /// Returns a message if the text is not a value of the parameter's kind.
@@ -209,11 +208,11 @@ fn read_value(parameter: &Parameter, text: &str) -> Result<Value, String> {
     parameter.read(text).map_err(|error| error.without_subject().spelled(words::option).to_string())
 }
 
-/// The value of `--filter` with which `tune` searches the taps themselves.
+/// The value of `--filter` with which `tune` searches for each coefficient of the filter, rather than for the filter's
+/// shape, length and sum.
 pub(crate) const FREE: &str = "free";
 
-/// The name of an option, and a list of the schemes that share the option. Each scheme is paired with its parameter of
-/// this name.
+/// The name of an option, and a pair (scheme, parameter) for each parameter of this name.
 type Owned = (&'static str, Vec<(&'static Info, &'static Parameter)>);
 
 fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
@@ -229,8 +228,9 @@ fn parameters(is_taken: fn(&Parameter) -> bool) -> Vec<Owned> {
     all
 }
 
-/// Returns the help of the option that these schemes share. Schemes for which the option has the same meaning are
-/// listed together: `sf, mw: MEANING, in the signal's unit, such as 0.1. tbr: OTHER MEANING`.
+/// Returns the help text of an option. `owners` are the schemes that share the option, each with its parameter. Schemes
+/// for which the option has the same meaning are listed together: `sf, mw: MEANING, in the signal's unit, such as 0.1.
+/// tbr: OTHER MEANING`.
 fn help(owners: &[(&'static Info, &'static Parameter)]) -> String {
     let mut meanings: Vec<(Vec<&str>, String)> = Vec::new();
     for (info, parameter) in owners {

@@ -24,21 +24,22 @@ use std::time::{Duration, Instant};
 const WINDOW: u32 = 2_000_000;
 /// Minimum time between two drawings of the panel.
 const PERIOD: Duration = Duration::from_millis(50);
-/// Maximum time, in µs, by which the panel's clock advances at a received tick. After a restart of the sender, ticks
-/// may jump farther.
+/// Maximum time, in µs, that a received tick adds to the elapsed time on the panel. If the sender restarts, its ticks
+/// may jump by more.
 const MOST_STEP: u32 = 1_000_000;
-/// Number of lines below the channels. They show the counts of the link, and the reasons that values are not exact.
+/// Number of lines below the channels. They show the numbers of received and lost frames, and the reasons why values
+/// may differ from the sender's.
 const FOOTER: u16 = 3;
 /// Maximum number of channels that are drawn.
 const MOST_CHANNELS: usize = 24;
 
-/// The content of the picture: the state of every channel, as far as it has been received.
+/// The content of the picture: the values and spikes of every channel that have been received.
 pub(crate) struct Panel {
     channels: Vec<Channel>,
     /// Number of neurons of each channel.
     neurons: u16,
     now: Option<Tick>,
-    /// Time of the sender's clock since the first frame, in µs.
+    /// Time since the first frame, by the sender's clock, in µs.
     elapsed: u64,
     spikes: u64,
 }
@@ -48,15 +49,15 @@ struct Channel {
     name: String,
     unit: String,
     value: Option<f64>,
-    /// Reason that the value is not exact, if there is one.
+    /// Reason that the value is not exact; `None` if it is exact.
     withheld: Option<Withheld>,
     /// Time and direction of the spikes that the raster shows.
     spikes: VecDeque<(Tick, Polarity)>,
 }
 
 impl Panel {
-    /// Makes an empty panel, for channels with `neurons` neurons each. A channel's line appears when the channel first
-    /// sends; its name is its number.
+    /// Makes an empty panel for channels with `neurons` neurons each. A channel is added when it first sends, and is
+    /// named by its number.
     pub(crate) fn new(neurons: usize) -> Self {
         let neurons = u16::try_from(neurons).unwrap_or(u16::MAX).max(1);
         Self { channels: Vec::new(), neurons, now: None, elapsed: 0, spikes: 0 }
@@ -81,7 +82,8 @@ impl Panel {
         Box::new(Noting { panel: Rc::clone(panel), values })
     }
 
-    /// Returns the channel to which an address belongs; `None` beyond [`MOST_CHANNELS`].
+    /// Returns the channel to which an address belongs. The panel adds the channel if it is new. Returns `None` if a
+    /// new channel's number, counted from 0, is [`MOST_CHANNELS`] or higher.
     fn channel(&mut self, address: u16) -> Option<&mut Channel> {
         let place = usize::from(address / self.neurons);
         if place >= self.channels.len() && place < MOST_CHANNELS {
@@ -117,8 +119,8 @@ impl Panel {
         }
     }
 
-    /// Draws a line for each channel. Below them, draws the counts of the link and the reasons that values are not
-    /// exact.
+    /// Draws a line for each channel. Below the channels, draws the numbers of received and lost frames, and the
+    /// reasons why values may differ from the sender's.
     fn draw(&self, frame: &mut Frame<'_>, tally: &LinkTally) {
         let [table, footer] =
             Layout::vertical([Constraint::Fill(1), Constraint::Length(FOOTER)]).areas(frame.area());
@@ -157,8 +159,9 @@ impl Panel {
         Row::new(cells).style(style)
     }
 
-    /// Formats the spikes of a channel as a line of text, the latest at the right. The upper half of a character shows
-    /// spikes up, the lower half spikes down.
+    /// Formats the spikes of a channel as a line of `width` characters, with the latest spike at the right. A character
+    /// stands for a short time. The upper half of the character is filled if there was an up spike in this time, and
+    /// the lower half if there was a down spike.
     fn raster(&self, channel: &Channel, width: u16) -> String {
         const GLYPHS: [char; 4] = ['·', '▀', '▄', '█'];
         let mut cells = vec![0; usize::from(width)];
@@ -173,7 +176,8 @@ impl Panel {
         cells.into_iter().map(|cell| GLYPHS[cell]).collect()
     }
 
-    /// Formats the counts of the link. Appends the reason for each channel whose value is not exact.
+    /// Formats the time and the numbers of spikes, received frames and lost frames. Further lines name the channels
+    /// whose values may differ from the sender's, each line with the reason.
     fn counts(&self, tally: &LinkTally) -> String {
         let LinkTally { frames, lost, gaps, .. } = tally;
         let (seconds, spikes) = (self.elapsed as f64 / 1e6, self.spikes);
@@ -208,8 +212,8 @@ struct Noting<'a> {
 }
 
 impl Noting<'_> {
-    /// Copies the values in `items` to the panel. Also copies, for every channel, the reason that its value is not
-    /// exact.
+    /// Copies the values in `items` to the panel. Also copies the reason that a channel's value is not exact, for every
+    /// channel.
     fn note(&self, items: &[Item]) {
         let mut panel = self.panel.borrow_mut();
         for item in items {
@@ -248,7 +252,7 @@ impl Values for Noting<'_> {
     }
 }
 
-/// The lines of the terminal in which a panel is drawn, below earlier output.
+/// The part of the terminal in which a panel is drawn. Earlier output stays visible above this part.
 pub(crate) struct Screen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
     panel: Rc<RefCell<Panel>>,

@@ -31,15 +31,15 @@ pub(crate) fn handle() -> Result<()> {
     Ok(())
 }
 
-/// Condition that ends a command which would otherwise run forever: a time limit or Ctrl-C.
+/// Condition that ends a command early: Ctrl-C or a time limit.
 pub(crate) struct Stop {
     start: Instant,
     after: Option<Duration>,
 }
 
 impl Stop {
-    /// Creates a condition that is met after Ctrl-C and, if `seconds` is given, when this number of seconds has passed.
-    /// A second Ctrl-C ends the program at once.
+    /// Creates a condition for the end of a command. The command is due to end after Ctrl-C. If `seconds` is given, the
+    /// command is also due to end after that time. A second Ctrl-C ends the program at once.
     ///
     /// # Errors
     /// Returns an error if `seconds` is not above 0.

@@ -29,7 +29,7 @@ pub(crate) fn of(error: &Error) -> String {
     words.join(": ")
 }
 
-/// Formats an error of the library `lab`. If an option or a command can help, the text ends with it.
+/// Formats an error of the library `lab`. The text ends with a command that helps, if one is known.
 pub(crate) fn of_lab(error: &lab::Error) -> String {
     let help = match *error.kind {
         ErrorKind::Log(LogKind::NeedsChannel) => "; `spikewire info` lists them",

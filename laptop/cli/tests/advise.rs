@@ -35,9 +35,9 @@ fn a_scheme_within_the_error_is_advised_with_its_figures() {
     assert!(std::fs::read_to_string(picture).unwrap().starts_with("<svg "));
 }
 
-/// A control loop of 5 Hz bandwidth, at 100 samples a second, allows a latency of one sample, about 20° of phase. No
-/// code with a longer latency is advised. Step forward is not advised either: if it is tuned for few spikes, it cannot
-/// follow this signal's jumps.
+/// A control loop with a bandwidth of 5 Hz tolerates a phase lag of 20°. At 100 samples a second, this allows a latency
+/// of one whole sample. No code with a longer latency is advised. The scheme `sf` (step forward) is not advised either,
+/// because it cannot follow this signal's jumps if it is tuned for few spikes.
 #[test]
 fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     let sample = |sample: u32| {
@@ -150,8 +150,8 @@ fn more_lost_frames_than_were_flown_are_refused() {
     refused(&format!("advise {log} --rate 100 --frame-loss 11"), "", refusal);
 }
 
-/// The vibration of the motors is nearly as large as the motion of the flight (noise 0.124, whole signal 0.206), yet
-/// the log is not mistaken for noise.
+/// The vibration of the motors is nearly as large as the motion of the flight: the noise has a standard deviation of
+/// 0.124, and the whole signal has one of 0.206. Still, the log is not mistaken for noise.
 #[test]
 fn a_shaken_flight_is_advised_on() {
     let text = std::fs::read_to_string(flight("hexarotor.csv")).unwrap();

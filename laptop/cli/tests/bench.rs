@@ -28,8 +28,9 @@ fn the_last_line_says_how_many_means_agree() {
 }
 
 /// Mean efficiencies and RMSEs that an earlier version of `bench` printed. Each item has the name of the table, the
-/// length of the signals in seconds, and one mean for each of [`SCHEMES`]. A single changed spike changes these means.
-/// They therefore reveal a slightly wrong rule, unlike a comparison with the paper's statistics.
+/// length of the signals in seconds, and one mean for each of [`SCHEMES`]. A single
+/// spike that moves changes a mean. `bench` compares its means with the paper's only within the error of sampling, which
+/// hides such a change.
 #[rustfmt::skip]
 const BEFORE: [(&str, u64, [f64; 8]); 6] = [
     ("efficiency", 1, [37.900000, 29.975000, 75.100000, 45.800000, 73.675000, 62.275000, 0.000000, -223.700000]),
@@ -58,7 +59,8 @@ fn every_spike_is_where_it_was() {
     }
 }
 
-/// With only two signals in each case, and an unlucky seed, means differ too much from the paper's, and `bench` fails.
+/// `bench` fails if its mean values differ too much from the paper's. With only two signals in each case, some seeds
+/// give such means.
 #[test]
 fn a_benchmark_that_differs_is_an_error() {
     let differing = (1..200).find_map(|seed| {

@@ -1,8 +1,8 @@
 //! `network --on controller`: the converted networks fire as in the frameworks that trained them. The tests cover the
 //! update rule of each framework.
 //!
-//! In `peers/nir`, `lif`, `braille` and their spikes are from the repository of NIR (BSD 3-Clause, 2023, NIR Team);
-//! `peers/frameworks.py` wrote the other files.
+//! The files `lif*` and `braille*` in `peers/nir` come from the repository of NIR (BSD 3-Clause, 2023, NIR Team). The
+//! script `peers/frameworks.py` wrote the other files there.
 
 mod common;
 
@@ -42,7 +42,8 @@ fn differing(one: &Trains, other: &Trains) -> usize {
     one.iter().zip(other).map(|(one, other)| only(one, other) + only(other, one)).sum()
 }
 
-/// Two recurrent networks read Braille. The spikes of their hidden layers equal the published spikes.
+/// Two recurrent networks for reading Braille were published with the spikes of their hidden layers. Here, these layers
+/// fire exactly the same spikes, in the controller's arithmetic and in double precision.
 #[test]
 fn networks_that_snntorch_trained_fire_as_was_published() {
     let inputs = trains("braille.txt");
@@ -65,8 +66,8 @@ fn networks_that_snntorch_trained_fire_as_was_published() {
     }
 }
 
-/// Over 1000 steps, the potentials of one neuron equal those that the frameworks recorded: within 1e-7 for Norse, to
-/// the bit for the others.
+/// Over 1000 steps, the potentials of one neuron equal those that the frameworks recorded: within 1e-7 for Norse, bit
+/// for bit for the others.
 #[test]
 fn one_neuron_has_the_potentials_that_were_published() {
     let table = text("lif.csv");
@@ -153,8 +154,8 @@ fn networks_fire_as_their_frameworks_do() {
     }
 }
 
-/// Neurons that rest above 0 are moved to 0 with their thresholds, and a spike still subtracts the whole threshold: 0.4
-/// where 0.3 is left above rest.
+/// Neurons that rest at 0.1 with a threshold of 0.4 become neurons that rest at 0 with a threshold of 0.3. A spike
+/// still subtracts 0.4, as in the file.
 #[test]
 fn a_spike_subtracts_the_files_threshold_wherever_a_neuron_rests() {
     let (_directory, spikes) = common::file("spikes.txt", "0 2 5\n1 4\n\n".repeat(20));
@@ -247,8 +248,8 @@ fn a_network_becomes_the_module_of_the_firmware() {
     assert!(share.parse::<f64>().unwrap() > 95.0, "{}", ran.stderr);
 }
 
-/// A network in JSON needs no options for its update rule. The report also compares the potentials of outputs that
-/// never fire.
+/// A network in JSON needs no options for its update rule, the order of decay, firing and reset. If the outputs never
+/// fire, the report compares their potentials on the controller with those in double precision.
 #[test]
 fn json_goes_onto_the_controller_and_answers_step_by_step() {
     let json = r#"{"layers": [{"weights": [[3, 0], [0, 5]], "threshold": 5.5}], "readout": {"weights": [[1, -2]]}}"#;

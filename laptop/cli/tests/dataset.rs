@@ -1,5 +1,5 @@
-//! `dataset` with many logs: a run that was killed is continued, and the Parquet files restore exactly the spikes of a
-//! single `encode`.
+//! `dataset` with many logs: a run that was killed can be continued. The spikes restored from a Parquet file equal
+//! those that `encode` writes for the same log.
 
 mod common;
 
@@ -368,9 +368,10 @@ fn measured(arguments: &str, dataset: &Path, until: usize) -> f64 {
     most
 }
 
-/// Encoding a thousand logs in one run takes at most 1.2 times the processor time of encoding each on its own. Tables
-/// repeat a real flight, and `ULog` files are cut from one; the other formats hold sine waves. The test takes minutes:
-/// `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`, on Linux.
+/// One run that encodes a thousand logs takes at most 1.2 times the processor time of a thousand runs with one log
+/// each. The tables among the logs repeat a real flight, and the `ULog` files are parts of a real flight. The logs in
+/// other formats hold sine waves. The test takes minutes, and runs on Linux only:
+/// `cargo test --release -p spikewire-cli --test dataset -- --ignored --nocapture`.
 #[test]
 #[ignore = "a measurement"]
 fn a_thousand_logs_cost_little_more_than_each_alone() {

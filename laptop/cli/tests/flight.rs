@@ -21,7 +21,8 @@ impl Put for Items<'_> {
     }
 }
 
-/// Returns a sample of a sine wave with an amplitude of 1.5 units, in a sensor's counts.
+/// Returns one sample of a channel as a raw sensor reading, in counts. The signal is a sine wave with an amplitude of
+/// 1.5 of the channel's units.
 fn count(channel: usize, sample: usize) -> i16 {
     let value = 1.5 * (sample as f64 * 0.02 * (channel as f64 + 1.0)).sin();
     (value * flight::COUNTS[channel]).round() as i16
@@ -129,8 +130,8 @@ fn a_filtered_flight_is_heard_and_no_other_flight_is_exact() {
     }
 }
 
-/// `encode --flight` converts a table in physical units to counts, and writes the same events as the firmware's
-/// encoders for that flight file.
+/// For a table in physical units, `encode --flight` writes the same events as the firmware's encoders, which take a
+/// sensor's counts. The flight file has the number of counts in a unit.
 #[test]
 fn a_recording_is_coded_as_the_vehicle_does() {
     let names = flight::NAMES.join(",");

@@ -16,7 +16,8 @@ struct Log(Vec<u8>);
 const SCHEME: &str = "encode --scheme sf --threshold 0.5 --topic armed";
 
 impl Log {
-    /// Starts a log with two topics: `armed`, whose samples are 9 bytes and padding, and `gps`, which has a text field.
+    /// Starts a log with two topics. In the format of `armed`, a sample has 9 bytes of data and 7 bytes of padding. The
+    /// topic `gps` has a text field.
     fn new() -> Self {
         let mut log = Self([b"ULog\x01\x12\x35\x01".as_slice(), &[0; 8]].concat());
         log.add(b'F', b"armed:uint64_t timestamp;bool on;uint8_t[7] _padding0;");
@@ -38,7 +39,8 @@ impl Log {
         self.add(b'D', &[&[1, 0], &time.to_le_bytes()[..], &[on]].concat())
     }
 
-    /// Appends ten samples of `armed` that alternate between 0 and 1, 5 ms apart, the first at `start` times 5 ms.
+    /// Appends ten samples of `armed`, whose values alternate between 0 and 1. The samples are 5 ms apart. The time of
+    /// the first is 5 ms multiplied by `start`.
     fn armed_ten(&mut self, start: u64) {
         for sample in start..start + 10 {
             self.armed(sample * 5000, (sample % 2) as u8);

@@ -4,16 +4,16 @@ mod common;
 
 use common::{file, ran};
 
-/// Returns frames whose pixels have steps of 0 to 219; `level` maps a step to a grey level. Both ranges of video, full
-/// and limited, can express 220 levels, and can therefore show the same pictures.
+/// Returns 8 frames whose pixels have brightnesses of 0 to 219, mapped to grey levels by `level`. Video of full range
+/// (0 to 255) and of limited range (16 to 235) can both express 220 brightnesses, and so show the same pictures.
 fn frames(level: impl Fn(u32) -> u8) -> Vec<Vec<u8>> {
     let frame =
         |frame: u32| (0..64 * 48).map(|pixel| level((pixel * 7 + frame * 61) % 220)).collect();
     (0..8).map(frame).collect()
 }
 
-/// Converts a YUV4MPEG2 video with the given header parameters to events, as CSV. Each frame is followed by `chroma`
-/// bytes of grey chroma.
+/// Converts a YUV4MPEG2 video with the given header parameters to events, as CSV. `chroma` is the number of chroma
+/// bytes after each frame; all of them are 128, grey.
 fn events(header: &str, chroma: usize, frames: &[Vec<u8>]) -> String {
     let mut video = format!("YUV4MPEG2 W64 H48 F25:1 {header}\n").into_bytes();
     for frame in frames {

@@ -19,9 +19,11 @@ use std::time::Duration;
 
 const CHANNELS: usize = 3;
 
-/// Frames sent by a simulated board, and the values (tick, address, value) of its own decoders after each event.
+/// The data of a simulated board, which also decodes its own spikes.
 struct Board<S> {
+    /// Frames that the board sent.
     frames: Vec<Vec<u8>>,
+    /// Values that the board's own decoders returned, as (tick in µs, address, value).
     values: Vec<(u32, u16, S)>,
 }
 
@@ -47,7 +49,7 @@ fn waves<S: Sample>(sample: u32) -> [S; CHANNELS] {
     [0.05, 0.07, 0.11].map(|pace: f64| S::from_f64((f64::from(sample) * pace).sin() * 100.0))
 }
 
-/// The items that a bank has output.
+/// List of the items that a bank of encoders puts out.
 #[derive(Default)]
 struct Items(Vec<Item>);
 
@@ -90,8 +92,8 @@ fn board<P: Start<Code = Spike>>(schemes: &[P; CHANNELS]) -> Board<P::Sample> {
     Board { frames: sender.1, values }
 }
 
-/// Simulates a board with a rate or population code, whose decoder gives a value for each sample. Each value has the
-/// first address of its channel.
+/// Simulates a board with a rate or population code. The board's decoder returns a value for each channel in each
+/// sample. The address of a value is the address of its channel's first neuron.
 fn sampled_board<P: Start>(scheme: &P, slot_ticks: u32) -> Board<P::Sample> {
     // With sub-timesteps, the receiver measures the sample period from heartbeats.
     board_since_boot(scheme, slot_ticks, 0, if slot_ticks > 0 { 20 } else { 100 })
@@ -387,8 +389,8 @@ fn keyframes_of_step_forward_tell_wrong_parameters() {
     assert!(!report.contains("contradict"), "{report}");
 }
 
-/// Events with sub-timesteps are decoded for any uptime of the board. If events cannot be decoded, the output gives the
-/// reason.
+/// In a code with sub-timesteps, a sample is divided into short slots of time. `listen` decodes such a code no matter
+/// how long the board has been running. If no value is exact, standard error gives the reason.
 #[test]
 fn slots_are_decoded_after_any_uptime() {
     let scheme = Slots::<f32, 15, 10>::new(-100.0..=100.0, 1.5);
@@ -448,7 +450,7 @@ fn serial_line() -> (File, String, File) {
     (board.into(), name, open)
 }
 
-/// Waits until the program ends, checks that it succeeded, and returns its standard error.
+/// Waits until the program ends, checks that its exit status is 0, and returns its standard error.
 fn finish(child: Child) -> String {
     let done = child.wait_with_output().unwrap();
     let report = String::from_utf8(done.stderr).unwrap();

@@ -1,5 +1,5 @@
-//! Logs of ROS, Betaflight, `ArduPilot` and `MAVLink` are read, whole, cut and damaged. ROS logs that `encode` wrote
-//! are read too.
+//! Logs of ROS, Betaflight, `ArduPilot` and `MAVLink` are read, even if they are cut short or damaged. ROS logs that
+//! `encode` wrote are read too.
 
 mod common;
 
@@ -77,7 +77,7 @@ fn packed(how: &str, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Every log is read with every compression, from a file and from standard input. The compressed files consist of two
-/// streams, as packers that use several cores write them.
+/// streams, as compressors that use several cores write them.
 #[test]
 fn any_log_is_read_in_any_packing() {
     let logs = [
@@ -193,8 +193,8 @@ fn the_files_of_a_directory_are_read_one_after_the_other() {
     refused(&format!("info {}", empty.path().display()), "", &["which has a file metadata.yaml"]);
 }
 
-/// Step forward with a threshold of 101 decodes every sample to within 101 of the angular rate in the log. No rate
-/// changes by more than 101 between two frames.
+/// The scheme `sf` with a threshold of 101 encodes an angular rate of the log. Every decoded value differs from the
+/// rate by at most 101, because the rate changes by at most 101 from one frame of the log to the next.
 #[test]
 fn a_blackbox_log_is_read_frame_by_frame() {
     let (_directory, path) = file("log.bbl", blackbox());
@@ -363,8 +363,9 @@ fn bags_are_tuned_and_advised_on() {
     }
 }
 
-/// The spikes in a ROS log decode to the same values as those in a CSV file. The codes have one neuron or several,
-/// polarities or none, sub-timesteps, or several spikes a sample. Each code is tested on one channel and on two.
+/// Spikes decode to the same values from a ROS log as from a CSV file. The tested schemes differ in the form of their
+/// spikes: one neuron or several, with or without polarities, with sub-timesteps, or with several spikes in a sample.
+/// Each scheme encodes one channel, and then two.
 #[test]
 fn spikes_as_messages_decode_as_those_of_a_table() {
     let flight = flight("hexarotor.csv");

@@ -1,5 +1,5 @@
-//! `listen` must not call a value exact if it decodes with another flight file than the sender's. The test tries
-//! pairs of flight files that differ in one field.
+//! `listen` must not mark a decoded value as exact if the receiver's flight file differs from the sender's. The test
+//! tries pairs of flight files that differ in one field.
 
 use catalogue::run::Known;
 use lab::flight::Flight;
@@ -12,7 +12,8 @@ mod list;
 
 const SAMPLES: usize = 60;
 
-/// Simulates the sender of a flight; returns its frames, which carry the flight's fingerprint.
+/// Simulates the sender of a flight. Returns the frames that it sends, which carry a fingerprint of the flight's
+/// settings.
 fn sent(flight: &Flight) -> Vec<u8> {
     let mut filters = flight.filters().unwrap();
     let mut items: Vec<Vec<Item>> = vec![Vec::new(); SAMPLES];
@@ -79,7 +80,8 @@ fn sent(flight: &Flight) -> Vec<u8> {
     bytes
 }
 
-/// Returns the word that a keyframe carries for a sample: the bits of the sample in the flight's sample type.
+/// Converts `value` to the flight's sample type, and returns its bits. A keyframe carries these bits, so that a decoder
+/// can continue from the value.
 fn bits(flight: &Flight, value: f64) -> u32 {
     use catalogue::run::SampleType;
     match flight.sample {
@@ -107,12 +109,15 @@ fn exact(flight: &Flight, bytes: &[u8]) -> usize {
     String::from_utf8(heard).unwrap().lines().filter(|line| line.ends_with(",exact")).count()
 }
 
-/// A sender. `text` is its flight file, and `frames` are the bytes that it sends. `kinds` has the names of the fields
-/// that the test varies in this file.
+/// A simulated sender.
 struct Sender {
+    /// Text of the sender's flight file.
     text: String,
+    /// Names of fields of the flight file. If two senders of the test have one of these names in common, their flight
+    /// files differ only in the field of this name.
     kinds: BTreeSet<&'static str>,
     flight: Flight,
+    /// The bytes that the sender sends.
     frames: Vec<u8>,
 }
 

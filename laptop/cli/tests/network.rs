@@ -9,7 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Options of the code that drives `roll.nir`, a network whose weights were computed rather than trained.
+/// Options for encoding a recording as the inputs of `roll.nir`, a network whose weights were computed rather than
+/// trained.
 const CODE: &str = "--scheme position --neurons 20 --min -2 --max 2 --column gyro_x";
 
 fn peers(name: &str) -> PathBuf {
@@ -20,11 +21,11 @@ fn network(file: &str) -> String {
     format!("network {file} {CODE} {AS_THE_CHIP} --reset zero {}", flight("hexarotor.csv"))
 }
 
-/// Options for tests with the chip's own rule: neurons compare after each spike. The whole recording is used for
-/// tuning.
+/// Options for tests with the chip's own rule: neurons compare potential and threshold after each spike. The whole
+/// recording is used for tuning.
 const AS_THE_CHIP: &str = "--compare spike --no-held-out";
 
-/// Returns the numbers in one line of `report`, the first that begins with `start`.
+/// Finds the first line of `report` that begins with `start`, and returns the numbers that follow in this line.
 fn figures(report: &str, start: &str) -> Vec<f64> {
     let line = report.lines().find_map(|line| line.strip_prefix(start)).expect(start);
     let numbers = line.split([' ', ',', ';', '%', ':']);
@@ -49,8 +50,9 @@ fn a_nir_graph_becomes_the_constant_of_the_firmware() {
     assert!(winners[0] > 80.0, "{}", ran.stderr);
 }
 
-/// Writes a network to a JSON file, in a new directory. Returns the directory, and the arguments that convert the
-/// network. The network's inputs are the spikes of step forward.
+/// Writes a network to a JSON file in a new directory. Returns the directory, and the arguments that convert the
+/// network. The network's inputs are spikes of the column `gyro_x`, encoded by the scheme `sf` (step forward) with
+/// `threshold`.
 fn driven(layers: &str, threshold: f64, options: &str) -> (tempfile::TempDir, String) {
     let (directory, path) = file("net.json", format!("{{\"layers\": [{layers}}}"));
     let sf = format!("--scheme sf --threshold {threshold} --column gyro_x");
@@ -210,9 +212,10 @@ fn a_file_of_spikes_drives_a_network_that_answers_step_by_step() {
     refused(&reckon, "0\n", &["only tinyODIN"]);
 }
 
-/// A rise and a fall in the same step cancel out in the trained network. They do not cancel out on a chip whose neurons
-/// compare after each spike. A comparison once a step takes more events, but loses nothing here. The command therefore
-/// chooses `--compare step`.
+/// In the trained network, two input spikes in the same step cancel out if one raises and the other lowers a neuron's
+/// potential. On a chip with `--compare spike`, the neuron compares its potential with the threshold after each spike,
+/// and may fire between the two. With `--compare step`, the chip's outputs agree in all steps with those of the trained
+/// network. The command therefore chooses `--compare step`, although each step then needs more events.
 #[test]
 fn neurons_compare_once_a_step_if_that_agrees_better() {
     let json = r#"{"layers": [{"name": "one", "weights": [[7, -7], [3, 6]], "threshold": 6.5},
@@ -290,8 +293,9 @@ fn a_reset_by_subtraction_is_corrected_for_reckon() {
     }
 }
 
-/// The Python example `on_chip.py` trained this network in tinyODIN's arithmetic. In 99 % of the active steps, the chip
-/// agrees with a run in double precision, although only the chip's potentials have a lower bound, -2048.
+/// The Python example `on_chip.py` trained this network in tinyODIN's arithmetic. In at least 99 % of the steps in
+/// which an output fires, the same outputs fire on the chip as in double precision. Only the chip's potentials have a
+/// lower bound, -2048.
 #[test]
 fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let network = peers("on_chip.json").display().to_string();
@@ -319,9 +323,9 @@ fn stretches(is_held_out: bool) -> String {
     table
 }
 
-/// The script `turns.py` trained this recurrent network, and reports its number of spikes. In double precision the
-/// number is the same; on the chip it differs by less than 3 %. The constant equals the one in the firmware
-/// `examples/rate-loop`.
+/// The script `turns.py` trained this recurrent network, and printed how many spikes the network fires. The command
+/// counts the same number of spikes in double precision. On the chip, the number of spikes differs by less than 3 %.
+/// The constant that the command writes equals the one in the firmware `examples/rate-loop`.
 #[test]
 fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     let (_trained, trained) = file("trained.csv", stretches(false));
@@ -363,8 +367,8 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
-/// Two forms of NIR graphs are read: layers that are nested graphs, as snnTorch and Norse write them, and a recurrent
-/// layer.
+/// A NIR graph whose layers are nested graphs, as snnTorch and Norse write them, gives the same constants as a flat
+/// graph, apart from the names of nodes. The weights of a recurrent layer are read too.
 #[test]
 fn nested_and_recurrent_graphs_are_taken() {
     let whole = good(&network(&peers("roll.nir").display().to_string()), "");

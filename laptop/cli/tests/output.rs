@@ -9,7 +9,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Number of table rows sent to `encode`: more than it reads before it opens its output.
+/// Number of table rows sent to `encode`: more than `encode` reads before it opens the output.
 const ROWS: usize = 20_000;
 
 #[test]

@@ -39,8 +39,8 @@ fn curve(svg: &str, colour: &str) -> Vec<(f64, f64)> {
     lines.map(points).max_by_key(Vec::len).unwrap()
 }
 
-/// The PNG has the decoded curve at every point where the SVG has it, and no pixel of the curve's colour above the
-/// curve's highest point.
+/// The PNG and the SVG of a plot show the same decoded curve. In the PNG, no pixel above the highest point of this
+/// curve has the curve's colour.
 #[test]
 fn png_shows_what_svg_shows() {
     let hexarotor = flight("hexarotor.csv");

@@ -16,11 +16,12 @@ use flight_logs::made::{KINDS, blackbox, dataflash, dataflash_text, tlog};
 use std::fs;
 use std::path::Path;
 
-/// Pairs of a name and the text that `{name}` stands for; a later definition may use the names before it.
+/// Names that the cases may use, each with the text that replaces `{name}` in a case. This text may itself contain
+/// names that stand earlier in the list.
 type Names = Vec<(String, String)>;
 
-/// Returns the names that every file of cases may use. Writes the sample logs that some of the names stand for into
-/// `directory`.
+/// Returns the names that the cases in the directory `said` may use, each with its text. Some texts are paths of sample
+/// logs. The function writes these logs into `directory`.
 fn names(directory: &Path) -> Names {
     let wave = |size: f64| -> Vec<f64> {
         (0..500).map(|sample| (f64::from(sample) * 0.05).sin() * size).collect()

@@ -16,7 +16,8 @@ fn table(times: impl Iterator<Item = i64>) -> String {
     table
 }
 
-/// Runs `score` with step forward; returns standard error, and the number of spikes a second.
+/// Runs `score` with the scheme `sf` (step forward) on the file at `path`. Returns the text on standard error, and the
+/// number of spikes a second.
 fn spikes_a_second(path: &str) -> (String, f64) {
     let ran = ran!("score --scheme sf --threshold 0.1 --json {path}");
     let rows: serde_json::Value = ran.json();

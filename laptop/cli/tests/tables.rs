@@ -57,8 +57,8 @@ fn other_encodings_and_compressed_tables_are_read() {
     assert_eq!(decoded, good("decode", &spikes).output.as_bytes());
 }
 
-/// A Zstandard file may consist of several frames, and some of them may be skippable. Packers that use several cores
-/// write such files.
+/// A Zstandard file may consist of several frames, and some of them may be skippable. Compressors that use several
+/// cores write such files.
 #[test]
 fn all_frames_of_zstandard_are_read() {
     let skipped = b"\x5a\x2a\x4d\x18\x03\0\0\0abc";
@@ -154,7 +154,7 @@ fn a_binary_file_is_no_file_of_spikes() {
     }
 }
 
-/// A table whose first 20 000 rows have no value is read.
+/// The program reads a table even if the values in its first 20 000 rows are missing.
 #[test]
 fn missing_values_may_come_first() {
     let late = [vec![f64::NAN; 20_000], vec![0.0, 1.0]].concat();

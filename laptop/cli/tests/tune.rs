@@ -64,8 +64,9 @@ fn no_threshold_on_a_grid_is_better() {
     }
 }
 
-/// If the goal is exactly the efficiency that known settings reach, the search finds settings at least as good. The
-/// rounding of a percentage must not exclude the known settings.
+/// `score` gives the efficiency (the percentage of samples without a spike) and the RMSE of a known threshold. The
+/// search, with exactly this efficiency as its goal, finds settings with an RMSE that is no larger. The rounding of the
+/// percentage must not exclude the known threshold.
 #[test]
 fn settings_exactly_at_the_goal_are_found() {
     let flight = flight("hexarotor.csv");
@@ -97,8 +98,9 @@ fn a_search_that_ran_out_of_time_is_reported() {
     assert!(whole.contains("all of") && !whole.contains("cut short"), "{whole}");
 }
 
-/// The tuned blocks hold square waves, and the held-out blocks hold sine waves. Settings with a few large steps fit
-/// only the square waves. The report says so, although the paper's settings, which give more spikes, fit both.
+/// The blocks for tuning hold square waves, and the held-out blocks hold sine waves. Settings with a few large steps
+/// fit only the square waves. The paper's settings fit both, but give more spikes. The report still warns that the
+/// found settings fit only the blocks for tuning.
 #[test]
 fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
     let before = |block: usize| (block as f64 * 0.3 + 0.35).floor();
@@ -140,8 +142,8 @@ fn all_blocks_are_coded_within_the_flight_and_drift_is_reported() {
     }
 }
 
-/// In a flight with an impact, some sample needs more than 16 spikes to reach an RMSE of 0.06. The search chooses the
-/// maximum number of spikes in a sample. This number suffices, and is at most twice the number needed.
+/// In a flight with an impact, an RMSE of 0.06 is possible only with more than 16 spikes in one sample. The search
+/// finds a maximum number of spikes in a sample that is high enough, but at most twice the number needed.
 #[test]
 fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     let flight = flight("hexarotor.csv");
@@ -160,8 +162,8 @@ fn the_search_tries_as_many_spikes_a_sample_as_the_signal_needs() {
     assert!((17..=2 * needed).contains(&spikes), "{spikes} of {needed}");
 }
 
-/// If no settings satisfy the goal, the message names each setting that reached the bound of its search range. Settings
-/// that the user fixed, and bounds that the scheme itself has, are not named.
+/// If no settings satisfy the goal, the message names each setting whose best value was at an end of its search range.
+/// It does not name settings that the user fixed, nor settings whose search range ends where the scheme's own limit is.
 #[test]
 fn a_setting_at_the_bound_of_its_search_is_reported() {
     let flight = flight("hexarotor.csv");

@@ -25,18 +25,18 @@ use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
 
-/// Largest phase, in degrees, that a code's latency may cost a control loop at its bandwidth: a third of a phase margin
-/// of 60°. In the flights of `docs/loop.md`, the drone strays with codes that cost 18°, and is lost with codes that
-/// cost 80°.
+/// Largest phase lag, in degrees at the control loop's bandwidth, that a code's latency may cause: a third of a phase
+/// margin of 60°. In the flights of `docs/loop.md`, the drone strays with codes that cause 18°, and is lost with codes
+/// that cause 80°.
 const PHASE: f64 = 20.0;
 
-/// Largest share of a log's samples at which the code step-forward may fall behind the signal. In the flights of
-/// `docs/loop.md` the drone flies well if the code falls behind at 0.9 % of the samples. If it falls behind at 3.9 %,
-/// the code loses steps, and the drone flips.
+/// Largest share of a log's samples at which the signal may change by more than a step code can follow: the decoded
+/// value moves by at most one threshold a sample. In the flights of `docs/loop.md`, the drone flies well at a share of
+/// 0.9 %. At a share of 3.9 %, the code loses steps, and the drone flips.
 const STEEP: f64 = 0.02;
 
-/// Smallest sample rate that a control loop can work with, in multiples of the loop's bandwidth. The Nyquist rate, a
-/// multiple of 2, is too small.
+/// Smallest sample rate with which a control loop works, as a multiple of the loop's bandwidth. The Nyquist rate, twice
+/// the bandwidth, is too small.
 const FEWEST: f64 = 4.0;
 
 /// Returns the largest latency, in samples, that a loop of `bandwidth` Hz tolerates at `rate` samples a second.
@@ -58,10 +58,11 @@ pub struct AdviseRequest {
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
     /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
     pub loop_bandwidth: Option<f64>,
-    /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, a code is not advised
-    /// with which a simulated drone flew badly at this loss.
+    /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, the advice excludes each
+    /// code with which a simulated drone crashed or strayed far at such a loss.
     pub frame_loss: f64,
-    /// Processor core, such as `M4F`, whose measured instruction counts apply.
+    /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
+    /// on it.
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
@@ -78,7 +79,8 @@ impl AdviseRequest {
     /// Default share of frames that the link loses, in percent.
     pub const FRAME_LOSS: f64 = 1.0;
 
-    /// Requests advice in `f32`, with a fifth of the standard deviation as the allowed RMSE.
+    /// Requests advice on codecs in `f32`, with default limits. The allowed RMSE is a fifth of the signal's standard
+    /// deviation.
     pub fn new(recordings: Vec<Recording>) -> Self {
         Self {
             recordings,
@@ -124,7 +126,7 @@ pub struct Advice {
     is_one_of_many: bool,
 }
 
-/// A low-pass filter before the encoder, whose corner frequency is possible at the recording's sample rate.
+/// A filter before the encoder, with a corner frequency that the recording's sample rate allows.
 #[derive(Clone, Copy)]
 struct Filtered {
     filter: Filter,
@@ -135,7 +137,8 @@ struct Filtered {
 }
 
 impl Filtered {
-    /// Prepares a filter. Returns `None` if its corner frequency is not possible at `rate` samples a second.
+    /// Prepares a filter for a signal of `rate` samples a second. Returns `None` if the filter's corner frequency is
+    /// not possible at this rate.
     fn new(filter: Filter, sample: SampleType, rate: f64) -> Option<Self> {
         let rate = rate as f32;
         drop(filter.start(sample, rate).ok()?);
@@ -153,7 +156,7 @@ impl Filtered {
 enum Tuning {
     /// Settings within the allowed RMSE.
     Reached(Box<Candidate>),
-    /// The reason that no settings are within the allowed RMSE, in words that follow the scheme's name in a sentence.
+    /// The reason that no settings are within the allowed RMSE: a text to be put after the scheme's name.
     Missed(String),
 }
 
@@ -262,8 +265,9 @@ impl Advice {
         })
     }
 
-    /// Tunes a scheme briefly, and adds it to the schemes that reach or miss the allowed RMSE. A scheme with which the
-    /// simulated drone flew badly is not tuned; only this reason is added.
+    /// Decides whether a scheme suits the recording. Tunes the scheme briefly. Adds it to `reaching` if the settings
+    /// found are within the allowed RMSE, and otherwise to `others`, with the reason. A scheme with which the simulated
+    /// drone flew badly is not tuned. It is added to `unflown` and `others`.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -361,7 +365,8 @@ impl Advice {
     }
 
     /// Returns the low-pass filter that stood before the scheme's encoder in the simulated flights. Returns `None` if
-    /// no loop bandwidth was given, or if the filter is not possible at the recording's sample rate.
+    /// no loop bandwidth was given, if the flights had no filter, or if the recording's sample rate does not allow the
+    /// filter's corner frequency.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;
@@ -497,8 +502,8 @@ impl Advice {
     }
 }
 
-/// Returns the number of bytes that a trial's events take on the crate's link, in full frames. A scheme whose decoder
-/// needs keyframes sends one keyframe a second.
+/// Returns the number of bytes that a trial's events take on the crate's link, if each frame is sent once it is full. A
+/// scheme whose decoder needs keyframes sends one keyframe a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.

@@ -46,7 +46,7 @@ impl Bank {
         self.codecs.first().map_or(0, Codec::latency)
     }
 
-    /// Encodes the next samples of all channels, which must be finite, and appends their events.
+    /// Encodes the next samples of all channels, and appends their events. All samples must be finite.
     pub fn encode(&mut self, columns: &[Vec<f64>], events: &mut Vec<Event>) {
         let mut columns = columns.iter();
         self.collect(events, |codec, own| {
@@ -56,12 +56,14 @@ impl Bank {
         });
     }
 
-    /// Encodes the samples that still wait for their look-ahead, and appends their events.
+    /// Ends the recording: encodes the last samples, which the encoders held back to look ahead, and appends their
+    /// events.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         self.collect(events, Codec::finish);
     }
 
-    /// Runs `take` on each codec, and appends the codecs' events, sorted by sample, then by slot and channel.
+    /// Calls `take` on each channel's codec, and appends the events of all codecs. The events are sorted by sample,
+    /// then by slot (sub-timestep), then by channel.
     fn collect(
         &mut self,
         events: &mut Vec<Event>,

@@ -1,4 +1,4 @@
-//! A choice of scheme, sample type and parameters. Reads and writes the choice as a TOML file, as tuning does.
+//! A choice of scheme, sample type and parameters. Reads and writes the choice as a TOML file of parameters.
 
 use crate::error::At;
 use crate::scheme::Scheme;
@@ -37,7 +37,7 @@ impl Coding {
         Self::parse(path, &text)
     }
 
-    /// Parses the text of a TOML file of parameters; `file` is its name in errors.
+    /// Parses `text`, the content of a TOML file of parameters. Errors report the file as `file`.
     ///
     /// # Errors
     /// See [`read`](Self::read).
@@ -105,8 +105,8 @@ impl Coding {
         Ok(coding)
     }
 
-    /// Builds the scheme once, to report invalid values with their lines in the file. Does nothing if a parameter must
-    /// still come from the options or from a recording.
+    /// Checks the parameters by building a codec for each channel. The caller adds the line in the file to an error.
+    /// Skips the check if a parameter must still come from the options or from a recording.
     fn built_alone(&self) -> Result<()> {
         let Self { scheme, sample, asked } = self;
         let is_open = |own: &Parameter| {

@@ -29,7 +29,7 @@ pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
     Ok(emit::toml(comments, coding.scheme, &settings(coding)?))
 }
 
-/// Completes a coding's parameters to settings. Returns an error if a parameter must be found in a signal.
+/// Completes a coding's parameters with defaults. Returns an error if a parameter must be found in a signal.
 fn settings(coding: &Coding) -> Result<Settings> {
     let Coding { scheme, sample, asked } = coding;
     let past = vec![0.0; scheme.looks_back(asked)];
@@ -54,8 +54,8 @@ pub struct Codec {
 /// the new directory `directory`. It depends on the checkout at `spikewire`, or on the published crates if `None`.
 ///
 /// # Errors
-/// Returns an error if a parameter is missing or invalid, if the library has no such scheme, if two codecs share a
-/// name, or if the directory exists.
+/// Returns an error if a parameter is missing or invalid, if the C library does not offer a scheme, if two codecs share
+/// a name, or if the directory exists.
 pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> Result<()> {
     let mut all = Vec::new();
     for (place, codec) in codecs.iter().enumerate() {
@@ -73,9 +73,9 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
     write(directory, "codecs", &files, spikewire).map_err(unwritten)
 }
 
-/// Writes a crate that builds a C library with a sender and a receiver for each flight, named as given with the flight.
-/// The crate is written into a new directory. It depends on the checkout at `spikewire`, or on the published crates if
-/// `None`.
+/// Writes a crate into the new directory `directory`. The crate builds a C library with a sender and a receiver for
+/// each flight. `flights` pairs each flight with its name in C. If `spikewire` is the path of a checkout, the crate
+/// depends on this checkout; if it is `None`, the crate depends on the published crates.
 ///
 /// # Errors
 /// Returns an error if a scheme has no constant, if two flights share a name, or if the directory exists.
@@ -124,7 +124,7 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
 }
 
-/// Returns the declaration of a codec with the given name and constant.
+/// Returns the lines that declare a codec with the given name and constant in `spikewire_c::codecs!`.
 fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
     let Constant { scheme: kind, value } = constant;
     let text = Coding::of_settings(scheme, settings).to_toml(&[]);

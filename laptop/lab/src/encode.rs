@@ -13,7 +13,8 @@ use crate::spikes::{Format, Header, Record, Recorder, Summary, Writer, unrecorde
 use crate::tune::RequestKind;
 use catalogue::run::{Asked, Calibrated, Event, Known, SET, SampleType, Settings, Words};
 
-/// Encodes the channels of a `flight.toml` from a recording, as the sender on the drone does; see [`encode`].
+/// Encodes a recording as the sender on the drone does. `flight` gives the scheme and the channels; for the other
+/// arguments and the results, see [`encode`].
 ///
 /// # Errors
 /// Returns an error if the recording lacks a channel, or if the output cannot be written.
@@ -49,10 +50,10 @@ pub fn encode(
     encode_to(&open, input, (scheme, sample, parameters), format, output)
 }
 
-/// A function that opens the recording at its start, each time it is called.
+/// A function that opens the recording at its start. It may be called several times.
 pub(crate) type Open<'a> = dyn Fn() -> Result<Box<dyn Source + 'a>> + 'a;
 
-/// Properties of a recording that a writer of spikes needs at its start.
+/// Properties of a recording that a writer of spikes needs before the first sample.
 #[cfg_attr(not(feature = "datasets"), allow(dead_code, reason = "a data set reads all fields"))]
 pub(crate) struct Start<'a> {
     pub header: &'a Header,
@@ -60,7 +61,7 @@ pub(crate) struct Start<'a> {
     pub names: Vec<&'a str>,
     /// Whether the samples have times.
     pub is_timed: bool,
-    /// Number of first samples from which the usual time between samples was measured.
+    /// Number of samples at the start of the recording from which the usual time between samples was measured.
     pub first: usize,
     /// Reads the whole recording, and returns the smallest and largest sample of each channel.
     pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,
@@ -69,7 +70,7 @@ pub(crate) struct Start<'a> {
 /// The outcome of encoding a recording.
 #[cfg_attr(not(feature = "datasets"), allow(dead_code, reason = "a data set reads all fields"))]
 pub(crate) struct Encoded {
-    /// The output, which the caller must finish.
+    /// The output with all spikes. The caller must call its [`finish`](Output::finish), which completes the file.
     pub output: Output,
     /// Names of the channels.
     pub names: Vec<String>,
@@ -104,8 +105,8 @@ fn encode_to(
     Ok((encoded.output, encoded.notes))
 }
 
-/// Encodes channels of a recording to the writer that `write` makes. The writer is made once recording and parameters
-/// are known to be valid.
+/// Encodes channels of a recording, and passes the spikes to the writer that `write` makes. Calls `write` only after
+/// the recording and the parameters have proved valid.
 ///
 /// # Errors
 /// Returns an error if the recording or the parameters are invalid, or if the output cannot be written.
@@ -243,7 +244,7 @@ fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
     }
 }
 
-/// Formats the numbers of samples and spikes, and the clock's findings in the times, as lines of notes.
+/// Formats the numbers of samples and spikes, and the summary of the times, as lines of notes.
 fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<String> {
     let Summary { samples, rejected, events } = *summary;
     let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };

@@ -20,7 +20,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 /// An error in a request to this library, or in a file that the request names.
 #[derive(Debug)]
 pub struct Error {
-    /// The setting at fault, if it is a single one.
+    /// The setting at fault. `None` if no single setting is at fault.
     pub parameter: Option<Given>,
     /// The place at which the fault was found.
     pub place: Place,
@@ -44,7 +44,7 @@ pub enum Spot {
     Line(u64),
     /// An entry of a settings file, given by its line, counted from 1.
     Entry(u64),
-    /// A column of a table: the line, counted from 1, and the column's name.
+    /// A field of a table: the number of its line, counted from 1, and the name of its column.
     Column(u64, String),
     /// A byte, counted from 0.
     Byte(u64),
@@ -78,7 +78,7 @@ pub enum ErrorKind {
     /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
-    /// A trained network, or a request about it such as its inputs, is refused as a whole.
+    /// A trained network is refused, or a setting or spikes for the network are refused.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
     /// A NIR file cannot be read, or its graph is not supported.
@@ -90,7 +90,7 @@ pub enum ErrorKind {
     /// A trained network does not fit a chip or the controller.
     #[cfg(feature = "networks")]
     Fit(FitKind),
-    /// A chip's model fails under its driver.
+    /// A run on a chip's model fails.
     #[cfg(feature = "networks")]
     Model(ModelKind),
     /// A serial port cannot be read.
@@ -215,7 +215,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the error is a broken pipe, because the program that read the output has closed it.
+    /// Returns whether the error is a broken pipe: the program that reads the output has closed the pipe.
     pub fn is_closed_pipe(&self) -> bool {
         matches!(&*self.kind, ErrorKind::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -258,17 +258,17 @@ impl ErrorKind {
 }
 
 impl Place {
-    /// Makes a place that is a whole file.
+    /// Returns the place of a fault that concerns a whole file, not a spot in the file.
     pub fn of(file: impl Into<String>) -> Self {
         Self { file: Some(file.into()), spot: None }
     }
 
-    /// Makes a place from a file and a spot in it.
+    /// Returns the place of a fault at a spot in a file.
     pub fn spot(file: impl Into<String>, spot: Spot) -> Self {
         Self { file: Some(file.into()), spot: Some(spot) }
     }
 
-    /// Makes a place from a file and the number of a line in it, counted from 1.
+    /// Returns the place of a fault in a line of a file. Lines are counted from 1.
     pub fn line(file: impl Into<String>, line: u64) -> Self {
         Self::spot(file, Spot::Line(line))
     }

@@ -8,8 +8,8 @@ use crate::tune::RequestKind;
 use catalogue::run::{SampleType, Settings};
 use std::fmt::Write;
 
-/// Statistics of a channel: the range, the resolution, the number of samples that the sample type cannot hold, and the
-/// number of samples that the code cannot reach.
+/// Statistics of a channel: the range, the resolution, the number of samples that the sample type clamps, and the
+/// number of samples above the largest value that the code can represent.
 pub struct Fit {
     scheme: Scheme,
     sample: SampleType,
@@ -23,7 +23,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Starts with a channel that has no samples yet.
+    /// Makes the statistics of a channel that has no samples yet.
     pub fn new(scheme: Scheme, settings: &Settings) -> Self {
         // A rate code's largest value is the sum of its taps above its shift.
         let reach = settings
@@ -111,7 +111,7 @@ impl Fit {
     }
 }
 
-/// Returns the threshold if the code spikes on changes, otherwise `None`.
+/// Returns the threshold of a code that spikes when the signal changes; `None` for other codes.
 fn threshold(scheme: Scheme, settings: &Settings) -> Option<f64> {
     settings.number("threshold").ok().filter(|_| scheme.info().has_first_value())
 }
@@ -144,8 +144,8 @@ pub fn rounding(settings: &Settings) -> Option<String> {
     (!words.is_empty()).then(|| format!("in {}, {}", settings.sample, words.join(", ")))
 }
 
-/// Adds the reason to an error about settings if the sample type cannot hold the steps from sample to sample in
-/// `values`.
+/// Adds the likely reason to an error about settings: `sample` is too coarse for the steps from sample to sample in
+/// `values`. Returns the error unchanged if `sample` is fine enough.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

@@ -1,5 +1,5 @@
-//! `flight.toml` on the laptop: reads a flight's channels from a recording, and decodes the flight's link frames to
-//! values.
+//! The laptop's part in a flight. A `flight.toml` describes the scheme and the channels of the drone's sender. This
+//! module reads the channels from a recording, and decodes the sender's frames to values.
 
 use crate::Result;
 use crate::coding::Coding;
@@ -35,8 +35,9 @@ impl Coding {
 /// `rate` samples a second. The flight sends 20 keyframes a second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, if they differ in scheme or in a parameter that is not a plain number,
-/// such as a count or a filter, or if the rate's period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, or if their schemes differ. Returns an error if a parameter that must be
+/// equal in all channels, such as a filter or a count, differs. Returns an error if the sample period cannot be
+/// expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
@@ -52,8 +53,8 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
 /// second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, if they differ in a parameter that is not a plain number, such as a count
-/// or a filter, or if the rate's period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, or if a parameter that must be equal in all channels, such as a filter or
+/// a count, differs. Returns an error if the sample period cannot be expressed in whole µs.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,
@@ -92,14 +93,15 @@ pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
     period.ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
 }
 
-/// Returns options that read a flight's channels from the recording that `options` reads.
+/// Returns a copy of `options` in which the columns are the sources of the flight's channels.
 pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     let mut own = options.clone();
     own.channel.columns = flight.channels.iter().map(|own| own.source.clone()).collect();
     own
 }
 
-/// A recording whose samples are converted to the sensor's counts and filtered, as in the flight's sender.
+/// A source of samples that are prepared as in the flight's sender: converted to the sensor's counts, and then
+/// filtered.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,

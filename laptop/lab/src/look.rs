@@ -21,7 +21,7 @@ pub struct ChannelSummary {
     pub rate: Option<f64>,
     /// Standard deviation of the time between samples, in ms. Gaps are left out.
     pub jitter_ms: Option<f64>,
-    /// Number of gaps: steps in time above one and a half usual steps.
+    /// Number of gaps: steps in time longer than 1.5 times the usual step.
     pub gaps: usize,
     /// Smallest sample.
     pub min: f64,
@@ -51,11 +51,11 @@ pub struct ChannelSummary {
 pub enum Verdict {
     /// Fit for tuning.
     Good,
-    /// There are too few samples.
+    /// Too few samples for tuning.
     TooShort,
     /// All samples are equal.
     Constant,
-    /// The channel moves no more than its own white noise. The drone never flew, or there is no signal at all.
+    /// The channel holds nothing but white noise. The drone never flew, or there is no signal at all.
     OnlyNoise,
     /// More than a fifth of the samples are missing.
     FullOfHoles,
@@ -65,12 +65,13 @@ pub enum Verdict {
 
 /// Fewest samples of a channel that is fit for tuning.
 const FEWEST: usize = 200;
-/// Smallest standard deviation of a white signal that is not taken for noise, in multiples of the noise in it.
+/// Factor that tells a signal from noise. A white channel (one with a flat spectrum) counts as noise if its standard
+/// deviation is below this multiple of the channel's `noise`.
 const ABOVE_NOISE: f64 = 2.0;
-/// Smallest spectral flatness of a channel that counts as white. Sensors at rest have a flatness of 0.67 to 0.95, and
-/// flights with vibration have 0.2 to 0.33.
+/// Smallest spectral flatness with which a channel counts as white. Sensors at rest have a flatness of 0.67 to 0.95,
+/// and flights with vibration have 0.2 to 0.33.
 const WHITE: f64 = 0.6;
-/// Number of samples in a window over which noise and movement are measured.
+/// Number of samples in a window. Noise and movement are measured in each window.
 const WINDOW: usize = 64;
 
 impl ChannelSummary {
@@ -132,7 +133,7 @@ impl ChannelSummary {
         }
     }
 
-    /// Returns the reason not to tune on the channel, if there is one.
+    /// Returns a text for the user that says why the channel is unfit for tuning. Returns `None` if the channel is fit.
     pub fn objection(&self) -> Option<String> {
         let Self { name, samples, min, rejected, deviation, noise, clipped, .. } = self;
         match self.verdict {
@@ -172,9 +173,9 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Estimates the standard deviation of the noise from second differences, as the tenth percentile of all windows. The
-/// second differences of a slow signal are near 0. The second differences of white noise have √6 times the standard
-/// deviation of the noise.
+/// Returns an estimate of the noise's standard deviation: the tenth percentile of the estimates for all windows. The
+/// estimate for a window is made from second differences, which are near 0 for a slow signal. For white noise, the
+/// standard deviation of the second differences is √6 times that of the noise.
 fn noise(values: &[f64]) -> f64 {
     let of = |window: &[f64]| {
         let second = window.windows(3).map(|own| (own[0] - 2.0 * own[1] + own[2]).powi(2));
@@ -187,8 +188,8 @@ fn noise(values: &[f64]) -> f64 {
 }
 
 /// Returns the spectral flatness: the ratio of the geometric to the arithmetic mean of the power over frequency,
-/// averaged over windows. It is near 1 for white noise, and near 0 for motors and manoeuvres, whose power lies at few
-/// frequencies.
+/// averaged over windows. The flatness is near 1 for white noise, and near 0 for motors and manoeuvres, whose power
+/// lies at few frequencies.
 fn flatness(values: &[f64]) -> f64 {
     let mut sums = vec![0.0; WINDOW / 2];
     for start in (0..).step_by(WINDOW / 2) {
@@ -208,8 +209,8 @@ fn flatness(values: &[f64]) -> f64 {
     if arithmetic > 0.0 { logarithm.exp() / arithmetic } else { 1.0 }
 }
 
-/// Returns for each window whether the channel is quiet. It is quiet if the window's standard deviation is at most four
-/// times the fifth percentile of all windows.
+/// Returns for each window whether the channel is quiet. The channel is quiet in a window whose standard deviation is
+/// at most four times the fifth percentile of all windows' standard deviations.
 fn quiet(values: &[f64]) -> Vec<bool> {
     const QUIET: f64 = 4.0;
     let deviations: Vec<f64> = values.chunks(WINDOW).map(deviation).collect();
@@ -240,8 +241,8 @@ fn bandwidth(values: &[f64]) -> f64 {
     bin.unwrap_or_default() as f64 / values.len() as f64
 }
 
-/// Returns the standard deviation, in ms, of the time between samples, without gaps, and the number of gaps. `times`
-/// are in µs.
+/// Returns the standard deviation of the time between samples in ms, and the number of gaps. The standard deviation
+/// leaves out the gaps. `times` are in µs.
 fn steps(times: &[i64]) -> (Option<f64>, usize) {
     let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
     let mut sorted = steps.clone();
@@ -264,8 +265,8 @@ mod tests {
         (0..count).map(next).collect()
     }
 
-    /// Uniform noise of width 1, whose deviation is √(1/12), is measured within 25 %, both alone and on a slow wave of
-    /// amplitude 40.
+    /// The estimated standard deviation of uniform noise of width 1 is within 25 % of the true one, √(1/12). The
+    /// estimate is as good if the noise lies on a slow wave of amplitude 40.
     #[test]
     fn noise_is_found_under_a_wave() {
         let noisy = white(6400);

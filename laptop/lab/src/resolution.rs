@@ -4,8 +4,9 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Largest mean error that rounding to a sample type may cause in a column's steps from sample to sample, as a share of
-/// the steps' mean size. A sample type with a larger error is said to lose the steps.
+/// Maximum error of a sample type that is fine enough for a column's steps from sample to sample. The error is the mean
+/// error that rounding to the type causes in a step, as a share of the mean step. A sample type with a larger error is
+/// said to lose the steps.
 const PART: f64 = 0.1;
 
 /// The steps of a column from sample to sample, and the errors that rounding to a sample type causes in them.
@@ -15,9 +16,9 @@ pub struct Resolution {
     steps: u64,
     /// Sum of the absolute sizes of the steps from sample to sample.
     moved: f64,
-    /// Sum of the absolute errors that rounding to the sample type causes in the steps.
+    /// Sum of the absolute errors that rounding to `sample` causes in the steps from sample to sample.
     off: f64,
-    /// Sum of the absolute errors that rounding to `f32` causes in the steps.
+    /// Sum of the absolute errors that rounding to `f32` causes in the steps from sample to sample.
     off_single: f64,
     min: f64,
     max: f64,
@@ -25,7 +26,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Starts with a column that has no samples yet, for the sample type `sample`.
+    /// Makes the record of a column that has no samples yet. `sample` is the sample type to check.
     pub fn new(sample: SampleType) -> Self {
         let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
         Self {
@@ -41,7 +42,7 @@ impl Resolution {
         }
     }
 
-    /// Examines a whole column of samples in the sample type `sample`.
+    /// Examines the steps of a whole column, and the errors that rounding to the sample type `sample` causes in them.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
@@ -66,13 +67,14 @@ impl Resolution {
         }
     }
 
-    /// Returns whether the sample type changes any step.
+    /// Returns whether rounding to the sample type changes any step from one sample to the next.
     pub fn is_rounded(&self) -> bool {
         self.off > 0.0
     }
 
-    /// Returns a sentence that describes the lost steps, and names the sample types that hold them. Returns `None` if
-    /// the sample type loses no steps.
+    /// Returns a sentence for the user if the sample type is too coarse for the column's steps from sample to sample.
+    /// The sentence also names the sample types that hold these steps. Returns `None` if the sample type is fine
+    /// enough.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -86,8 +88,7 @@ impl Resolution {
         })
     }
 
-    /// Returns words that name the sample types which hold the steps, or words which say that no sample type holds
-    /// them.
+    /// Returns a text that names the sample types which hold the steps, or says that no sample type does.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()
@@ -113,8 +114,9 @@ impl Resolution {
         (self.off_single <= PART * self.moved).then_some(SampleType::F32)
     }
 
-    /// Returns the fixed-point type with the fewest bits whose range holds the column and whose resolution holds the
-    /// column's steps. If the column consists of whole numbers, the type must hold them exactly.
+    /// Returns the fixed-point type with the fewest bits that can hold the column. All values must lie in the type's
+    /// range, and its resolution must be fine enough for the steps from sample to sample. If the column consists of
+    /// whole numbers, the type must hold them exactly.
     fn fixed(&self) -> Option<SampleType> {
         let holds = |own: &SampleType| {
             let (low, high) = own.range();
@@ -130,8 +132,9 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column's steps survive rounding to multiples of `step`. Rounding causes a mean error of a
-    /// third of `step` in a step of the column. For a margin, half of `step` is assumed.
+    /// Returns whether the column keeps its steps from sample to sample if its values are rounded to multiples of
+    /// `step`. Rounding changes each of these steps by a third of `step` on average. To be safe, half of `step` is
+    /// assumed.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }

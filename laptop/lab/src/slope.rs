@@ -1,5 +1,5 @@
-//! Checks whether a step code keeps up with a recording. The decoded value of a step code moves by at most one step for
-//! each sample.
+//! Checks whether a step code keeps up with a recording. The decoded value of a step code changes by at most one step
+//! from sample to sample.
 
 use crate::brief::short;
 use crate::scheme::Scheme;
@@ -52,7 +52,8 @@ impl Slope {
         self.part
     }
 
-    /// Returns a sentence for the user that compares both slopes.
+    /// Returns a sentence for the user. The sentence compares the signal's largest slope with the largest slope that
+    /// the code can follow.
     pub fn words(&self) -> String {
         const FEW: f64 = 0.1;
         let Self { scheme, steps_above_threshold: above, part, per, .. } = self;

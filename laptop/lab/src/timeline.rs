@@ -24,7 +24,8 @@ impl Timeline {
         }
     }
 
-    /// Returns the number of known times of samples after the sample that was last passed to [`at`](Self::at).
+    /// Returns the number of known times that lie ahead. They belong to samples after the one that was last passed to
+    /// [`at`](Self::at).
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }

@@ -14,8 +14,8 @@ use std::ops::Range;
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
-    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, the times after
-    /// the restart are shifted to follow the times before it after a usual step.
+    /// The samples' times in µs; empty if no times were recorded. If the recorder's clock restarted, later times are
+    /// shifted such that they continue the earlier times with a step of the usual length.
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
@@ -33,8 +33,8 @@ pub struct Recording {
 impl Recording {
     /// Makes a recording of evenly spaced samples, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// Longest step in time that does not count as a gap, in usual steps. Any value serves, because all steps of
-        /// this recording are equal.
+        /// Longest step in time that does not count as a gap, as a multiple of the usual step. The value has no effect,
+        /// because the samples have no times.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -140,16 +140,16 @@ impl Recording {
     }
 }
 
-/// Splits `samples` samples into segments. For each segment except the first, `bounds` holds the index of its first
-/// sample.
+/// Returns the index range of each segment of a recording. `samples` is the number of samples. `bounds` holds the index
+/// at which each segment begins, except for the first segment, which begins at 0.
 fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.insert(0, 0);
     bounds.push(samples);
     bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-/// Shifts the times of each segment after the first, such that its earliest time comes `period` after the latest time
-/// of the segment before. Times are in µs.
+/// Shifts the times of the segments such that each segment follows the one before: its earliest time comes `period`
+/// after the latest time of the segment before. The first segment keeps its times. All times are in µs.
 fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     let mut all: Vec<i64> = Vec::with_capacity(times.len());
     let mut latest: Option<i64> = None;
@@ -165,13 +165,13 @@ fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
 
 /// A scheme's spikes and decoded values for a recording.
 pub struct Trial {
-    /// The scheme.
+    /// The scheme that encodes and decodes.
     pub scheme: Scheme,
-    /// The parameters that were used.
+    /// The values of all parameters of the scheme.
     pub settings: Settings,
     /// Numbers of neurons and sub-timesteps.
     pub shape: Shape,
-    /// Latency of the code: the number of samples from a sample to its code.
+    /// Latency of the code: how many samples after a sample the encoder emits its code.
     pub latency: usize,
     /// Notes for the user on whether the parameters suit the recording.
     pub notes: Vec<String>,
@@ -233,7 +233,8 @@ impl Trial {
     }
 }
 
-/// Returns a note if the mean error of the decoded values exceeds the signal's standard deviation.
+/// Returns a note if the decoded values are too low or too high, on average by more than the signal's standard
+/// deviation.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

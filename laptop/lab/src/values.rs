@@ -10,26 +10,26 @@ use spikewire::link::{Received, Receiver, Withheld};
 use spikewire::{Fingerprint, Recovery, Sample, SampleKind, Scheme, Spike, Tick};
 use std::any::Any;
 
-/// Maximum number of channels of a code with one neuron a channel.
+/// Maximum number of channels if each channel has one neuron.
 const MOST: usize = 256;
 
-/// Maximum number of channels of a code with several neurons a channel. 64 channels of 1024 neurons fill all addresses.
+/// Maximum number of channels if each channel has several neurons. 64 channels of 1024 neurons fill all addresses.
 const FEWER: usize = 64;
 
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function that is called once, with the receiver as a decoder of frames to values.
+/// A function to which the receiver is passed. The receiver decodes link frames to values.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
 /// Properties of a link's sender besides its schemes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Link {
-    /// Length of the sub-timesteps in µs, if the code has any.
+    /// Length of a sub-timestep in µs. `None` if the code does not divide samples into sub-timesteps.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint that the sender's frames carry. If `None`, the fingerprint is computed from the channels' schemes.
-    /// If a single scheme stands for an unknown number of channels, the number of channels is found by trying: its
-    /// fingerprint must match the received fingerprint.
+    /// Fingerprint that the sender's frames carry. If `None`, the receiver computes the fingerprint from the channels'
+    /// schemes. If the number of channels is not known, the receiver tries numbers of channels until one gives the
+    /// fingerprint in the frames.
     pub fingerprint: Option<Fingerprint>,
     /// Largest deviation of the sample period from its nominal length, in parts per million. `None` stands for the
     /// receiver's default.
@@ -42,7 +42,7 @@ impl From<Option<u32>> for Link {
     }
 }
 
-/// Makes a receiver and passes it to `then`. `settings` holds one set for each channel, or a single set for all
+/// Makes a receiver and passes it to `then`. `settings` holds the settings of each channel, or a single item for all
 /// channels.
 ///
 /// # Errors
@@ -89,7 +89,7 @@ impl<S: Sample> Visit<S> for Receive<'_> {
 }
 
 impl Receive<'_> {
-    /// Makes a receiver of up to `N` channels and passes it to `then`.
+    /// Makes a receiver of up to `N` channels, and passes the receiver to the function `self.then`.
     fn receive<P: Scheme + 'static, const N: usize, const EVENTS: usize>(self) -> Result<()> {
         let Self { scheme, sample, settings, link, then } = self;
         let Link { slot_ticks, fingerprint, clock_ppm } = link;
@@ -153,10 +153,11 @@ impl<S: Sample> Visit<S> for Boxed {
     }
 }
 
-/// A scheme whose decoders start from the value `start`, if there is one. Serves only for decoding.
+/// A scheme whose decoders start from the value `start`. If `start` is `None`, they start from the scheme's own initial
+/// value. Serves only for decoding.
 struct Started<P: Scheme> {
     scheme: P,
-    /// Whether the channel exists. False for a placeholder that fills the array after the last channel.
+    /// Whether the channel exists. False for the placeholders that fill the array after the last channel.
     is_given: bool,
     start: Option<P::Sample>,
 }
@@ -228,16 +229,16 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     /// Whether each channel has a value. If keyframes resynchronize the code, all channels have a value from the start.
     /// Otherwise, a channel has a value from its first event on.
     has_fired: [bool; N],
-    /// Tick one sample period after the last received event, at which the event's sample is over.
+    /// End of the sample to which the last received event belongs: one sample period after the event's tick.
     end: Option<Tick>,
     /// Number of keyframes received although the code uses none.
     unused_keyframes: u64,
-    /// The decoders' number for the value 1.0. Decoded numbers are divided by this number.
+    /// Number by which decoded values are divided: the decoders' representation of 1.0.
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of decoded values that were dropped because their channel does not exist. The receiver itself counts
-    /// further events of this kind.
+    /// Number of decoded values that were dropped because their channel does not exist. Events beyond the receiver's
+    /// `N` channels are not included; the receiver counts these itself.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
@@ -251,9 +252,9 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels the sender's keyframes with the decoders' sample type, which stands for all fixed-point types of one
-    /// width. If the sender's type differs from the decoders', keyframes labelled with the decoders' type are
-    /// relabelled too. The receiver then counts them as misfits.
+    /// Relabels the keyframes of the sender's sample type as keyframes of the decoders' type, because the decoders have
+    /// one type for all fixed-point types of a width. If the two types differ, keyframes that already have the
+    /// decoders' type are relabelled as the sender's, so that the receiver counts them as misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -284,11 +285,13 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Converts the decoded values to items, and appends these to `items`. The first `keyframes` values come from
-    /// keyframes. `before` says which channels were exact before the frame.
+    /// Converts the decoded values to items, and appends the items to `items`. The first `keyframes` values come from
+    /// keyframes. `before` says for each channel whether it was exact before the frame: the decoded value was known to
+    /// equal the encoder's value.
     ///
-    /// A channel may become exact in the middle of a frame. Its values are marked exact only from the next frame on,
-    /// which ensures that no estimate is marked exact.
+    /// A channel may become exact in the middle of a frame. If keyframes resynchronize the code, the frame's values are
+    /// then marked exact. Otherwise, the channel's values are marked exact only from the next frame on, so that no
+    /// estimate is marked exact.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
@@ -312,9 +315,10 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Returns the fingerprint of a sender with these schemes, in the sender's sample type. If one scheme stands for
-    /// all channels, the number of channels is unknown. Each number is then tried until one gives the fingerprint
-    /// `sender`.
+    /// Returns the fingerprint that a sender has if it uses the schemes of this receiver, in the sender's sample type.
+    /// If one scheme stands for all channels, the number of channels is unknown. The numbers from 1 to `N` are then
+    /// tried until the result equals `sender`. If no number gives `sender`, the result is the fingerprint for one
+    /// channel.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {

@@ -2,9 +2,9 @@
 
 /// Callbacks through which a caller follows long work, and can end it.
 pub struct Watch<'a> {
-    /// Called from time to time. If the function returns true, the work ends with the best result so far.
+    /// Function that is called from time to time. If it returns true, the work ends with the best result so far.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Called from time to time with the progress, from any thread.
+    /// Function that receives the progress from time to time. It may be called from any thread.
     pub tell: &'a (dyn Fn(&Progress) + Sync),
 }
 

@@ -19,6 +19,7 @@ pub mod rate_loop;
 pub mod real_boards;
 pub mod reckon;
 pub mod ros;
+pub mod ros2;
 pub mod simulated_drone;
 pub mod soak;
 pub mod storm;

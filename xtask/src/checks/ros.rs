@@ -1,11 +1,10 @@
-//! `cargo verify ros`: tests the nodes with the distribution's ROS 1. `cargo verify ros2`: tests those for ROS 2 with
-//! another DDS.
+//! `cargo verify ros`: tests the nodes with the distribution's ROS 1.
 
-use crate::common::{cargo, command, output, paths, run};
+use crate::common::{command, output, paths, run};
 use crate::figures::drawing;
 use crate::programs::{host, python};
 use crate::setup;
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -26,10 +25,6 @@ const PACKAGES: [&str; 11] = [
     "python3-yaml",
     "ros-message-generation",
 ];
-/// Packages for building a ROS 2 package, for `ros2 run` to find it, and for a network namespace.
-const PACKAGES_2: [&str; 4] = ["ament-cmake", "cmake", "iproute2", "python3-ament-index"];
-/// Option that selects the Python with ament's modules, even if another is first on the path.
-const PYTHON: &str = "-DPython3_EXECUTABLE=/usr/bin/python3";
 /// Path with the distribution's programs only, as its Python has its ROS.
 const PATH: &str = "/usr/bin:/bin";
 
@@ -52,122 +47,10 @@ pub fn ros() -> Result<()> {
     ensure_decoded(&output(spikewire.arg("decode").arg(bag))?, &ros.table()?)
 }
 
-/// Tests the Rust nodes, builds their package with colcon, and runs them with Eclipse Cyclone DDS.
-///
-/// All their traffic stays in a network namespace with only a loopback device.
-pub fn ros2() -> Result<()> {
-    setup::packages("what builds the nodes' package, and a network of their own", &PACKAGES_2)?;
-    let top = paths::target().join("ros2");
-    let manifest = "--locked --manifest-path bindings/ros/node/Cargo.toml --target-dir";
-    for command in ["test", "clippy --all-targets"] {
-        let mut cargo = cargo(&format!("{command} {manifest}"));
-        cargo.arg(&top);
-        if command != "test" {
-            cargo.args(["--", "-D", "warnings"]);
-        }
-        run(&mut cargo)?;
-    }
-    run(cargo("fmt --check --manifest-path bindings/ros/node/Cargo.toml")
-        .current_dir(paths::root()))?;
-    let workspace = Workspace::ready(&top)?;
-    workspace.ensure_clone_is_unambiguous()?;
-    workspace.ensure_copy_asks_for_a_clone()?;
-    workspace.build()?;
-
-    let python = python::environment("ros2/cyclone")?;
-    run(python::pip(&python).arg("--requirement").arg(tests().join("ros2.txt")))?;
-    let room = top.join("room");
-    fs::create_dir_all(&room)?;
-    let mut test = command("unshare");
-    test.args(["--map-root-user", "--net", "--pid", "--fork", "--kill-child"])
-        .arg(python)
-        .arg(tests().join("ros2.py"));
-    test.arg(workspace.place.join("install"));
-    test.arg(paths::root().join("data/hexarotor.csv")).arg(host::example("demo")?);
-    run(test.arg(room).env("PYTHONPATH", sources()).env("PYTHONDONTWRITEBYTECODE", "1"))
-}
-
-/// A workspace of ROS 2 with the nodes' package, set up as the README says. It does not contain `spyke_msgs`, which
-/// needs generators of messages that only a full ROS 2 has.
-struct Workspace {
-    /// Directory beside cargo's output.
-    place: PathBuf,
-    /// Directory in which cargo builds what the tests share.
-    built: PathBuf,
-    colcon: PathBuf,
-}
-
-impl Workspace {
-    fn ready(top: &Path) -> Result<Self> {
-        let python = python::environment("ros2/colcon")?;
-        run(python::pip(&python).arg("--requirement").arg(tests().join("colcon.txt")))?;
-        let place = top.join("workspace");
-        link(&package_2(), &place.join("src"))?;
-        let colcon = python.with_file_name("colcon");
-        Ok(Self { place, built: top.into(), colcon })
-    }
-
-    fn colcon(&self, verb: &str) -> Command {
-        let mut colcon = command(&self.colcon);
-        colcon.current_dir(&self.place).arg(verb);
-        colcon
-    }
-
-    /// Fails if colcon finds packages in a clone of the repository that are not of ROS 2, or finds one twice.
-    fn ensure_clone_is_unambiguous(&self) -> Result<()> {
-        let listed = output(self.colcon("list").arg("--base-paths").arg(paths::root()))?;
-        let mut found: Vec<_> = listed.lines().filter_map(|line| line.split('\t').nth(1)).collect();
-        found.sort_unstable();
-        let of = |name: &str| paths::root().join("bindings/ros/ros2").join(name);
-        let wanted = [of("spikewire_ros"), of("spyke_msgs")];
-        ensure!(
-            found.iter().map(Path::new).eq(wanted.iter().map(PathBuf::as_path)),
-            "in a clone colcon finds\n{listed}"
-        );
-        println!("In a clone of the repository colcon finds the two packages of ROS 2, once each.");
-        Ok(())
-    }
-
-    /// Checks a copy of the package outside a clone. It cannot know where the nodes' code is, must say so, and must
-    /// accept a clone's path.
-    fn ensure_copy_asks_for_a_clone(&self) -> Result<()> {
-        let copy = self.place.join("copied");
-        fs::create_dir_all(&copy)?;
-        fs::write(copy.join("COLCON_IGNORE"), "")?;
-        for file in ["CMakeLists.txt", "package.xml"] {
-            fs::copy(package_2().join(file), copy.join(file))?;
-        }
-        let configure = |clone: &Path| {
-            let mut cmake = command("cmake");
-            cmake.arg("-S").arg(&copy).arg("-B").arg(copy.join("build"));
-            cmake.args([PYTHON.into(), format!("-DSPIKEWIRE={}", clone.display())]);
-            output(&mut cmake)
-        };
-        let Err(refusal) = configure(&copy) else {
-            bail!("a copy configures without the nodes' code")
-        };
-        ensure!(refusal.to_string().contains("=/path/to/spikewire"), "a copy says: {refusal}");
-        configure(paths::root().as_path())?;
-        println!("A copy of the package asks for a clone, and takes one.");
-        Ok(())
-    }
-
-    /// Builds as the README says, in the tests' profile.
-    fn build(&self) -> Result<()> {
-        let mut colcon = self.colcon("build");
-        colcon.args(["--cmake-args", "-DCARGO_PROFILE=dev", PYTHON]);
-        output(colcon.arg(format!("-DBUILT={}", self.built.display()))).map(drop)
-    }
-}
-
 /// Links a package into a workspace.
 fn link(package: &Path, source: &Path) -> Result<()> {
     fs::create_dir_all(source)?;
     output(command("ln").args(["-s", "-f", "-n"]).arg(package).arg(source)).map(drop)
-}
-
-fn package_2() -> PathBuf {
-    paths::root().join("bindings/ros/ros2/spikewire_ros")
 }
 
 /// Draws the figure into docs.
@@ -259,10 +142,10 @@ fn ensure_decoded(lines: &str, table: &Path) -> Result<()> {
     Ok(())
 }
 
-fn tests() -> PathBuf {
+pub fn tests() -> PathBuf {
     paths::root().join("bindings/ros/tests")
 }
 
-fn sources() -> PathBuf {
+pub fn sources() -> PathBuf {
     paths::root().join("bindings/ros/ros1/spikewire_ros/src")
 }

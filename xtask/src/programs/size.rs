@@ -25,10 +25,19 @@ pub fn flash(image: &Path) -> Result<u32> {
     Ok(text + data)
 }
 
-/// Returns the bytes of code, of initial values, and of zeroed memory.
+/// Returns the bytes of code, of initial values, and of zeroed memory. `riscv-rt` makes a section of the memory that is
+/// left for the stack, which is not counted.
 fn sections(image: &Path) -> Result<[u32; 3]> {
-    let table = shell::output(shell::command("arm-none-eabi-size").arg(image))?;
-    first_three(&table).context("arm-none-eabi-size prints something else")
+    let size = |format| shell::output(shell::command("arm-none-eabi-size").arg(format).arg(image));
+    let [text, data, zeroed] =
+        first_three(&size("-B")?).context("arm-none-eabi-size prints something else")?;
+    Ok([text, data, zeroed - stack(&size("-A")?)])
+}
+
+/// Parses the size of the section `.stack`; 0 if there is none.
+fn stack(table: &str) -> u32 {
+    let row = table.lines().find_map(|line| line.strip_prefix(".stack "));
+    row.and_then(|row| row.split_whitespace().next()?.parse().ok()).unwrap_or(0)
 }
 
 /// Parses the first three numbers in the second line.

@@ -5,8 +5,8 @@ mod passed;
 
 use crate::checks::{
     everyday, fifo, firmware, fuzz, interface, link, logging, long, network, network_flies, nucleo,
-    package, peers, rate_loop, real_boards, reckon, ros, simulated_drone, soak, storm, templates,
-    tuned, video,
+    package, peers, rate_loop, real_boards, reckon, ros, ros2, simulated_drone, soak, storm,
+    templates, tuned, video,
 };
 use crate::common::{cpu, usage};
 use crate::figures::{bench, demo, faults, flash};
@@ -238,7 +238,11 @@ const LONG: &[Step] = &[
         PROSE,
         &["bindings/c", "bindings/python", "bindings/ros", "host-tests/fuzz", "laptop/loop"],
     ]),
-    step("ros2", "ROS 2 nodes against Cyclone DDS, on loopback alone", ros::ros2),
+    step(
+        "ros2",
+        "a clone built by colcon; its nodes with ROS 2's rclpy and with Cyclone DDS",
+        ros2::ros2,
+    ),
     step("ros", "ROS nodes in the distribution's ROS, a flight through every scheme", ros::ros)
         .apart(&[
             PROSE,

@@ -25,6 +25,12 @@ impl Counters {
         }
     }
 
+    /// Counts one more of what is rare, and makes each a warning.
+    pub(crate) fn add_rare(&mut self, what: &'static str, detail: &str) {
+        self.next.remove(what);
+        self.add(what, 1, detail);
+    }
+
     /// Returns the warnings since the last call.
     pub(crate) fn warnings(&mut self) -> Vec<String> {
         std::mem::take(&mut self.warnings)
@@ -58,9 +64,12 @@ mod tests {
             counters.add("gaps", 1, &format!("number {number}"));
         }
         counters.add("lost", 30, "");
+        counters.add_rare("refused", "a");
+        counters.add_rare("refused", "b");
         let told =
             ["gaps: 1 (number 0)", "gaps: 10 (number 9)", "gaps: 100 (number 99)", "lost: 30"];
-        assert_eq!(counters.warnings(), told);
-        assert_eq!(counters.to_string(), "150 gaps, 30 lost");
+        let rare = ["refused: 1 (a)", "refused: 2 (b)"];
+        assert_eq!(counters.warnings(), [&told[..], &rare].concat());
+        assert_eq!(counters.to_string(), "150 gaps, 30 lost, 2 refused");
     }
 }

@@ -11,7 +11,7 @@ use crate::wire::{DiagnosticArray, DiagnosticStatus, Said, Spikes, Spyke, SpykeV
 use anyhow::{Context as _, Result, anyhow, bail};
 use ros2_client::builtin_interfaces::Time;
 use ros2_client::dds::rustdds::discovery::DiscoveredWriterData;
-use ros2_client::dds::rustdds::{DomainParticipantBuilder, mio1, policy};
+use ros2_client::dds::rustdds::{DomainParticipantBuilder, QosPolicies, mio1, policy};
 use ros2_client::qos::{Durability, History, Reliability, WhenFull};
 use ros2_client::ros2::LogLevel;
 use ros2_client::{
@@ -20,7 +20,7 @@ use ros2_client::{
 };
 use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::env;
 use std::net::Ipv4Addr;
 use std::process::ExitCode;
@@ -179,6 +179,10 @@ struct Ros<'a> {
     spinner: Option<JoinHandle<()>>,
     context: Context,
     diagnostics: Option<Publisher<DiagnosticArray>>,
+    /// What the node publishes: topics, types and qualities of service.
+    offers: Vec<Offer>,
+    /// Subscribers that cannot hear an offer, as they ask for more.
+    refused: BTreeSet<Gid>,
     latched: Option<Publisher<String>>,
     is_stopped: Arc<AtomicBool>,
     next: Instant,
@@ -186,6 +190,13 @@ struct Ros<'a> {
     /// How many messages came and how many went.
     taken: u64,
     given: u64,
+}
+
+/// A topic that the node publishes, as DDS has it.
+struct Offer {
+    topic: String,
+    kind: String,
+    qos: QosPolicies,
 }
 
 /// A publisher of the topic that the node listens to.
@@ -215,6 +226,8 @@ impl<'a> Ros<'a> {
             spinner: Some(spinner),
             context,
             diagnostics: None,
+            offers: Vec::new(),
+            refused: BTreeSet::new(),
             latched: None,
             is_stopped,
             next: Instant::now(),
@@ -234,7 +247,13 @@ impl<'a> Ros<'a> {
         kind: &str,
         qos: QosProfile,
     ) -> Result<Publisher<M>> {
-        let name = name_of(&self.arguments.topic(topic))?;
+        let topic = self.arguments.topic(topic);
+        let name = name_of(&topic)?;
+        self.offers.push(Offer {
+            topic: format!("rt{topic}"),
+            kind: format!("{package}::msg::dds_::{kind}_"),
+            qos: (&qos).into(),
+        });
         let topic = self.node.create_topic(&name, MessageTypeName::new(package, kind), &qos)?;
         Ok(self.node.create_publisher(&topic, Some(qos))?)
     }
@@ -269,13 +288,14 @@ impl<'a> Ros<'a> {
         }
         let dds =
             self.node.create_topic(&name_of(topic)?, MessageTypeName::new(package, own), &qos)?;
+        let requested = QosPolicies::from(&qos);
         let mut subscription: Subscription<M> = self.node.create_subscription(&dds, Some(qos))?;
 
         let mut poll = mio1::Poll::new()?;
         poll.registry().register(&mut subscription, mio1::Token(0), mio1::Interest::READABLE)?;
         let mut events = mio1::Events::with_capacity(1);
         let mut remotes = BTreeMap::new();
-        let expected = Expected { topic, kind: &kind, is_reliable };
+        let expected = Expected { topic, kind: &kind, requested };
         while !self.is_stopped() {
             if self.tell()? {
                 self.watch(&expected, &mut remotes);
@@ -347,14 +367,13 @@ impl<'a> Ros<'a> {
         }
         for writer in &writers {
             remotes.entry(gid_of(writer)).or_insert_with(|| {
-                let kind = &writer.publication_topic_data.type_name;
-                let is_best_effort = expected.is_reliable && !is_reliable(writer);
-                let refused = (kind != expected.kind)
-                    .then(|| format!("of type {kind}, not {}", expected.kind));
-                let refused = refused
-                    .or_else(|| is_best_effort.then(|| "best effort, not reliable".to_owned()));
+                let offered = &writer.publication_topic_data;
+                let refused = mismatch(
+                    (&offered.type_name, &offered.qos()),
+                    (expected.kind, &expected.requested),
+                );
                 if let Some(why) = &refused {
-                    self.counters.add("publishers refused", 1, why);
+                    self.counters.add_rare("publishers refused", why);
                 }
                 Remote { refused, last: None }
             });
@@ -400,9 +419,28 @@ impl<'a> Ros<'a> {
         let is_due = self.next <= Instant::now();
         if is_due {
             self.next = Instant::now() + DIAGNOSE;
+            self.look_at_subscribers();
             self.diagnose();
         }
         Ok(is_due)
+    }
+
+    /// Counts new subscribers that hear nothing of what the node publishes.
+    fn look_at_subscribers(&mut self) {
+        for reader in self.context.domain_participant().discovered_readers() {
+            let wanted = &reader.subscription_topic_data;
+            let topic = wanted.topic_name();
+            let offer = self.offers.iter().find(|offer| offer.topic == *topic);
+            let why = offer.and_then(|Offer { kind, qos, .. }| {
+                mismatch((kind, qos), (wanted.type_name(), &wanted.qos()))
+            });
+            if let Some(why) = why
+                && self.refused.insert(wanted.key().into())
+            {
+                let topic = topic.strip_prefix("rt").unwrap_or(topic);
+                self.counters.add_rare("subscribers refused", &format!("{topic}: {why}"));
+            }
+        }
     }
 
     fn diagnose(&mut self) {
@@ -451,7 +489,16 @@ struct Expected<'a> {
     topic: &'a str,
     /// The type as DDS has it.
     kind: &'a str,
-    is_reliable: bool,
+    requested: QosPolicies,
+}
+
+/// Returns why a subscriber hears nothing of a publisher: another type, or a quality of service that is not offered.
+fn mismatch(offered: (&str, &QosPolicies), requested: (&str, &QosPolicies)) -> Option<String> {
+    if offered.0 != requested.0 {
+        return Some(format!("{} is offered, {} wanted", offered.0, requested.0));
+    }
+    let policy = offered.1.compliance_failure_wrt(requested.1)?;
+    Some(format!("the {policy:?} that is wanted is not offered").to_lowercase())
 }
 
 /// Returns how to take part: in the domain and the range that ROS's environment names.

@@ -30,9 +30,9 @@ pub enum State {
     Idle,
     /// Applies spikes of neurons and inputs to neurons, before the next tick.
     Prop,
-    /// After a tick, lets neurons leak and fire.
+    /// Lets neurons leak and fire, after a tick.
     Step,
-    /// The time step is done.
+    /// Ends the time step.
     StepDone,
     /// Waits for a target from which to learn.
     GetTarget,
@@ -48,19 +48,20 @@ pub enum State {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum EventState {
-    /// No event waits.
+    /// Waits for an event.
     #[default]
     Wait,
     /// Searches for the next input or neuron that has an event.
     Count,
     /// Applies an event to all neurons. A pair of neurons takes two clock cycles.
     Event,
-    /// Updates the trace of an input whose number is higher than that of any neuron.
+    /// Updates the trace of an input (a measure of its recent spikes, for learning). Only an input whose number is
+    /// higher than that of any neuron needs this state.
     Trace,
 }
 
-/// The state of a pair of neurons, as one word of memory stores it. If a neuron was not updated since the sample began,
-/// its state counts as 0, whatever the memory holds.
+/// The state of a pair of neurons, as one word of memory stores it. The state of a neuron that was not updated since
+/// the sample began counts as 0, whatever the memory holds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pair {
     pub(super) potential: [i16; 2],
@@ -274,7 +275,7 @@ impl Default for ReckOn {
 /// An access to a memory in this clock cycle.
 struct Access {
     address: usize,
-    /// Data and mask of a write; `None` for a read.
+    /// Data and mask of a write, which changes the bits where the mask is 1; `None` for a read.
     write: Option<(u128, u128)>,
 }
 
@@ -291,14 +292,16 @@ fn access(memory: &mut Memory, word: &mut u128, access: Option<&Access>) {
     }
 }
 
-/// Returns the data and the mask that write 32 bits into the part of a 128-bit word that `address` selects.
+/// Returns the data and the mask of a write of 32 bits into a 128-bit word. The two lowest bits of `address` select the
+/// quarter of the word.
 fn part(address: u16, data: u32) -> (u128, u128) {
     let shift = u32::from(address & 3) * 32;
     (u128::from(data) << shift, 0xFFFF_FFFF << shift)
 }
 
 /// Adds three 16-bit numbers as the chip does. If `one` and `other` have the same sign and the sum has the opposite
-/// sign, the sum saturates, even if only `noise` changed the sign.
+/// sign, the chip takes this for an overflow, and the sum saturates. This happens even without an overflow, when
+/// `noise` alone changes the sign.
 fn add(one: i16, other: i16, noise: i16) -> i16 {
     let sum = one.wrapping_add(other).wrapping_add(noise);
     match (one < 0, other < 0, sum < 0) {
@@ -375,8 +378,8 @@ impl ReckOn {
         }
     }
 
-    /// Runs the chip for `clocks` clock cycles. Stops early if no further clock cycle can change anything; the skipped
-    /// cycles are not counted.
+    /// Runs the chip for `clocks` clock cycles. Skips the rest of them if no further clock cycle can change anything;
+    /// [`clocks`](Self::clocks) counts the skipped cycles, too.
     pub fn run(&mut self, clocks: u32) {
         self.clocks += u64::from(clocks);
         for _ in 0..clocks {
@@ -457,7 +460,8 @@ impl ReckOn {
         }
     }
 
-    /// Returns the highest number of a neuron, an input or an output. A time step of the chip counts up to this number.
+    /// Returns the highest number of a neuron, an input or an output. In each time step, the counter `step_count` runs
+    /// from 0 to this number.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }
@@ -899,7 +903,9 @@ impl ReckOn {
         self.now = new;
     }
 
-    /// Advances the random generators.
+    /// Advances the random generators that this clock cycle uses. A reset or a write of a seed instead sets the
+    /// generator's state; `prog` has the flags of the seeds that are written. `alpha` is the share of its potential
+    /// that a neuron keeps, in units of 1/32 768. `draws` selects the generators that learning uses.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;
         let is_reset = now.resets[1];

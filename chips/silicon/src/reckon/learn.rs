@@ -31,8 +31,8 @@ struct Move<'a> {
 
 impl Move<'_> {
     /// Returns the new word of weights, and a mask of the weights that change. For the index of a weight in the word,
-    /// `likely` returns a measure of how likely the weight rises (if positive) or falls (if negative), and whether the
-    /// weight may change at all.
+    /// `likely` returns a measure of how likely the weight is to rise (if positive) or to fall (if negative), and
+    /// whether the weight may change at all.
     fn apply(&self, likely: impl Fn(usize) -> (i32, bool)) -> (u128, u128) {
         let (mut data, mut mask) = (0, 0);
         for n in 0..16 {
@@ -99,7 +99,8 @@ impl ReckOn {
         (target - y).clamp(i16::MIN.into(), i16::MAX.into()) as i16
     }
 
-    /// Returns the learning signal of the current neuron: its weighted sum of the outputs' errors.
+    /// Returns the learning signal of the current neuron: the sum of the outputs' errors, each times the weight from
+    /// the neuron to that output.
     fn signal(&self) -> i16 {
         if self.register(9) & 3 == 0 {
             return 0;
@@ -225,7 +226,8 @@ impl Learning {
         self.neuron
     }
 
-    /// Advances the counters, and stores the slopes and learning signals of sixteen neurons.
+    /// Advances the counters of learning. Stores the slope and the learning signal of the current neuron, in its place
+    /// among sixteen neurons.
     pub(super) fn clock(&self, chip: &ReckOn, new: &mut Clocked, next: State) {
         let now = &chip.now;
         let only_outputs = chip.register(9) == 4;
@@ -257,9 +259,9 @@ impl Learning {
     }
 }
 
-/// Returns a measure of how likely a weight changes, and whether the weight may change at all. The measure is positive
-/// if the weight would rise, and negative if it would fall. `n` is 0 for weights from inputs, 1 for weights from
-/// neurons. `lane` is the index of the receiving neuron among sixteen.
+/// Returns a measure of how likely a weight is to change, and whether the weight may change at all. The measure is
+/// positive if the weight would rise, and negative if the weight would fall. `n` is 0 for weights from inputs, 1 for
+/// weights from neurons. `lane` is the index of the receiving neuron among sixteen.
 fn likely(
     chip: &ReckOn,
     n: usize,

@@ -13,8 +13,8 @@ pub(super) struct Lfsr {
 /// The bits that a generator produces in one clock cycle; the first is bit 0 of the first word.
 pub(super) type Bits = [u64; 8];
 
-/// Length in bits of the part of the sequence that is computed: up to 25 bits before the first bit of this clock cycle,
-/// up to 512 bits of this clock cycle, and up to 25 bits after these.
+/// Length in bits of the part of the sequence that is computed: 26 bits from before this clock cycle, 512 bits of this
+/// clock cycle, and 26 bits from after it. No generator uses more than this.
 const LENGTH: usize = 26 + 512 + 26;
 const NOW: i32 = 26;
 
@@ -27,7 +27,8 @@ impl Lfsr {
         self.state = state & ((1 << self.width) - 1);
     }
 
-    /// Returns the position in the sequence of bit `bit` of the state. Position 0 is the first bit of this clock cycle.
+    /// Returns the position that bit `bit` of the state has in the generator's sequence. Position 0 is the first bit of
+    /// this clock cycle.
     fn place(&self, bit: i32) -> i32 {
         match (self.bits, bit) {
             (_, bit) if bit < self.tap => bit,
@@ -58,7 +59,8 @@ impl Lfsr {
         bits
     }
 
-    /// Returns the bits of this clock cycle as a number, for generators of at most 32 bits.
+    /// Returns the bits that the generator produces in this clock cycle, as one number. Only for generators of at most
+    /// 32 bits in a clock cycle.
     pub(super) fn word(&self) -> u32 {
         self.bits()[0] as u32
     }

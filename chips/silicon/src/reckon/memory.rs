@@ -1,4 +1,4 @@
-//! A memory that stores its words only up to the last word written, because a microcontroller that runs the model has
+//! A memory that stores words only up to the highest address written, because a microcontroller that runs the model has
 //! no room for all words.
 
 use alloc::vec::Vec;

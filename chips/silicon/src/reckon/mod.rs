@@ -1,7 +1,7 @@
 //! A model of `ReckOn`, exact to the clock cycle: its SPI, controllers, neurons, traces, learning and random
 //! generators.
 //!
-//! It was written from the chip's public register-transfer code; nothing is copied from it.
+//! The model was written from the chip's public register-transfer code; none of that code is copied.
 
 mod board;
 mod chip;

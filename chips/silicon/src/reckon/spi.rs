@@ -11,7 +11,8 @@ pub(super) const PROG_INPUT_WEIGHTS: u16 = 1 << 2;
 pub(super) const PROG_RECURRENT_WEIGHTS: u16 = 1 << 3;
 /// Flag in [`SpiSlave::writing`]: write weights to outputs.
 pub(super) const PROG_OUTPUT_WEIGHTS: u16 = 1 << 4;
-/// Flag in [`SpiSlave::writing`]: write the seed of the first random generator; the flags of the other eight follow.
+/// Flag in [`SpiSlave::writing`]: write the seed of the first random generator. The next eight bits are the flags of
+/// the other generators.
 pub(super) const PROG_SEED: u16 = 1 << 5;
 
 /// Number of registers; the highest register number is 104.
@@ -28,9 +29,10 @@ pub(super) struct SpiSlave {
     pub(super) address: u16,
     /// The word that the core is to write.
     pub(super) data: u32,
-    /// Flags of the writes that the core is to make, the `PROG_` constants.
+    /// The writes that the core is to make, with one bit for each kind of write: the `PROG_` constants.
     pub(super) writing: u16,
-    /// Flags of the reads that the core is to make: bit `n - 1` is for the memory with code `n`.
+    /// The memory reads that the core is to make, with one bit for each memory, from bit 0 on: pairs of neurons,
+    /// outputs' potentials, weights from inputs, weights between neurons, weights to outputs.
     pub(super) reading: u8,
     registers: [u32; REGISTERS],
 }
@@ -103,12 +105,12 @@ impl SpiSlave {
         self.registers[register]
     }
 
-    /// Sets a register directly. Bits beyond its width are dropped.
+    /// Sets a register without SPI. Bits of `value` beyond the register's width are dropped.
     pub(super) fn set_register(&mut self, register: usize, value: u32) {
         self.registers[register] = value & ((1_u64 << width(register)) - 1) as u32;
     }
 
-    /// Returns the level that the slave gives MISO; `read` is the last word that the core read.
+    /// Returns the level of MISO. `read` is the memory word that the core read last.
     pub(super) const fn output(&self, read: u32) -> bool {
         let is_first = self.header >> 31 == 1 && self.count & 31 == 0 && self.count >> 5 != 0;
         (if is_first { read } else { self.shift_out }) >> 31 == 1
@@ -125,7 +127,7 @@ impl SpiSlave {
         self.shift_in = word;
     }
 
-    /// Lowers SCK; `read` is the last word that the core read.
+    /// Lowers SCK. `read` is the memory word that the core read last.
     pub(super) fn fall(&mut self, read: u32) {
         let Self { count, header, shift_in, shift_out, .. } = *self;
         let (words, is_last) = (count >> 5, count & 31 == 31);

@@ -1,7 +1,7 @@
 //! Calibrates a scheme on a whole recording, in any sample type.
 
-use super::SampleType;
 use super::quantiles::Quantiles;
+use super::{Asked, SampleType};
 use crate::for_sample_type;
 use spikewire::temporal::TemporalContrast;
 use spikewire::{Calibration, ConfigError, Sample};
@@ -9,7 +9,7 @@ use spikewire::{Calibration, ConfigError, Sample};
 /// A calibration in the unit of the recording.
 pub struct Calibrated {
     calibration: Box<dyn Calibrate + Send + Sync>,
-    quantiles: Quantiles,
+    quantiles: Option<Quantiles>,
     /// The number that represents 1 in the unit of the calibration.
     one: f64,
 }
@@ -17,16 +17,28 @@ pub struct Calibrated {
 impl Calibrated {
     /// Starts a calibration without samples.
     pub fn new(sample: SampleType) -> Self {
+        Self { quantiles: Some(Quantiles::new()), ..Self::without_quantiles(sample) }
+    }
+
+    /// Starts a calibration for these parameters alone, which takes less work where they need no quantiles.
+    pub fn of(sample: SampleType, asked: &Asked) -> Self {
+        let needs_quantiles = asked.word("centres") == Some("quantiles");
+        if needs_quantiles { Self::new(sample) } else { Self::without_quantiles(sample) }
+    }
+
+    fn without_quantiles(sample: SampleType) -> Self {
         let calibration: Box<dyn Calibrate + Send + Sync> =
             for_sample_type!(sample, S => Box::new(Calibration::<S>::new()));
-        Self { calibration, quantiles: Quantiles::new(), one: sample.one() }
+        Self { calibration, quantiles: None, one: sample.one() }
     }
 
     /// Adds the next samples, which must be finite.
     pub fn observe(&mut self, samples: &[f64]) {
-        for sample in samples {
-            self.calibration.observe(sample * self.one);
-            self.quantiles.observe(*sample);
+        self.calibration.observe(samples, self.one);
+        if let Some(quantiles) = &mut self.quantiles {
+            for sample in samples {
+                quantiles.observe(*sample);
+            }
         }
     }
 
@@ -35,10 +47,12 @@ impl Calibrated {
         self.calibration.range().map(|(min, max)| (min / self.one, max / self.one))
     }
 
-    /// Returns `count` quantiles `(2i + 1) / 2M`, which are dense where samples are frequent; `None` without samples.
+    /// Returns `count` quantiles `(2i + 1) / 2M`, which are dense where samples are frequent; `None` without
+    /// samples, or if quantiles were not needed.
     pub fn quantiles(&self, count: usize) -> Option<Vec<f64>> {
         let part = |i: usize| (2 * i + 1) as f64 / (2 * count) as f64;
-        (0..count).map(|i| self.quantiles.quantile(part(i))).collect()
+        let quantiles = self.quantiles.as_ref()?;
+        (0..count).map(|i| quantiles.quantile(part(i))).collect()
     }
 
     /// Returns the threshold of temporal contrast, from the differences or from their magnitudes.
@@ -52,14 +66,16 @@ impl Calibrated {
 
 /// The crate's calibration, for any sample type.
 trait Calibrate {
-    fn observe(&mut self, sample: f64);
+    fn observe(&mut self, samples: &[f64], one: f64);
     fn range(&self) -> Option<(f64, f64)>;
     fn threshold(&self, factor: f32, of_magnitudes: bool) -> Result<f64, ConfigError>;
 }
 
 impl<S: Sample> Calibrate for Calibration<S> {
-    fn observe(&mut self, sample: f64) {
-        Self::observe(self, S::from_f64(sample));
+    fn observe(&mut self, samples: &[f64], one: f64) {
+        for sample in samples {
+            Self::observe(self, S::from_f64(sample * one));
+        }
     }
 
     fn range(&self) -> Option<(f64, f64)> {

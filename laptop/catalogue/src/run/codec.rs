@@ -3,10 +3,10 @@
 //! The code of a sample is a row of cells, one for each neuron in each sub-timestep. A cell holds the number of its
 //! spikes, positive for up and negative for down: -1, 0 or 1, or more if the code has several spikes in a sample.
 
-use std::{any::Any, array, iter};
+use std::{any::Any, array, iter, ops::Range};
 
 use spikewire::{
-    Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme, timing::PhaseBits,
+    Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme, Spike, timing::PhaseBits,
 };
 
 #[cfg(feature = "states")]
@@ -36,6 +36,18 @@ pub enum Samples<'a> {
     F64(&'a [f64]),
     /// Integers.
     I16(&'a [i16]),
+}
+
+impl Samples<'_> {
+    /// Returns some of the samples. Panics if there are fewer.
+    #[must_use]
+    pub fn part(self, range: Range<usize>) -> Self {
+        match self {
+            Self::F32(own) => Self::F32(&own[range]),
+            Self::F64(own) => Self::F64(&own[range]),
+            Self::I16(own) => Self::I16(&own[range]),
+        }
+    }
 }
 
 /// Buffers for decoded values, in the signal's unit.
@@ -69,6 +81,14 @@ impl Codec {
     /// Returns the latency: how many samples after a sample its code comes out.
     pub fn latency(&self) -> usize {
         self.running.latency()
+    }
+
+    /// Starts anew, on another recording of the same settings that begins with these samples: as many as the encoder
+    /// looks back, or all there are. Costs far less than another codec. A code that draws by chance draws what it drew
+    /// the first time.
+    pub fn restart(&mut self, past: &[f64]) {
+        self.running.restart(past);
+        (self.coded, self.decoded) = (0, 0);
     }
 
     /// Encodes the next samples into rows of cells, which must all be 0; returns the number of rows written.
@@ -187,6 +207,22 @@ enum Sink<'a> {
 }
 
 impl Sink<'_> {
+    /// Writes the first `count` outputs of a vector to cells, many at once. Returns false if the outputs are not spikes,
+    /// or do not go to cells.
+    fn put_spikes(&mut self, outputs: &dyn Any, count: usize) -> bool {
+        let (Self::Cells { rows, made, .. }, Some(spikes)) =
+            (self, outputs.downcast_ref::<Vec<Spike>>())
+        else {
+            return false;
+        };
+        let cells = rows.get_mut(*made..).unwrap_or_default();
+        for (cell, spike) in cells.iter_mut().zip(spikes.iter().take(count)) {
+            *cell = *spike as i8;
+        }
+        *made += count;
+        true
+    }
+
     fn put(&mut self, codes: impl Iterator<Item: Code + 'static>) {
         match self {
             Self::Cells { rows, shape, made } => {
@@ -257,6 +293,7 @@ fn step(polarity: Polarity) -> i8 {
 /// A codec that processes many samples in a call, so that the dynamic call costs nothing.
 trait Running {
     fn latency(&self) -> usize;
+    fn restart(&mut self, past: &[f64]);
     fn encode(&mut self, samples: Samples, sink: &mut Sink);
     fn finish(&mut self, sink: &mut Sink);
     fn decode(&mut self, cells: &[i8], values: &mut Values) -> Result<(), usize>;
@@ -277,26 +314,24 @@ pub(super) struct Start<'a> {
 impl<S: Sample> Visit<S> for Start<'_> {
     type Output = Codec;
 
-    fn visit<P: Runs<S>>(self, scheme: P, mut encoder: P::EncoderState) -> Result<Codec> {
+    fn visit<P: Runs<S>>(self, scheme: P, start: P::EncoderState) -> Result<Codec> {
         let Self { settings, shape, first } = self;
-        let one = settings.sample.one();
-        let sample = |value: f64| S::from_f64(value * one);
-        let past: Vec<S> = settings.first.iter().copied().map(sample).collect();
-        scheme.prime(&mut encoder, &past);
-        let mut decoder = scheme.decoder_state();
-        if let Some(first) = first {
-            scheme.resync(&mut decoder, sample(first));
-        }
-        let running = Box::new(Channel {
-            encoder,
-            decoder,
+        let mut running = Box::new(Channel {
+            encoder: start.clone(),
+            start,
+            decoder: scheme.decoder_state(),
             silent: P::Code::assemble(std::iter::empty()),
-            is_first_held: settings.starts_at_first(),
-            one,
+            has_first: first.is_some(),
+            starts_at_first: settings.starts_at_first(),
+            is_first_held: false,
+            one: settings.sample.one(),
             shape,
             seen: vec![0; shape.neurons * shape.slots],
+            block: Vec::new(),
+            outputs: Vec::new(),
             scheme,
         });
+        running.begin(&settings.first, first);
         Ok(Codec { running, shape, coded: 0, decoded: 0, row: Vec::new() })
     }
 }
@@ -304,10 +339,15 @@ impl<S: Sample> Visit<S> for Start<'_> {
 /// A scheme with the states of one channel.
 struct Channel<P: Scheme> {
     scheme: P,
+    /// The encoder before any sample.
+    start: P::EncoderState,
     encoder: P::EncoderState,
     decoder: P::DecoderState,
     /// The code without spikes.
     silent: P::Code,
+    /// Whether the decoder starts from a value, and whether that is the value of the first sample.
+    has_first: bool,
+    starts_at_first: bool,
     /// Whether the decoder holds the value of the next sample already, so that this sample's spike changes nothing.
     is_first_held: bool,
     /// The number that represents 1 in the sample type.
@@ -315,9 +355,26 @@ struct Channel<P: Scheme> {
     shape: Shape,
     /// A row of cells, for comparisons.
     seen: Vec<i8>,
+    /// Room for a block of samples and for what becomes of them.
+    block: Vec<P::Sample>,
+    outputs: Vec<P::Output>,
 }
 
-impl<P: Scheme + 'static> Channel<P> {
+impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
+    /// Begins a recording with these samples; the decoder starts from `first` if there is one.
+    fn begin(&mut self, past: &[f64], first: Option<f64>) {
+        self.encoder.clone_from(&self.start);
+        let sample = |value: f64| P::Sample::from_f64(value * self.one);
+        self.block.clear();
+        self.block.extend(past.iter().copied().map(sample));
+        self.scheme.prime(&mut self.encoder, &self.block);
+        self.decoder = self.scheme.decoder_state();
+        if let Some(first) = first {
+            self.scheme.resync(&mut self.decoder, sample(first));
+        }
+        self.is_first_held = self.starts_at_first;
+    }
+
     /// Encodes in blocks, for which schemes have faster code.
     fn encode_all(
         &mut self,
@@ -325,17 +382,27 @@ impl<P: Scheme + 'static> Channel<P> {
         sink: &mut Sink,
     ) {
         const BLOCK: usize = 512;
+        const KEPT: usize = 64;
         let Some(first) = samples.next() else { return };
         // It also stands in the room for the others.
         let first = self.scheme.encode(&mut self.encoder, first);
         sink.put(first.code().into_iter());
         let most = samples.len().min(BLOCK);
-        let (mut block, mut outputs) = (Vec::with_capacity(most), vec![first; most]);
+        if self.outputs.len() < most {
+            self.outputs.resize(most, first);
+        }
         while samples.len() > 0 {
-            block.clear();
-            block.extend(samples.by_ref().take(most));
-            let count = self.scheme.encode_slice(&mut self.encoder, &block, &mut outputs);
-            sink.put(outputs.iter().take(count).filter_map(|output| output.code()));
+            self.block.clear();
+            self.block.extend(samples.by_ref().take(most));
+            let (block, outputs) = (&self.block, &mut self.outputs);
+            let count = self.scheme.encode_slice(&mut self.encoder, block, outputs);
+            if !sink.put_spikes(&self.outputs, count) {
+                sink.put(self.outputs.iter().take(count).filter_map(|output| output.code()));
+            }
+        }
+        // Codes of large populations take too much room to be kept for each channel.
+        if size_of::<P::Output>() > KEPT {
+            self.outputs = Vec::new();
         }
     }
 
@@ -381,9 +448,14 @@ impl<P: Scheme + 'static> Channel<P> {
     }
 }
 
-impl<P: Scheme<EncoderState: State, DecoderState: State> + 'static> Running for Channel<P> {
+impl<P: Scheme<EncoderState: State + Clone, DecoderState: State> + 'static> Running for Channel<P> {
     fn latency(&self) -> usize {
         self.scheme.latency()
+    }
+
+    fn restart(&mut self, past: &[f64]) {
+        let first = past.first().copied().filter(|_| self.has_first);
+        self.begin(past, first);
     }
 
     fn encode(&mut self, samples: Samples, sink: &mut Sink) {

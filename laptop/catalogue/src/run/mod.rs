@@ -59,8 +59,9 @@ pub struct Shape {
 pub trait Runs<S>:
     Scheme<
         Sample = S,
-        EncoderState: State + Send + Sync,
+        EncoderState: State + Clone + Send + Sync,
         DecoderState: State + Send + Sync,
+        Output: Send + Sync,
         Code: Send + Sync,
     > + Send
     + Sync
@@ -71,8 +72,9 @@ pub trait Runs<S>:
 impl<S, P> Runs<S> for P where
     P: Scheme<
             Sample = S,
-            EncoderState: State + Send + Sync,
+            EncoderState: State + Clone + Send + Sync,
             DecoderState: State + Send + Sync,
+            Output: Send + Sync,
             Code: Send + Sync,
         > + Send
         + Sync
@@ -411,9 +413,6 @@ impl<T: Build + Sync> RunTime for T {
 
 /// Rounds settings to a sample type other than `f32`.
 fn rounded<T: Build>(sample: SampleType, asked: &Settings) -> Result<Settings> {
-    let one = sample.one();
-    let round =
-        |value: &f64| for_sample_type!(sample, S => S::from_f64(value * one).to_f64()) / one;
     let mut ran = asked.clone();
     ran.sample = sample;
     let first = ran.first_key();
@@ -422,10 +421,10 @@ fn rounded<T: Build>(sample: SampleType, asked: &Settings) -> Result<Settings> {
         let is_rounded =
             own.is_some_and(|own| T::is_in_samples(own, asked)) || first == Some(*name);
         match value {
-            Value::Number(number) if is_rounded => *number = round(number),
+            Value::Number(number) if is_rounded => *number = sample.rounded(*number),
             Value::Numbers(numbers) if is_rounded => {
                 for number in numbers {
-                    *number = round(number);
+                    *number = sample.rounded(*number);
                 }
             }
             _ => {}

@@ -1,7 +1,7 @@
 //! The number types in which samples are encoded.
 
 use super::error::{Error, ErrorKind};
-use spikewire::SampleKind;
+use spikewire::{Sample, SampleKind};
 use std::fmt;
 use std::str::FromStr;
 
@@ -67,6 +67,14 @@ impl SampleType {
                 2_f64.powi(-i32::from(fraction))
             }
         }
+    }
+
+    /// Returns the value that stands for this one in fixed point; floating point keeps it as it is.
+    pub fn rounded(self, value: f64) -> f64 {
+        if self == Self::F32 {
+            return value;
+        }
+        for_sample_type!(self, S => S::from_f64(value * self.one()).to_f64()) / self.one()
     }
 
     /// Returns the smallest and the largest value.

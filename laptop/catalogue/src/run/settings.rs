@@ -58,6 +58,22 @@ impl Settings {
         self.set(FIRST, value);
     }
 
+    /// Returns these settings for another recording, whose encoder starts from these samples. What does not follow from
+    /// them stays.
+    #[must_use]
+    pub fn beginning(&self, first: &[f64]) -> Self {
+        let mut own = Self { first: first.to_vec(), ..self.clone() };
+        if let (true, Some(&first)) = (own.starts_at_first(), first.first()) {
+            own.rounded.retain(|(name, _)| *name != FIRST);
+            let rounded = own.sample.rounded(first);
+            if rounded != first {
+                own.rounded.push((FIRST, first.into()));
+            }
+            own.set_first(rounded);
+        }
+        own
+    }
+
     /// Returns the value from which the decoder starts: that of the first sample, or the one before it.
     pub fn first_value(&self) -> Option<f64> {
         self.get(self.first_key()?)?.number()

@@ -18,12 +18,12 @@ use lab::watch::{Progress, Watch};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Describe a log and advise a bank for it: one scheme for all channels, its parameters, and the reasons.
+/// Describe a log and advise a bank of encoders for it: one scheme for all channels, its parameters, and the reasons.
 ///
 /// Each scheme is tuned briefly on each channel, with some blocks of the log held out. A scheme qualifies if its RMSE
 /// is at most --max-rmse on the tuned blocks, and at most 1.25 times --max-rmse on the held-out blocks. Of the schemes
 /// that qualify, the one that needs the fewest bytes a second on the link is advised. With --loop-bandwidth, a scheme
-/// must also have flown a simulated drone well while frames were lost.
+/// qualifies only if simulated drones also flew well with it while the link lost frames.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -47,11 +47,11 @@ pub(crate) struct Advise {
     /// Codes whose latency is too long for this bandwidth, or that cannot follow the signal, are not advised
     #[arg(long, value_name = "HZ", value_parser = lab::input::above_zero)]
     loop_bandwidth: Option<f64>,
-    /// Share of frames that the link loses, in percent, 0 to 10. With --loop-bandwidth, a code is not advised if a
-    /// simulated drone flew badly with it at this loss
+    /// Share of frames that the link loses, in percent, 0 to 10. With --loop-bandwidth, a code is advised only if
+    /// simulated drones flew well with it at such a loss
     #[arg(long, value_name = "PERCENT", default_value_t = AdviseRequest::FRAME_LOSS)]
     frame_loss: f64,
-    /// Core on which instructions were counted, for the costs in the report: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
+    /// Core for which the report counts instructions: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
     /// Stop after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
@@ -63,11 +63,12 @@ pub(crate) struct Advise {
     /// Seed of the search
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Draw one channel's signal, spikes and reconstruction with the advised scheme, as `.svg` or `.png`
+    /// Picture to draw, as `.svg` or `.png`: signal, spikes and reconstruction with the advised scheme; needs a
+    /// recording of one channel, or --channel
     #[arg(long)]
     picture: Option<PathBuf>,
-    /// Write the advised bank as a flight file (`flight.toml`), which `emit`, `encode`, `listen`, Python and a
-    /// firmware's build script read
+    /// Write the advised bank of encoders, one for each channel, as a flight file (`flight.toml`). It is read by `emit`,
+    /// `encode`, `listen`, Python and a firmware's build script
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print the whole report as JSON
@@ -78,7 +79,8 @@ pub(crate) struct Advise {
 /// Runs the command.
 ///
 /// # Errors
-/// Returns an error if the log or the options are invalid, or if no scheme can be advised for any channel.
+/// Returns an error if the log or the options are invalid, or if no channel has a scheme that can be advised. With
+/// `-o`, also returns an error if no scheme suits all channels, or if the output cannot be written.
 pub(crate) fn run(options: &Advise) -> Result<()> {
     let recordings = Recording::read_all(&options.input.to_lab()?.or_all()?)?;
     if options.picture.is_some() && recordings.len() > 1 {
@@ -146,8 +148,8 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     Ok(())
 }
 
-/// Draws the recording, its spikes and its reconstruction with the scheme advised for it, and writes the picture to
-/// `path`.
+/// Draws a recording, its spikes and its reconstruction, and writes the picture to `path`. Spikes and reconstruction
+/// are those of the scheme in `advice`; without such a scheme, nothing is written.
 fn draw_advised(
     options: &Advise,
     path: &Path,

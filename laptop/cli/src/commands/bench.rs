@@ -9,20 +9,20 @@ use lab::bench::{self, paper};
 use std::time::Instant;
 
 /// Reproduce Tables I and II of the paper, Dupeyroux et al. (2022), cell by cell; fails if a cell differs from the
-/// printed one.
+/// paper's.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire bench
   spikewire bench --tests 100 --cases 3 --json")]
 pub(crate) struct Bench {
-    /// Number of signals in each case. The paper has 1000; with fewer signals, only larger differences are detected
+    /// Number of signals of each length. The paper has 1000; with fewer signals, only larger differences are detected
     #[arg(long, default_value_t = paper::TESTS)]
     tests: usize,
-    /// Number of cases to run, 1 to 5, starting with the shortest signals
+    /// Number of signal lengths to run, 1 to 5, starting with the shortest
     #[arg(long, default_value_t = paper::CASES.len())]
     cases: usize,
-    /// Seed of the noise
+    /// Seed of the noise in the signals
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Print the figures as JSON

@@ -13,7 +13,7 @@ pub(crate) struct Capture {
     /// The chip's name in probe-rs, such as STM32F405RG or RP2040
     #[arg(long)]
     pub chip: String,
-    /// The debug probe to use, if several are connected
+    /// USB identifiers of the debug probe, in hexadecimal; needed if several are connected
     #[arg(long, value_name = "VENDOR:PRODUCT[:SERIAL]")]
     pub probe: Option<String>,
     /// Number of the RTT channel on the board

@@ -13,10 +13,14 @@ use std::path::PathBuf;
 /// Convert events from one format to another.
 ///
 /// FORMAT is `link` (spikewire's own frames), `edvs:e0` to `edvs:e4` (the number is the camera's time format), `es`
-/// (Event Stream), `evt2` (a .raw file), `eieio` (consecutive datagrams) or `csv` (`tick,address,polarity`). Options
-/// follow after a comma. `link,period=5000,channels=6,jitter=5` makes frames short. `edvs:e2,up=0` encodes a rise as 0.
-/// `eieio,base=0x70000,step=1000,signed=1` sets the key of address 0, the length of a time step in µs, and two keys for
-/// each address, the first for down and the second for up.
+/// (Event Stream), `evt2` (a .raw file), `eieio` (consecutive datagrams) or `csv` (`tick,address,polarity`).
+///
+/// Settings follow the format's name after commas. The settings of `link,period=5000,channels=6,jitter=5` only make
+/// frames shorter. `period` is the time between samples in µs, `channels` is the number of channels, and `jitter` is
+/// the number of bits for the jitter of times in µs, with its sign. In `edvs:e2,up=0`, the polarity bit is 0 for up and
+/// 1 for down. In `eieio,base=0x70000,step=1000,signed=1`, `base` is the key (number in a datagram) of address 0, and
+/// `step` is the length of a time step in µs. With `signed=1`, each address has two keys: the first for down, the
+/// second for up.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -20,11 +20,11 @@ use std::thread;
 /// The directory DIR holds two Parquet files for each log, and the file `manifest.jsonl`. `events/NAME.parquet` holds
 /// the log's spikes in the columns `index`, `channel` and `polarity`, with `neuron` if a channel has several neurons,
 /// and `time_us` if the log has times. `values/NAME.parquet` holds the samples that were encoded. `manifest.jsonl`
-/// holds a row for each log: its hash, the counts of what was read and left out, and its side of the split. A log that
-/// cannot be read has a row with the reason.
+/// holds a row for each log. A row has the hash of the log, the number of samples read, the number of samples left out,
+/// and whether the log is for training or testing. If a log cannot be read, its row gives the reason.
 ///
-/// The same command continues a run that was ended, even if it was killed. A log that has changed is encoded again.
-/// `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
+/// The same command, given again, continues a run that was interrupted or killed. A log that has changed is encoded
+/// again. `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -34,7 +34,8 @@ Examples:
 pub(crate) struct Dataset {
     #[command(flatten)]
     coding: Coding,
-    /// Flight file (`flight.toml`) that `advise -o` wrote: encodes the file's channels as the sender on the drone does
+    /// Flight file (`flight.toml`) that `advise -o` wrote. It sets the channels to encode, and the encoders, which are
+    /// those of the sender on the drone
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
     /// Files, directories and patterns such as 'logs/**/*.ulg'. In a directory, logs are recognised by their content,
@@ -44,8 +45,8 @@ pub(crate) struct Dataset {
     #[arg(long, value_name = "FILE")]
     list: Option<PathBuf>,
     /// Channels to read from logs of one kind, in place of the channels of --flight or --columns. KIND is table, ulog,
-    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. The option may be given several times for a kind; each log is
-    /// then read with the first channels that it has
+    /// ardupilot, mavlink, bag, ros2, mcap or blackbox. If the option is given several times for a kind, each log is
+    /// read with the first NAMES that are all in the log
     #[arg(long, value_name = "KIND=NAMES", help_heading = "Input")]
     channels_of: Vec<ChannelsOf>,
     #[command(flatten)]
@@ -56,7 +57,8 @@ pub(crate) struct Dataset {
     /// Share of the flights to use for testing, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = 0.2)]
     test: f64,
-    /// Count all logs of a directory as one flight, on one side of the split; default: each log is a flight of its own
+    /// Count all logs of a directory as one flight, which is wholly for training or wholly for testing; default: each
+    /// log is a flight of its own
     #[arg(long)]
     by_directory: bool,
     /// Number of logs to encode at the same time; default: one for each core

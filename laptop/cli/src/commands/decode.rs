@@ -20,8 +20,9 @@ use tempfile::NamedTempFile;
 /// messages of `spyke_msgs`, from the toolbox by Dupeyroux et al. (2022). The scheme and its parameters are read from
 /// the file itself.
 ///
-/// Writes the columns `index,value`; with several channels, one column for each, under its name. If times were
-/// recorded, the column `time_us` follows. Its times are exact at events and at gaps, and evenly spaced between them.
+/// Writes a table with the columns `index` and `value`. In place of `value`, a table of several channels has a column
+/// for each channel, with the name of the channel. If times were recorded, the column `time_us` follows. Times are
+/// exact at events and at gaps, and evenly spaced in between.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -36,10 +37,11 @@ pub(crate) struct Decode {
     /// Read the undamaged part of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
-    /// CSV file to write, `index,value` and `time_us` if times were recorded; default: standard output
+    /// CSV file to write. Its columns are `index`, then `value` or one column for each channel, then `time_us` if times
+    /// were recorded; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Write the spikes of a Parquet file as `encode` writes them, instead of values
+    /// Instead of values, write the spikes of a Parquet file, in the format of `encode`
     #[arg(long = "spikes")]
     is_restored: bool,
 }
@@ -98,7 +100,8 @@ fn decode(
     file: &str,
     open: impl FnOnce() -> lab::Result<Output>,
 ) -> Result<()> {
-    /// Events are decoded in batches. A batch is decoded after this number of events, or this number of sample times.
+    /// Number of items in a batch. The collected events are decoded as soon as this many events, or this many sample
+    /// times, have been read.
     const BATCH: usize = 4096;
     let bank = Bank::new(header.scheme, &header.channels).with_context(|| file.to_owned())?;
     let mut decoding = Decoding::new(bank, header, reader.is_timed(), open()?)?;
@@ -149,7 +152,7 @@ struct Decoding {
     is_single: bool,
     is_timed: bool,
     timeline: Timeline,
-    /// Index of the next sample to write, counting those that the encoder skipped.
+    /// Index of the next sample to write. Samples that the encoder skipped have indices too.
     next: u64,
     /// Number of samples before `next` that the encoder skipped because a value was missing.
     skipped: u64,
@@ -193,8 +196,8 @@ impl Decoding {
         })
     }
 
-    /// Decodes and writes all samples before index `end`. `events` holds the events before `end`, and is empty
-    /// afterwards.
+    /// Decodes and writes all remaining samples before index `end`. `events` must hold all events of these samples. If
+    /// the function succeeds, it empties `events`.
     fn advance(&mut self, end: u64, events: &mut Vec<Event>) -> Result<(), Failure> {
         const MOST: u64 = 8192;
         for event in events.iter_mut() {

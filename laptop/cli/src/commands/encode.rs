@@ -14,8 +14,7 @@ use std::path::PathBuf;
 /// Encode channels of a recording: writes `index,address,polarity` and, if the recording has times, `time_us`.
 ///
 /// With several columns, each has a range of addresses of its own: the neurons of the second column are numbered after
-/// those of the first. All columns share the given parameters; parameters that are calibrated are calibrated for each
-/// column.
+/// those of the first. The given parameters hold for all columns. Calibration is done for each column separately.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -27,8 +26,8 @@ Examples:
 pub(crate) struct Encode {
     #[command(flatten)]
     coding: Coding,
-    /// Flight file (`flight.toml`) that `advise -o` wrote: encodes the file's channels exactly as the sender on the
-    /// drone does
+    /// Flight file (`flight.toml`), as written by `advise -o`. The channels in the file are encoded exactly as the
+    /// sender on the drone encodes them
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
     flight: Option<PathBuf>,
     #[command(flatten)]

@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 /// Convert a video to the events of its pixels, as an event camera would send them.
 ///
 /// VIDEO is YUV4MPEG2 (`.y4m`, or `-`), pictures (`.png`, `.jpg`, `.pgm`, as files or a directory, in the order of
-/// their names), or any format that an installed `ffmpeg` reads. Colours are ignored. With `--threshold`, a pixel sends
-/// an event when its brightness differs by this number of grey levels from the last brightness that it sent. With
-/// `--contrast`, it sends an event when the logarithms of the two differ by this contrast. The first frame sends
-/// nothing.
+/// their names), or any format that an installed `ffmpeg` reads. Colours are ignored. The first frame sends nothing,
+/// and sets a reference brightness for each pixel. A pixel sends an event if its brightness is more than a threshold
+/// away from its reference, and each event moves the reference by the threshold. The threshold is in grey levels for
+/// `--threshold`, and a difference of natural logarithms for `--contrast`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -47,7 +47,8 @@ pub(crate) struct Frames {
     /// Maximum number of events in a frame. Further events are counted, and delayed to later frames
     #[arg(long)]
     budget: Option<u32>,
-    /// Spread the events of a pixel over the time since the previous frame, which is divided into --most parts
+    /// Spread each pixel's events over the time since the previous frame. This time is divided into equal parts, as
+    /// many as the value of --most
     #[arg(long)]
     interpolate: bool,
     /// Frames a second, such as `30` or `30000/1001`; default: the video's own rate, or 30 for pictures
@@ -96,7 +97,6 @@ pub(crate) fn run(options: &Frames) -> Result<()> {
 /// Returns an error that names `option` if the number of steps is outside 1 to 5673. From black to white there are 5673
 /// steps.
 fn levels(option: &str, contrast: f64) -> Result<u16> {
-    /// Number of levels for a difference of 1 in the natural logarithm.
     const SCALE: f64 = 1024.0;
     const MOST: f64 = 5673.0;
     let levels = (SCALE * contrast).round();

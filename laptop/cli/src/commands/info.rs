@@ -14,8 +14,8 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// List a log's topics with their fields, rates and gaps, and the data that the logger lost; or a table's columns,
-/// rows, rate and gaps.
+/// List the content of logs and tables. For a log: its topics with their fields, rates and gaps, and the data that the
+/// logger lost. For a table: its columns, rows, rate and gaps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -161,7 +161,8 @@ fn json(name: &str, content: &Content) -> serde_json::Value {
     }
 }
 
-/// Adds to a JSON description what the times show: rate, duration, gaps, steps back and restarts of the clock.
+/// Adds statistics of the sample times to the JSON description `all`: the rate, the duration, the gaps, the steps back,
+/// the restarts of the clock, a summary as text, and a note if the clock's counter has wrapped.
 fn add_times(all: &mut serde_json::Value, clock: &Clock, rollover: &Rollover) {
     all["rate"] = json!(clock.rate());
     all["seconds"] = json!(clock.seconds());

@@ -25,13 +25,14 @@ use std::rc::Rc;
 
 /// Listen to a board: write the events that it sends, or with `--scheme` the values that they encode.
 ///
-/// Formats have the names that `convert` uses. Values need the format `link`, and are decoded by the same receiver that
-/// runs on boards. A temporal code gives a value for each event. The other codes give a value for each sample and
-/// channel, from the channel's first event on.
+/// Formats have the names that `convert` uses. Only input in the format `link` can be decoded to values. The decoder is
+/// the same receiver that runs on boards. A temporal code, whose spikes stand for changes, gives a value for each
+/// event. The other codes give a value for each sample and channel, from the channel's first event on.
 ///
 /// A value marked `exact` equals, bit for bit, the value that a decoder on the sender has. Values of a temporal code
-/// are exact from a keyframe until data is lost. Values of a rate code are exact once a filter's length of samples has
-/// arrived without loss. Values of a population code are exact again from the first spike after a loss.
+/// are exact from a keyframe (a message with the whole value) until data is lost. Values of a rate code are exact once
+/// enough samples to fill the code's filter have arrived without loss. Values of a population code are exact again from
+/// the first spike after a loss.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -75,7 +76,8 @@ pub(crate) struct Listen {
     /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
     flight: Option<PathBuf>,
-    /// Length in µs of the sender's sub-timesteps; only for schemes that have them
+    /// Length in µs of the sender's sub-timesteps. Needed if the decoded value depends on the sub-timestep in which a
+    /// spike comes, otherwise not allowed
     #[arg(long, value_name = "µs", value_parser = value_parser!(u32).range(1..))]
     slot_ticks: Option<u32>,
     /// Draw values, spikes and losses in the terminal while they arrive. A recording is drawn at the pace of its clock.
@@ -142,7 +144,8 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
     listened
 }
 
-/// Decodes values, and draws them if `--live` is given.
+/// Decodes the input with the decoder `values`. If `--live` is given, calls `panel` to make a panel, and draws the
+/// decoded values there.
 fn listen_to(
     options: &Listen,
     values: Box<dyn Values + '_>,

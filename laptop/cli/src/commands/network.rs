@@ -33,16 +33,20 @@ use std::path::{Path, PathBuf};
 /// The spikes of a recording run through the network twice: in double precision, and in the target's arithmetic. A chip
 /// is simulated clock cycle by clock cycle; the controller's arithmetic is reproduced bit by bit.
 ///
-/// NETWORK is a NIR graph or JSON. A NIR graph is an HDF5 file of snnTorch, Norse, Rockpool, Sinabs, Lava and others.
-/// It must be a chain of up to three layers, each Linear or Affine followed by LIF, IF or `CubaLIF` (whose currents may
-/// last one step only). A layer may be recurrent, and on `ReckOn` a last layer of Linear and LI, I or `CubaLI` may
-/// serve as outputs. JSON is {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep":
-/// 0.9, "threshold": 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}. Its weights are listed by
-/// neuron, then by input; `keep` is the factor by which a step multiplies the potential.
+/// NETWORK is a NIR graph or JSON. A NIR graph is an HDF5 file, as snnTorch, Norse, Rockpool, Sinabs, Lava and others
+/// write it. For a chip, the graph must be a chain of up to three layers. Each layer consists of Linear or Affine
+/// weights, followed by LIF, IF or `CubaLIF` neurons. The current of a `CubaLIF` neuron must not last longer than one
+/// step. A layer may be recurrent. On the chip `ReckOn`, the outputs may be a last layer of Linear weights, followed by
+/// neurons of the types LI, I or `CubaLI`, which never fire.
 ///
-/// The controller takes any number of layers, `CubaLIF` with currents of any length, and a last layer of weights alone.
-/// A NIR file does not contain the order in which neurons decay, fire and reset: --as and the options after it set this
-/// order.
+/// JSON is {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep": 0.9, "threshold":
+/// 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}. Its weights are listed by neuron, then by input;
+/// `keep` is the factor by which a neuron's potential decays in a step.
+///
+/// The controller takes any number of layers, `CubaLIF` neurons with currents of any length, and a last layer of
+/// weights without neurons. A NIR file does not contain the order in which neurons decay, fire and reset. The option
+/// `--as` sets this order by the name of the training framework. The options `--reset`, `--fires`, `--decay` and
+/// `--current` set parts of it.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -57,7 +61,7 @@ pub(crate) struct Network {
     target: &'static str,
     /// Scheme that encodes the columns of INPUT as the network's inputs. Each neuron of each column is one input, or
     /// two (up, then down) if the code has polarities. Without --scheme, INPUT holds spikes: one line for each step,
-    /// with the numbers of the inputs that fire, in order
+    /// with the numbers of the inputs that fire, separated by blanks
     #[arg(long, value_parser = schemes())]
     scheme: Option<Scheme>,
     /// Sample type: f32, i16, i32, or fixed point such as q16.16 or q8.8
@@ -73,26 +77,26 @@ pub(crate) struct Network {
     parameters: SchemeOptions,
     #[command(flatten)]
     rule: RuleOptions,
-    /// Recording to test the network on. The network is then tuned on the whole of INPUT; default: the last third of
-    /// INPUT is for the test, and the network is tuned on the other two thirds
+    /// Second recording, to test the network on, so that the whole of INPUT can serve to tune the network. Default for
+    /// a chip: the network is tuned on the first two thirds of INPUT, and tested on the last third
     #[arg(long, value_name = "INPUT")]
     held_out: Option<PathBuf>,
     /// Tune on the whole of INPUT, without a test on held-out data
     #[arg(long, conflicts_with = "held_out")]
     no_held_out: bool,
-    /// Output spikes of the network in the training framework, one line for each step of INPUT. The chip's output
-    /// spikes are compared with them, and so are those of the network in double precision
+    /// File of the output spikes that the network had in the training framework, one line for each step of INPUT. The
+    /// report compares these spikes with the chip's, and with those of the network in double precision
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
-    /// Time at which tinyODIN's neurons compare their potentials with their thresholds. With `spike` they compare after
-    /// each spike, which the chip does by itself. With `step` they compare once a step, as in training; a step then
-    /// takes more events. Default: the choice that keeps more accuracy
+    /// Point at which tinyODIN's neurons compare their potentials with their thresholds. `spike`: after each arriving
+    /// spike, as the chip does by itself. `step`: once in each time step, as in training; the driver then sends extra
+    /// events to the chip in each step. Default: the choice that keeps more accuracy
     #[arg(long, value_parser = compares())]
     compare: Option<Compare>,
     /// Rust file to write; default: standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Also write the network as a binary file, which the driver loads at run time
+    /// Also write the network as a binary file, which the firmware's driver of the chip loads at run time
     #[arg(long, value_name = "FILE")]
     bytes: Option<PathBuf>,
     /// After the conversion, run the network on the chip's model, step by step. Each line of standard input is a step:
@@ -105,7 +109,7 @@ pub(crate) struct Network {
 /// Name by which `--on` selects the flight controller rather than a chip.
 const CONTROLLER: &str = "controller";
 
-/// Parses the value of `--on`: the name of a chip, or [`CONTROLLER`].
+/// Returns the parser of `--on`, which accepts the name of a chip or [`CONTROLLER`].
 fn targets() -> impl TypedValueParser<Value = &'static str> {
     let names = || CHIPS.iter().map(|chip: &&dyn Chip| chip.name()).chain([CONTROLLER]);
     PossibleValuesParser::new(names())
@@ -117,7 +121,7 @@ fn compares() -> impl TypedValueParser<Value = Compare> {
         .map(|asked| if asked == "spike" { Compare::Spike } else { Compare::Step })
 }
 
-/// The trained network, converted to the number format of its target.
+/// A trained network in the form for its target: a chip, or the flight controller.
 enum Converted {
     Chip(&'static dyn Chip, Trained),
     Controller(Model),
@@ -241,8 +245,9 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     if options.live { live(&*brought.network, converted.inputs().0) } else { Ok(()) }
 }
 
-/// Simulates the network step by step. Each line of standard input is a step: the numbers of the inputs that fire. Each
-/// line of output answers a step: the number of clock cycles, and the numbers of the outputs that fired.
+/// Simulates the network step by step, for `--live`. Each line of standard input is a step: the numbers of the inputs
+/// that fire. Each line of output answers a step: the number of clock cycles, and the numbers of the outputs that
+/// fired.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| -> lab::Result<_> {
@@ -272,24 +277,24 @@ fn spikes(line: &str) -> lab::Result<Vec<u16>> {
 
 /// Input spikes for the network, from an encoded recording or from a file of spikes.
 struct Driven {
-    /// The inputs that fire, for each step.
+    /// The numbers of the inputs that fire in each step.
     steps: Trains,
-    /// Number of inputs that the network must have. If the spikes come from a file, the network may have more: this is
-    /// the highest input that fires, plus one.
+    /// Number of inputs that the network must have. If the spikes come from a file, this is the minimum: the highest
+    /// number of an input that fires, plus one.
     inputs: usize,
     /// Description of the inputs, for error messages.
     words: String,
     /// Length of a step in µs, if it is known.
     step_us: Option<f64>,
-    /// Settings of the scheme, one for each column; empty if the spikes come from a file.
+    /// Settings of the encoding scheme, with an item for each column. Empty if the spikes come from a file.
     settings: Vec<Settings>,
     notes: Vec<Words>,
 }
 
 impl Driven {
-    /// Checks that the network has exactly the number of inputs that an encoded recording gives. If the spikes come
-    /// from a file, the network may have more inputs. `inputs` is the network's number of inputs, and `layer` is the
-    /// name of its first layer.
+    /// Checks that the network's number of inputs suits these spikes. With a `scheme`, the two numbers of inputs must
+    /// be equal. Without a scheme, the spikes come from a file, and the network may have more inputs. `inputs` is the
+    /// network's number of inputs, and `layer` is the name of its first layer, for the error message.
     fn check(&self, (inputs, layer): (usize, &str), scheme: Option<Scheme>) -> Result<()> {
         let given = &self.words;
         match scheme {
@@ -304,8 +309,8 @@ impl Driven {
     }
 }
 
-/// Encodes the columns of a recording as input spikes. The scheme runs with the `known` settings; without them, it is
-/// calibrated on the recording.
+/// Encodes the columns of a recording as input spikes. The scheme runs with the settings `known`; if `known` is `None`,
+/// the scheme is calibrated on the recording.
 fn driven(
     options: &Network,
     scheme: Scheme,
@@ -387,14 +392,15 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// Lower bound of the share of steps in which chip and trained network agree. The report warns if the share is lower.
+/// Least agreement between chip and trained network for which the report does not warn. The agreement of two runs is
+/// the share of active steps in which the same outputs fire in both. A step is active if an output fires in either run.
 const LOW: f64 = 0.5;
-/// Lower bound of the share of steps in which the outputs fire as they did in training. If the share is lower, the
-/// report suggests that `--as`, `--reset` or `--dt` differ from the training.
+/// Least agreement between the network in double precision and the training framework. If the agreement is lower, the
+/// report suggests that `--as`, `--reset` or `--dt` are wrong.
 const READ: f64 = 0.95;
 
-/// Prints on standard error how the converted network differs from the trained one, for the recording on which it was
-/// tuned and for the held-out recording.
+/// Prints on standard error how the converted network differs from the trained one: first for the recording that the
+/// conversion was tuned on, then for the held-out recording.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out, costs, reading } = brought;
     network.notes().iter().for_each(|note| eprintln!("{note}"));

@@ -19,10 +19,11 @@ pub(crate) struct RuleOptions {
     /// Whether a neuron fires only if its potential is above its threshold, or also if the two are equal
     #[arg(long, value_parser = of(&FIRES))]
     fires: Option<Fires>,
-    /// Formula by which a time constant becomes the decay of potentials and currents in a step
+    /// Formula that converts a time constant to the factor by which potentials and currents decay in each step
     #[arg(long, value_parser = of(&DECAYS))]
     decay: Option<Decay>,
-    /// Synaptic current that changes a neuron's potential in a step; only for neurons with synaptic currents
+    /// Synaptic current that drives a neuron's potential in a step: the current of this step, or the current of the
+    /// step before. Only for neurons with synaptic currents
     #[arg(long, value_parser = of(&CURRENTS))]
     current: Option<Current>,
     /// Number type of the network on the controller
@@ -31,7 +32,8 @@ pub(crate) struct RuleOptions {
 }
 
 impl RuleOptions {
-    /// Collects the options in a request to the library. `dt` is the length of a step in seconds.
+    /// Converts these options to [`Asked`], the type that the library takes. `dt` is the length of a simulation step in
+    /// seconds.
     pub(crate) fn asked(&self, dt: Option<f64>) -> Asked {
         let &Self { framework, fires, decay, current, .. } = self;
         Asked { framework, resets: self.resets.clone(), fires, decay, current, dt }

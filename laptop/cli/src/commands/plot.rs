@@ -16,24 +16,24 @@ use std::path::PathBuf;
 /// Draw signal and reconstruction above the spikes, in the layout of the first figure in the paper, Dupeyroux et al.
 /// (2022).
 ///
-/// A scheme without parameters runs with the paper's settings; with `--all`, every scheme does. A long recording is
-/// decimated to the resolution of the picture. The curve decoded from a rate code is drawn without the code's latency,
-/// which the panel states.
+/// If no parameters are given, each scheme runs with the paper's settings. A long recording is decimated to the
+/// resolution of the picture. If a code delays the decoded values, their curve is shifted back by this latency, and the
+/// picture states the latency.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
   spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
-    /// Draw the paper's figure: panels A-G for the paper's schemes, with the paper's settings, and panel H for their
-    /// efficiency
+    /// Draw the first figure in the paper, Dupeyroux et al. (2022): panels A-G for the paper's schemes, with the
+    /// paper's settings, and panel H for the efficiency of these schemes
     #[arg(long, conflicts_with_all = ["scheme", "params"])]
     all: bool,
     #[command(flatten)]
     coding: Coding,
     #[command(flatten)]
     input: InputOptions,
-    /// Range of samples to show, such as `1000..1400`; samples outside it are encoded too
+    /// Range of samples to show, such as `1000..1400`; samples outside the range are encoded too
     #[arg(long)]
     range: Option<String>,
     /// Unit of the signal, such as `rad/s`; default: the unit in the column's name, such as `gyro_x (rad/s)`

@@ -16,11 +16,11 @@ use std::io::Write;
 
 /// Score one scheme on one channel of a recording, or all schemes if `--scheme` is not given.
 ///
-/// A scheme without parameters runs with the settings of Dupeyroux et al. (2022). When all schemes are scored, one that
-/// cannot encode the recording gets a table row with the reason.
+/// If no parameters are given, a scheme runs with the settings of Dupeyroux et al. (2022). When all schemes are scored,
+/// a scheme that cannot encode the recording gets a table row with the reason.
 ///
 /// Efficiency is the percentage of samples without a spike. RMSE is in the signal's unit; each decoded value is
-/// compared with the sample that it encodes, so that a rate code's latency does not count. SNR is in dB.
+/// compared with the sample that it stands for, so that a code's latency adds no error. SNR is in dB.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -93,9 +93,9 @@ pub(crate) fn run(options: &Score) -> Result<()> {
     Ok(())
 }
 
-/// Returns the schemes to run, and their sample type and parameters. A scheme that the user named runs with the
-/// parameters given, or with the paper's if none are given. Without a name, all schemes run with the paper's
-/// parameters.
+/// Returns the schemes to run, and their sample type and parameters. If the user named a scheme, only this scheme runs,
+/// with the parameters given. If no parameters are given, the scheme runs with those of the paper, Dupeyroux et al.
+/// (2022). If the user named no scheme, all schemes run with the paper's parameters.
 ///
 /// # Errors
 /// Returns an error if parameters are given without a scheme.

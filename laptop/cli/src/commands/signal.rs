@@ -18,7 +18,7 @@ pub(crate) struct Signal {
     /// Duration in seconds, 0 to 1000000
     #[arg(long, default_value_t = 1, value_parser = seconds)]
     seconds: usize,
-    /// Seed of the noise
+    /// Seed of the noise in the signal
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// CSV file to write; default: standard output

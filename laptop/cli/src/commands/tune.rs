@@ -27,8 +27,9 @@ use std::time::Instant;
 /// Search a scheme's parameters for a goal: the least RMSE at a given spiking efficiency, the greatest efficiency at a
 /// given RMSE, or the Pareto front of both.
 ///
-/// Some blocks of each log are held out, and the settings found are scored on them too. Settings are scored with the
-/// codec that flies, in the sample type given. Parameters that are given stay fixed; the others are searched. The
+/// The spiking efficiency is 100 less the number of spikes for every 100 samples. Some blocks of each log are held out,
+/// and the settings found are scored on these blocks too. Settings are scored with the encoder and decoder that run on
+/// the drone, in the sample type of --sample. Parameters that are given stay fixed; the others are searched. The
 /// default goal is the least RMSE at the efficiency that the settings of Dupeyroux et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -58,14 +59,14 @@ pub(crate) struct Tune {
     /// Goal: greatest efficiency, with at most this RMSE, in the signal's unit
     #[arg(long, value_name = "RMSE", conflicts_with = "min_efficiency", value_parser = lab::input::above_zero, help_heading = "Goal")]
     max_rmse: Option<f64>,
-    /// Goal: the Pareto front, all settings that no other settings beat in both RMSE and efficiency; drawn to this
-    /// `.svg` or `.png`
+    /// Goal: the Pareto front, drawn in this `.svg` or `.png` file. The front consists of the settings that no other
+    /// settings beat in both RMSE and efficiency
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["min_efficiency", "max_rmse", "emit"], help_heading = "Goal")]
     front: Option<PathBuf>,
     /// Maximum RAM of a channel's encoder, in bytes
     #[arg(long, value_name = "BYTES", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_ram: Option<f64>,
-    /// Maximum of the mean number of instructions that a sample takes to encode on --core
+    /// Maximum of the mean number of instructions that the core given by --core needs to encode a sample
     #[arg(long, value_name = "COUNT", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_instructions: Option<f64>,
     /// Maximum delay of the code, in samples
@@ -74,7 +75,8 @@ pub(crate) struct Tune {
     /// Maximum number of events a second
     #[arg(long, value_name = "RATE", value_parser = lab::input::above_zero, help_heading = "Limits")]
     max_rate: Option<f64>,
-    /// Core on which instructions were counted, for costs and limits: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
+    /// Core on which instructions are counted, for the reported costs and for --max-instructions: Cortex-M0 (`M0`) or
+    /// Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
     /// Share that is held out, 0 for none: of the logs or, if there is only one, of its blocks
@@ -96,10 +98,10 @@ pub(crate) struct Tune {
     /// Seed of the search; the same seed and budget of evaluations give the same settings
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>, help_heading = "Search")]
     seed: u64,
-    /// Search even if the log is a bad guide: nothing but noise, never in the air, full of gaps, or clipped
+    /// Search even if the log is unsuitable: nothing but noise, never in the air, full of gaps, or clipped
     #[arg(long, help_heading = "Search")]
     anyway: bool,
-    /// Also report the RMSE of the error's part below this frequency, such as `40Hz`
+    /// Also report the RMSE after the error is low-pass filtered at this frequency, such as `40Hz`
     #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     below: Option<f64>,
     /// Form in which to write the settings: a constant in Rust, a file for --params, or a flight file (`flight.toml`)
@@ -140,7 +142,7 @@ fn hertz(text: &str) -> lab::Result<f64> {
 /// The value of `--emit`: the form in which settings are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Emit {
-    /// A constant with parameters and taps, which compiles without std
+    /// A Rust constant with parameters and filter coefficients, which compiles without std
     Rust,
     /// A file of parameters, for --params
     Toml,
@@ -154,8 +156,8 @@ struct Fixed(Asked);
 
 option_group!(Fixed, |command| augment(command, is_fixable), |matches| given(matches, is_fixable));
 
-/// Returns whether an option can fix this parameter. `seed` cannot be fixed, because `--seed` is the seed of the
-/// search.
+/// Returns whether the command line can fix this parameter. A scheme's `seed` cannot be fixed, because `--seed` is the
+/// seed of the search.
 fn is_fixable(parameter: &Parameter) -> bool {
     parameter.name != "seed"
 }
@@ -216,7 +218,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
 }
 
 impl Tune {
-    /// Converts the options to a request to the library; the request does not contain the logs yet.
+    /// Converts the options to a request to the library. The request holds no logs yet.
     fn request(&self) -> Result<TuneRequest> {
         let schemes = match self.scheme {
             Schemes::One(scheme) => vec![scheme],
@@ -311,7 +313,8 @@ impl Tune {
         Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
     }
 
-    /// Prints the tables on standard output, or on standard error if the settings themselves go to standard output.
+    /// Prints a table of the tuned settings for each channel, or JSON with `--json`. The tables go to standard output.
+    /// They go to standard error if `--emit` writes the settings to standard output.
     fn tell(&self, results: &[(Cut, Vec<(Scheme, Row)>)]) -> Result<()> {
         if self.json {
             let channels: serde_json::Map<String, serde_json::Value> = results
@@ -340,9 +343,9 @@ impl Tune {
 /// Length of the progress bar in steps.
 const BAR: u64 = 1000;
 
-/// Returns the position of the progress bar, 0 to [`BAR`]. The search has a budget of settings and a budget of time.
-/// `settings` and `time` are the used shares of the two. The bar shows the larger share, because either budget ends the
-/// search.
+/// Returns the position of the progress bar, 0 to [`BAR`]. `settings` is the number of scored settings divided by its
+/// maximum. `time` is the elapsed time divided by the time limit. The bar shows the larger quotient, because the search
+/// ends at the limit that is reached first.
 fn position(settings: f64, time: f64) -> u64 {
     (settings.max(time).clamp(0.0, 1.0) * BAR as f64) as u64
 }

@@ -18,8 +18,8 @@ impl Ran {
     }
 }
 
-/// Runs `spikewire` with formatted arguments and no input, and returns its output. The test fails if the exit status is
-/// not 0.
+/// Runs `spikewire` without input, and returns its output as [`Ran`]. The macro's arguments are those of `format!`; the
+/// text that they give is the command line after `spikewire`. The test fails if the exit status is not 0.
 macro_rules! ran {
     ($($words:tt)*) => { $crate::common::good(&format!($($words)*), "") };
 }

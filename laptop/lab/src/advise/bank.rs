@@ -21,8 +21,8 @@ use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 /// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
 
-/// Seconds between keyframes of a scheme that was not flown in a control loop. A receiver that joins late waits up to
-/// this long.
+/// Seconds between keyframes, if no simulated flights in a control loop give this time. A receiver that joins late
+/// waits for a keyframe up to this long.
 const KEYFRAMES: f64 = 1.0;
 
 /// The advice on all channels together.
@@ -34,7 +34,7 @@ pub struct BankAdvice {
     others: Vec<String>,
     /// The names of the channels that are unfit for tuning. The [`Advice`] on each such channel gives the reason.
     left_out: Vec<String>,
-    /// Remarks on what neither the log nor the simulator can show.
+    /// Questions that the advice leaves open, such as how the user's drone flies with the code.
     unknown: Vec<String>,
     /// Share of frames that the link loses, in percent.
     frame_loss: f64,
@@ -50,7 +50,7 @@ struct Bank {
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
-    /// Whether the scheme's simulated flights used a filter that is not possible at the recordings' sample rate.
+    /// Whether the scheme's simulated flights used a filter that the recordings' sample rate does not allow.
     lacks_filter: bool,
     /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code. `None` if no
     /// flights with the code were simulated.
@@ -68,11 +68,11 @@ struct BankChannel {
 }
 
 impl BankAdvice {
-    /// Finds the schemes that suit all channels, leaving out channels unfit for tuning, and ranks them by bytes on the
-    /// link.
+    /// Finds the schemes that suit every channel, apart from channels that are unfit for tuning. Ranks these schemes by
+    /// the number of bytes that they send on the link.
     ///
     /// # Errors
-    /// Returns an error if the rate is unknown, or if its period cannot be expressed in whole µs.
+    /// Returns an error if the sample rate is unknown, or if the sample period cannot be expressed in whole µs.
     pub fn new(request: &AdviseRequest, advice: &[Advice], watch: &Watch) -> Result<Self> {
         let pairs = || advice.iter().zip(&request.recordings);
         let heard: Vec<(&Advice, &Recording)> =
@@ -264,7 +264,7 @@ fn bank(
     }))
 }
 
-/// Lists remarks on what neither the log nor the simulator can show.
+/// Lists the questions that the advice leaves open, such as how the user's drone flies with the code.
 fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
     let mut all = Vec::new();
     if request.loop_bandwidth.is_none() {
@@ -295,8 +295,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// Returns the values of the parameters that all channels of a bank must share. A count gets the largest of the
-/// channels' values, and any other parameter gets the first channel's value.
+/// Returns the values of the parameters that all channels of a bank must share. If the parameter is a count, its value
+/// is the largest of the channels' values. Otherwise, its value is that of the first channel.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;
@@ -315,7 +315,8 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
 }
 
 /// Returns the total number of events of all channels, and the number of bytes that the link sends, including
-/// keyframes. If `in_loop`, a frame is sent for each sample; otherwise, a frame is sent once it is full.
+/// keyframes. If `in_loop` is true, each sample is sent in a frame of its own, as a control loop needs it. Otherwise,
+/// events of several samples share a frame.
 fn sent(
     flight: &Flight,
     scheme: Scheme,

@@ -10,7 +10,8 @@ use std::sync::LazyLock;
 /// because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
-/// A code counts as flying if its error is at most this many times the error without a code.
+/// Largest attitude error with which a scheme counts as fit to fly, as a multiple of the error without a code.
+/// Without a code, the controller reads the samples themselves.
 const WITHIN: f64 = 1.2;
 
 /// Shares of lost frames in the simulated flights, in percent, lowest first.
@@ -28,9 +29,9 @@ pub(crate) struct Flown {
     low_pass: Option<f32>,
     /// Time between keyframes, in ms; `None` if the code needs none.
     keyframe_ms: Option<f64>,
-    /// Flights of the reference drone and its controller, with 1 % of the frames lost.
+    /// Flights of the reference drone and its controller, on a link that loses 1 % of the frames.
     here: Flights,
-    /// Flights of the reference drone and its controller, with 10 % of the frames lost.
+    /// Flights of the reference drone and its controller, on a link that loses 10 % of the frames.
     #[serde(rename = "every tenth frame lost")]
     tenth: Flights,
     /// Flights of several drones and controllers at several sample rates. A key names simulator, controller and rate.
@@ -52,7 +53,7 @@ struct Flights {
 pub(crate) struct Error {
     /// Error of the flights with the code.
     pub(crate) coded: f64,
-    /// Error of the flights without a code.
+    /// Error of the flights without a code, in which the controller read the samples themselves.
     pub(crate) plain: f64,
 }
 
@@ -64,12 +65,14 @@ fn without_a_code() -> Option<&'static Flown> {
     BANKS.get("without a code")
 }
 
-/// Returns the flights of the scheme named `scheme`, if it was flown.
+/// Returns the results of the simulated flights with the scheme named `scheme`. Returns `None` if there are no such
+/// flights.
 pub(crate) fn flown(scheme: &str) -> Option<&'static Flown> {
     BANKS.get(scheme)
 }
 
-/// Returns the reason not to fly the scheme named `scheme` with `loss` percent of its frames lost, if there is one.
+/// Returns the reason not to fly the scheme named `scheme` on a link that loses `loss` percent of the frames; `None` if
+/// the scheme is fit to fly.
 pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
     let Some(own) = flown(scheme) else {
         return Some("was not flown with rotors that shake the sensor".to_owned());
@@ -99,7 +102,7 @@ pub(crate) fn objection(scheme: &str, loss: f64) -> Option<String> {
 }
 
 impl Flown {
-    /// Returns the filter that stood before the code in the flights.
+    /// Returns the low-pass filter that preceded the encoder in the simulated flights, if there was one.
     pub(crate) fn filter(&self) -> Option<Filter> {
         self.low_pass.map(|corner| Filter::LowPass { corner })
     }
@@ -117,8 +120,9 @@ impl Flown {
         Some(Error { coded: at(self)?, plain: at(without_a_code()?)? })
     }
 
-    /// Returns the mean ratio of this code's attitude errors to the errors of the code `other`. Only entries of
-    /// `everywhere` in which both codes have an error count.
+    /// Returns the mean ratio of this code's attitude error to the attitude error of the code `other`. The mean is over
+    /// those entries of `everywhere` in which both codes have an attitude error. Returns `None` if there is no such
+    /// entry.
     fn beside(&self, other: &Self) -> Option<f64> {
         let ratios = self
             .everywhere

@@ -1,21 +1,21 @@
 //! The figures of Tables I and II, as the paper prints them.
 
-/// Durations of the signals of each case, in seconds.
+/// The benchmark's cases: durations of the signals, in seconds.
 pub const CASES: [usize; 5] = [1, 5, 15, 50, 100];
 
 /// Number of signals in each case.
 pub const TESTS: usize = 1000;
 
-/// The schemes for which the tables have figures, in the order of their columns.
+/// The schemes in the columns of Tables I and II, from left to right.
 pub const SCHEMES: [&str; 6] = ["TBR", "MW", "SF", "BSA", "HSA", "T-HSA"];
 
 /// One of the paper's two tables.
 pub struct Table {
     /// Title of the table.
     pub title: &'static str,
-    /// Means, indexed by case and then by scheme.
+    /// Means of the table's figure over the signals of a case, indexed by case and then by scheme.
     pub means: [[f64; 6]; 5],
-    /// Standard deviations, indexed by case and then by scheme.
+    /// Standard deviations of the table's figure over the signals of a case, indexed by case and then by scheme.
     pub deviations: [[f64; 6]; 5],
     /// Number of decimals that the paper prints.
     pub decimals: usize,
@@ -29,7 +29,7 @@ impl Table {
     }
 }
 
-/// Table I, spiking efficiency in percent.
+/// The paper's Table I: spiking efficiency in percent.
 pub const EFFICIENCY: Table = Table {
     title: "Table I, spiking efficiency in %",
     means: [
@@ -49,7 +49,7 @@ pub const EFFICIENCY: Table = Table {
     decimals: 1,
 };
 
-/// Table II, root mean square error.
+/// The paper's Table II: root mean square error.
 pub const RMSE: Table = Table {
     title: "Table II, root mean square error",
     means: [

@@ -1,5 +1,5 @@
-//! Runs each scheme over a signal as the paper's toolbox does: with the toolbox's parameters, the toolbox's start
-//! values, and the toolbox's treatment of the first spike and the last sample.
+//! Runs each scheme over a signal like the toolbox, the program that the paper's authors published. The parameters, the
+//! start values, and the treatment of the first spike and the last sample are the toolbox's.
 
 use spikewire::population::{Gaussian, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
@@ -67,7 +67,8 @@ fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, C
     Ok(step_outcome(signal, &scheme, &before, 0.0))
 }
 
-/// Runs the moving window. The encoder is primed with the first window; decoding starts from the first sample.
+/// Runs the moving window. Before the run, the encoder's window is filled with the first samples of the signal.
+/// Decoding starts from the value of the first sample.
 fn moving_window(signal: &[f32]) -> Outcome {
     let window = signal.get(..WINDOW).unwrap_or_default();
     step_outcome(signal, &MOVING_WINDOW, window, first(signal))
@@ -81,8 +82,8 @@ fn first(signal: &[f32]) -> f32 {
     signal.first().copied().unwrap_or_default()
 }
 
-/// Runs a step code as the toolbox does. The encoder is primed with `past`. The first decoded value is `start`, and the
-/// decoder adds the steps from the second sample on.
+/// Runs a step code (each spike moves the decoded value by one step) as the paper's toolbox does. Primes the encoder
+/// with `past`. The first decoded value is `start`. From the second sample on, the decoder adds the steps.
 fn step_outcome<P>(signal: &[f32], scheme: &P, past: &[f32], start: f32) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Spike>,
@@ -106,8 +107,8 @@ where
     outcome(signal, count(&spikes), error)
 }
 
-/// Runs a rate code as the toolbox does. The toolbox's loops end one sample early: no window contains the last sample,
-/// and the code of the last sample is `last`.
+/// Runs a rate code as the paper's toolbox does. The toolbox's loops end one sample early. Therefore, no window
+/// contains the last sample, and the code of this sample is always `last`.
 fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,

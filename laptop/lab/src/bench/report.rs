@@ -1,4 +1,4 @@
-//! Compares the paper's tables with the cells measured here.
+//! Compares the figures measured here with the figures in the paper's tables.
 
 use super::CaseResult;
 use super::paper::{EFFICIENCY, MISPRINT, RMSE, SCHEMES, TESTS, Table};
@@ -19,12 +19,12 @@ struct Cell {
     ours: Statistics,
     paper_mean: f64,
     paper_deviation: f64,
-    /// Difference between the measured mean and the paper's mean beyond the paper's rounding, in standard errors of
-    /// that difference.
+    /// Difference between the measured mean and the paper's mean, as a multiple of the standard error of the
+    /// difference. The paper's rounding error is subtracted from the difference beforehand.
     standard_errors: f64,
     mean_agrees: bool,
     deviation_agrees: bool,
-    /// Whether the paper's deviation is the known misprint.
+    /// Whether `paper_deviation` is the figure that the paper misprints.
     is_misprint: bool,
 }
 
@@ -97,8 +97,8 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// Returns the largest difference between two means that sampling error could hide, as a share of the paper's mean, and
-/// the name of the cell with this difference.
+/// Returns the largest difference from the paper's mean that still counts as agreement, as a share of the paper's mean.
+/// Also returns the name of the cell to which this difference belongs.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {
@@ -111,7 +111,8 @@ fn unseen(cases: &[CaseResult]) -> (f64, String) {
     all.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
-/// Lists the measured cells that differ from the paper's cells. The paper's misprint is left out.
+/// Lists the measured means and standard deviations that disagree with the paper's tables. Leaves out the standard
+/// deviation that the paper misprints.
 pub fn differing(cases: &[CaseResult]) -> Vec<String> {
     let mut names = Vec::new();
     for (table, quantity) in [(&EFFICIENCY, "efficiency"), (&RMSE, "RMSE")] {
@@ -193,7 +194,7 @@ fn write_table(
     writeln!(text)
 }
 
-/// Returns the cells of both tables as JSON.
+/// Returns the cells of Tables I and II as JSON. Each cell has the measured figures and the paper's.
 pub fn json(cases: &[CaseResult], seed: u64) -> Value {
     let table = |table: &Table| -> Value {
         let cells = cells(table, cases);

@@ -1,4 +1,4 @@
-//! The signals of the paper's benchmark.
+//! Test signals of the benchmark in the paper *A toolbox for neuromorphic perception in robotics*.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -13,7 +13,7 @@ pub struct Waveform {
 pub const RATE: usize = 100;
 
 impl Waveform {
-    /// Computes the first `seconds` seconds of the waveform.
+    /// Computes the waveform's samples in the first `seconds` seconds.
     pub fn new(seconds: usize) -> Self {
         let at = |step: usize| {
             let t = step as f64 / RATE as f64;

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// The mean and standard deviation of one cell of a table.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Statistics {
-    /// The mean.
+    /// Mean of the tests' values.
     pub mean: f64,
     /// The sample standard deviation, with divisor N - 1.
     pub deviation: f64,

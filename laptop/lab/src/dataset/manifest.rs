@@ -20,7 +20,7 @@ const SETTINGS: &str = "dataset.json";
 pub(super) const EVENTS: &str = "events";
 pub(super) const VALUES: &str = "values";
 
-/// The side of the split between training and testing on which a flight is.
+/// The part of a data set to which a flight belongs: the part for training or the part for testing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Split {
@@ -46,11 +46,13 @@ pub struct Row {
     pub sha256: String,
     /// SHA-256 of the settings, as in `dataset.json`.
     pub settings: String,
-    /// Side of the split. `None` before the run ends, or if the log was refused.
+    /// Whether the log's flight is for training or for testing. `None` if the log was refused; also `None` for all logs
+    /// until the run ends.
     pub split: Option<Split>,
     /// Reason that the log was refused, if it was.
     pub refused: Option<String>,
-    /// Name of the kind of error for which the log was refused, for programs.
+    /// Name of the error's kind, such as `Open`, for programs that read the manifest. `None` if the log was not
+    /// refused.
     pub refused_kind: Option<String>,
     /// Path of the file of spikes, relative to the directory of the data set.
     pub events: Option<String>,
@@ -68,13 +70,14 @@ pub struct Row {
     pub seconds: f64,
     /// Number of samples of each channel.
     pub samples: u64,
-    /// Number of samples that are missing or not finite, and emitted nothing.
+    /// Number of samples that are missing or not finite, and therefore have no spikes.
     pub not_finite: u64,
     /// Number of spikes of each channel.
     pub spikes: Vec<u64>,
     /// Number of gaps in time.
     pub gaps: u64,
-    /// Number of steps back in time.
+    /// Number of samples whose time is earlier than the time of the preceding sample. Restarts of the clock are not
+    /// counted.
     pub steps_back: u64,
     /// Number of times that the clock restarted.
     pub restarts: u64,
@@ -111,7 +114,7 @@ impl Row {
     }
 
     /// Copies the rate, the duration and the counts of `clock` to the row. Rate and duration are rounded to 6 decimals,
-    /// which survive writing and reading unchanged.
+    /// so that they do not change when the row is written and read.
     pub(super) fn take(&mut self, clock: &Clock) {
         let rounded = |number: f64| (number * 1e6).round() / 1e6;
         self.rate = clock.rate().map(rounded);
@@ -148,7 +151,7 @@ impl Row {
     }
 }
 
-/// The length and the modification time of a log, which show whether the log has changed.
+/// The length and the modification time of a log. If both are the same as before, the log is taken to be unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct File {
     bytes: u64,
@@ -159,7 +162,7 @@ impl File {
     /// Reads the length and the modification time of a log.
     ///
     /// # Errors
-    /// Returns an error if the log is missing, or can be read only once.
+    /// Returns an error if the log is missing, or if it is not a regular file. A pipe can be read only once.
     pub(super) fn of(log: &Path) -> Result<Self> {
         let mut own = Self { bytes: 0, modified_us: 0 };
         for file in files(log)? {

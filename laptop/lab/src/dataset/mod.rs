@@ -37,36 +37,38 @@ use std::thread;
 pub struct Request {
     /// The logs to encode: files, directories and patterns such as `logs/*.ulg`.
     pub logs: Vec<PathBuf>,
-    /// The code of all logs.
+    /// The scheme with which all logs are encoded.
     pub code: Code,
     /// Options for reading the logs. An option that does not apply to a kind of log is ignored for logs of that kind.
     pub channel: ChannelOptions,
-    /// Channels to read from logs of certain kinds. If a kind has several entries, a log uses the first entry whose
-    /// channels it has.
+    /// Channels to read from logs of certain kinds. A kind may have several entries. The entries are tried in order
+    /// until the log contains all channels of an entry.
     pub channels_of: Vec<ChannelsOf>,
     /// Directory of the data set.
     pub output: PathBuf,
     /// Share of the flights that are for testing, 0 to 1.
     pub test: f64,
-    /// What counts as one flight for the split.
+    /// The way in which logs are grouped into flights for the split.
     pub flights: Flights,
     /// Number of logs that are encoded at once.
     pub jobs: usize,
 }
 
-/// The code of all logs.
+/// The scheme with which all logs are encoded.
 #[derive(Clone, Debug)]
 pub enum Code {
     /// One scheme for all channels.
     Coding(Box<Coding>),
-    /// The channels and the scheme of a `flight.toml`, coded as the flight's sender codes them.
+    /// The scheme and the channels of a drone's sender, as a `flight.toml` describes them. Logs are encoded as the
+    /// sender would encode them.
     Flight(Box<Flight>),
 }
 
-/// What counts as one flight. All logs of a flight are on the same side of the split.
+/// The way in which logs are grouped into flights. All logs of a flight are on the same side of the split into training
+/// and test data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flights {
-    /// Each log is a flight. Copies of one log count as one flight.
+    /// Each log is a flight of its own. Copies of one log are one flight.
     Logs,
     /// All logs in a directory are one flight.
     Directories,
@@ -75,7 +77,7 @@ pub enum Flights {
 /// The channels to read from logs of one kind, written `ulog=sensor_combined.gyro_rad[0],sensor_combined.gyro_rad[1]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelsOf {
-    /// Name of the kind, one of [`NAMES`].
+    /// Name of the kind of log, one of [`NAMES`].
     pub kind: &'static str,
     /// Names of the channels: columns of a table, or `TOPIC.FIELD` of a log.
     pub names: Vec<String>,
@@ -110,7 +112,7 @@ impl FromStr for ChannelsOf {
     }
 }
 
-/// The numbers of logs in a data set by their outcome, and of their samples and spikes.
+/// The result of a run: the numbers of logs, samples and spikes in the data set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Outcome {
     /// Number of requested logs.

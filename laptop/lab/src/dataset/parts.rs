@@ -21,8 +21,8 @@ use std::sync::Arc;
 
 /// Name of the column that holds the times.
 pub(super) const TIME: &str = "time_us";
-/// Keys of a Parquet file's metadata. `HEADER` has the header of the spikes; `FIRST`, `GAP` and `RATE` have the
-/// arguments of the [`Clock`](crate::input::Clock).
+/// Keys of a Parquet file's metadata. `HEADER` has the header of the spikes. The others have the arguments of
+/// [`Clock::new`](crate::input::Clock::new), except that `FIRST` has only the number of `first_times`.
 pub(super) const HEADER: &str = "spikewire";
 pub(super) const FIRST: &str = "spikewire.first";
 pub(super) const GAP: &str = "spikewire.gap";
@@ -46,9 +46,9 @@ pub(super) struct Parts {
     is_timed: bool,
     slots: u64,
     neurons: u16,
-    /// Usual time between samples in µs, as far as it is known.
+    /// Time between samples in µs at the rate in the header; 0 if the rate is unknown.
     period: u64,
-    /// Index and time of each finite sample that may still get events.
+    /// Index and time of each finite sample whose events are not complete yet.
     pending: VecDeque<(u64, i64)>,
     /// Number of finite samples before the first one in `pending`.
     first_pending: u64,

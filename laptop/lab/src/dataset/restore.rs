@@ -15,8 +15,9 @@ use spikewire::Polarity;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// Writes a log's spikes byte for byte as `encode` does. `part` is the log's Parquet file of spikes in a data set,
-/// whose file of samples must exist too. Returns the output, which the caller must finish.
+/// Writes a log's spikes as text, byte for byte as the command `encode` does. `part` is the log's Parquet file of
+/// spikes in a data set. The log's file of samples must be in the same data set. Returns the output, which the caller
+/// must finish.
 ///
 /// # Errors
 /// Returns an error if the files are not those of a data set, or if the output cannot be written.
@@ -106,13 +107,13 @@ impl Part {
         all.iter().find(|own| own.key == key)?.value.as_deref()
     }
 
-    /// Returns the index of a column.
     fn column(&self, name: &str) -> Option<usize> {
         let columns = self.file.metadata().file_metadata().schema_descr().columns();
         columns.iter().position(|own| own.name() == name)
     }
 
-    /// Makes the clock with which the log was encoded, from the same number of first samples.
+    /// Makes the clock anew that was used when the log was encoded. The file's metadata hold the arguments of the
+    /// clock.
     fn clock(&self, is_timed: bool) -> Result<Clock> {
         let number = |key| self.about(key).and_then(|own| own.parse::<f64>().ok());
         let first = number(FIRST).ok_or_else(|| other("no number of first samples"))? as usize;
@@ -190,7 +191,7 @@ struct Spike {
 /// A reader of the rows of a Parquet file of spikes. One row group is in memory at a time.
 struct Rows<'a> {
     part: &'a Part,
-    /// Index of the next row group to read.
+    /// Index of the next row group (a block of rows in a Parquet file) to read.
     group: usize,
     spikes: std::vec::IntoIter<Spike>,
     next: Option<Spike>,
@@ -203,7 +204,7 @@ impl<'a> Rows<'a> {
         Ok(rows)
     }
 
-    /// Returns the next spike, if its index is below `end`.
+    /// Returns the next spike if the index of its sample is below `end`, and otherwise `None`.
     fn next_before(&mut self, end: u64) -> Result<Option<Spike>> {
         let Some(spike) = self.next.filter(|own| own.index < end) else { return Ok(None) };
         self.advance()?;

@@ -13,11 +13,11 @@ pub(super) struct Reader<D> {
     hooks: Hooks<D>,
 }
 
-/// Functions of a decoder that only some formats have.
+/// Functions that [`Reader`] calls on a decoder `D`. Each format has its own.
 pub(super) struct Hooks<D> {
-    /// Returns an error if the bytes read so far belong to a format other than the decoder's.
+    /// Returns an error if the bytes that the decoder has read are not of its format.
     pub check: fn(&D) -> Result<()>,
-    /// Sets the time of the following events, for a format whose events have no times.
+    /// Sets the time of the events that follow. `None` for a format whose events have times of their own.
     pub set_arrival: Option<fn(&mut D, Tick)>,
 }
 
@@ -91,7 +91,7 @@ impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
         }
     }
 
-    /// Writes the header, unless it is already written.
+    /// Writes the header at the first call, and nothing at later calls.
     fn begin(&mut self, output: &mut dyn Write) -> Result<()> {
         let header = std::mem::take(&mut self.header);
         self.decoder.decode(header).for_each(drop);

@@ -23,7 +23,7 @@ pub(super) struct Reader {
     /// Number of ticks that did not fit in 32 bits.
     long_ticks: u64,
     is_file_of_spikes: bool,
-    /// Number of events that the last line of a file of spikes declares.
+    /// Number of events that a file of spikes declares in its last line.
     declared_events: Option<u64>,
 }
 
@@ -49,7 +49,8 @@ impl Reader {
         }
     }
 
-    /// Reads a comment without its `#`. Returns the item in the comment, or `None` if the comment holds no item.
+    /// Reads a comment, given without its `#`. Remembers what the comment says about the file, and returns the item in
+    /// the comment, or `None` if the comment holds no item.
     fn note(&mut self, note: &str) -> Result<Option<Item>> {
         match note.split_once('=') {
             Some(("spikewire", _)) => self.is_file_of_spikes = true,
@@ -149,7 +150,8 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// Parses the text of a comment, without its `#`. Returns `None` if the comment holds no item.
+/// Parses a comment, given without its `#`, that stands for an item: a keyframe, a heartbeat, a loss or a restart.
+/// Returns `None` for any other comment.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     let text = || value.to_owned();
@@ -198,7 +200,7 @@ fn name_of(kind: SampleKind) -> String {
     }
 }
 
-/// Writes a table of events, or of decoded values if `values` is their sample type.
+/// Writes a table of events or, if `values` holds a sample type, of decoded values of that type.
 pub(super) struct Writer {
     values: Option<SampleType>,
     has_begun: bool,
@@ -226,7 +228,8 @@ impl Writer {
         self.line.push(b',');
     }
 
-    /// Appends a number to the line, with the fewest digits that read back as the same bits in the sample type.
+    /// Appends a number to the line. Writes the fewest digits from which the sample type reads back exactly the same
+    /// value.
     fn value(&mut self, value: f64) {
         let mut digits = zmij::Buffer::new();
         let text = match self.values {

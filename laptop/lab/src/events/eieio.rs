@@ -12,7 +12,7 @@ use std::num::NonZeroU32;
 /// The mapping of a board's keys and time stamps to addresses and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// The key of address 0.
+    /// Key that stands for address 0. EIEIO gives the source of an event as a number, the key.
     pub base: u32,
     /// Length of a time step, in µs.
     pub step: NonZeroU32,
@@ -49,7 +49,7 @@ const MAX_KEYS: usize = 255;
 /// Length of the longest datagram, in bytes.
 const LONGEST: usize = 2 + 4 + 4 * MAX_KEYS;
 
-/// Reads EIEIO datagrams.
+/// A reader of EIEIO datagrams, the packets of events that `SpiNNaker` boards exchange.
 pub(super) struct Reader {
     board: Board,
     waiting: Vec<u8>,
@@ -62,8 +62,8 @@ impl Reader {
         Self { board, waiting: Vec::new(), time: Tick::from_micros(0), skipped: 0 }
     }
 
-    /// Reads whole datagrams from the front of the buffer, and skips bytes that cannot begin one. At the end of the
-    /// recording, a partial datagram is skipped too.
+    /// Reads the whole datagrams at the front of the buffer. Skips bytes at which no datagram can begin. If `is_end`,
+    /// also skips an incomplete datagram at the end of the recording.
     fn datagrams(&mut self, is_end: bool, items: &mut Vec<Item>) {
         let Self { board, waiting, time, skipped } = self;
         let mut bytes = waiting.as_slice();

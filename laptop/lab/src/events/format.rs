@@ -15,7 +15,7 @@ use std::str::FromStr;
 /// An event format and its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Frames of the crate's own link.
+    /// The frames of `spikewire::link`.
     Link(Coding),
     /// eDVS, with the encoding of its events' times.
     Edvs(Edvs, EdvsTime),
@@ -23,7 +23,7 @@ pub enum Format {
     EventStream,
     /// EVT2, in a file `.raw`.
     Evt2,
-    /// EIEIO datagrams.
+    /// EIEIO, the datagrams of `SpiNNaker` boards.
     Eieio(Board),
     /// A table of events in CSV.
     Csv,
@@ -62,8 +62,8 @@ impl Format {
         }
     }
 
-    /// Makes a writer of the format. An event that the format cannot express is dropped and counted if `drops`;
-    /// otherwise it is an error.
+    /// Makes a writer of the format. If `drops` is true, the writer drops and counts events that the format cannot
+    /// express. If `drops` is false, such an event is an error.
     pub fn writer(self, drops: bool) -> Box<dyn EventWriter> {
         match self {
             Self::Link(coding) => Box::new(link::Writer::new(coding)),

@@ -6,10 +6,10 @@ use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Se
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// A decoder of link frames to values.
+/// Decodes link frames to the values that the sender encoded.
 pub trait Values {
-    /// Decodes a frame, and appends the decoded values to `items`: a value for each keyframe and event, or a value for
-    /// each sample that has ended.
+    /// Decodes a frame, and appends the decoded values to `items`. A temporal code gives a value for each keyframe and
+    /// each event. Any other code gives a value for each sample, once the time of the sample is over.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
     /// Appends the values of the last sample. Call it after the last frame.
@@ -25,7 +25,7 @@ pub trait Values {
 /// Reads link frames as events, or as decoded values.
 pub struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
-    /// Number of skipped zeros that `finish` had appended to the input.
+    /// Number of zeros that `finish` appended to the input. They do not count as skipped bytes.
     padding: u64,
     values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,
@@ -117,11 +117,11 @@ pub(super) struct Writer {
     coding: Coding,
     /// Keyframes that wait to be written, all of the same tick and sample type.
     keyframes: Vec<Keyframe>,
-    /// Tick of the latest keyframe, for an empty frame that reports a loss.
+    /// Tick of the latest keyframe. An empty frame that reports a loss or a restart carries this tick.
     tick: Tick,
-    /// Number of sender restarts so far, which numbers the sessions.
+    /// Number of sender restarts so far. It is also the number of the current session.
     starts: u32,
-    /// Whether no frame of this session has been written yet.
+    /// Whether no frame has been written since the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
     /// Whether a loss or a restart is still to be reported in a frame.

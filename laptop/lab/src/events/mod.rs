@@ -25,15 +25,15 @@ use crate::Result;
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// One item of a stream of events, in the order in which the items were sent.
+/// One item of a stream of events. Items have the order in which they were sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Item {
     /// A spike.
     Event(Event),
     /// A value that the sender's encoder held, from which a decoder can resume.
     Keyframe(Keyframe),
-    /// A sign of life from a sender whose code has no keyframes: the tick of a sample, and the sender's first address.
-    /// All events before this item have been sent.
+    /// A heartbeat of a sender whose code has no keyframes: the tick of a sample, and the sender's first address. All
+    /// events of that sample come before the heartbeat.
     Heartbeat(Tick, u16),
     /// The value of a decoder after an event or keyframe.
     Value {
@@ -46,11 +46,11 @@ pub enum Item {
         /// Certainty of the value.
         known: Known,
     },
-    /// The given number of frames were lost on the link.
+    /// A loss of this number of frames on the link.
     LostFrames(u32),
-    /// The sender lost events before it could send them.
+    /// A loss of events in the sender, which never sent them.
     LostEvents,
-    /// The sender restarted.
+    /// A restart of the sender.
     Restart,
 }
 
@@ -65,7 +65,7 @@ pub enum Known {
     Estimate,
 }
 
-/// Converts bytes of a format to items.
+/// A reader of the bytes of one event format. It converts the bytes to items: spikes, keyframes, losses and restarts.
 pub trait EventReader {
     /// Reads the next bytes of the input, and appends the items that they complete. The input may be split between any
     /// two bytes.
@@ -89,7 +89,7 @@ pub trait EventReader {
     fn set_arrival(&mut self, _: Tick) {}
 }
 
-/// Converts items to bytes of a format.
+/// A writer of one event format. It converts items to the bytes of the format.
 pub trait EventWriter {
     /// Writes an item, or keeps it to be written later.
     ///

@@ -19,13 +19,14 @@ impl Omitted {
         self.dropped += 1;
     }
 
-    /// Counts an event if its time `event` differs from its time `read` after writing and reading it.
+    /// Records the time of a written event. Counts the event if the format changed its time. `event` is the event's own
+    /// time, and `read` is the time that a reader gets from the file.
     pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());
     }
 
-    /// Counts an item that was left out and is not an event. Restarts are not counted.
+    /// Counts an omitted item that is not an event. Restarts are not counted.
     pub(super) fn leave_out(&mut self, item: Item) {
         self.others += u64::from(item != Item::Restart);
     }

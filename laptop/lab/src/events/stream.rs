@@ -168,7 +168,8 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Returns a sentence with the number of bytes written, in total and for each item.
+    /// Returns a text that gives the number of written bytes, `bytes`, and the mean number of bytes for an event or
+    /// value.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),

@@ -4,7 +4,7 @@ use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
 use std::fmt;
 
-/// Counts that a reader of events keeps.
+/// Counts of everything in a stream that is not an event, kept by the stream's reader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Number of bytes that belong to no item.
@@ -50,13 +50,13 @@ pub struct LinkTally {
     pub withheld: Option<Withheld>,
 }
 
-/// Comparison of keyframes with the decoder's values just before each keyframe, for codes whose decoder should already
-/// hold the keyframe's value.
+/// Comparison of each keyframe with the value that the decoder held just before the keyframe. Only codes whose decoder
+/// should already hold the keyframe's value are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
-    /// Number of keyframes that followed an exact value.
+    /// Number of keyframes that were compared with an exact value, which the decoder held before the keyframe.
     pub compared: u64,
-    /// Number of keyframes that followed an exact value and differed from it.
+    /// Number of compared keyframes that differed from the exact value.
     pub contradicted: u64,
 }
 

@@ -14,7 +14,7 @@ pub(super) struct Pictures {
     index: usize,
 }
 
-/// Returns whether a file's name has the ending of a picture.
+/// Returns whether a file's extension, such as `png`, is that of a picture.
 pub(super) fn is_picture(path: &Path) -> bool {
     const ENDINGS: [&str; 6] = ["png", "jpg", "jpeg", "pgm", "ppm", "pnm"];
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();

@@ -47,7 +47,7 @@ impl Rate {
 impl FromStr for Rate {
     type Err = Error;
 
-    /// Parses frames a second, such as `25`, `29.97` or `30000/1001`.
+    /// Parses a frame rate in frames a second, such as `25`, `29.97` or `30000/1001`.
     fn from_str(text: &str) -> Result<Self> {
         let rate = if let Some((frames, seconds)) = text.split_once('/') {
             frames.parse().ok().zip(seconds.parse().ok())

@@ -34,8 +34,8 @@ impl<R: Read> Read for Counting<R> {
 /// A reader that first yields the bytes of the header, which are in memory, and then the bytes of the frames.
 type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
 
-/// Reads the header, and checks the width and height in it, because the decoder multiplies them without a check.
-/// Returns a reader of the header and the frames.
+/// Reads the header. Checks width and height, because the decoder multiplies them without a check for overflow. Returns
+/// a reader of the header and the frames.
 fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
     let mut header = Vec::new();
     while !header.ends_with(b"\n") && header.len() < LONGEST_HEADER {

@@ -5,12 +5,12 @@ use std::fmt;
 /// The kind of an unusual step from one sample's time to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The step is too long.
+    /// A step forward that exceeds the limit, which is a multiple of the usual step.
     Gap,
-    /// The step goes back: samples are out of order.
+    /// A step back: samples are out of order.
     Backward,
-    /// The step goes back so far that the recorder's clock must have restarted, for example after a reboot. A new
-    /// segment begins.
+    /// A step so far back that the recorder's clock must have restarted, for example after a reboot. A new segment
+    /// begins.
     Restart,
 }
 
@@ -19,9 +19,9 @@ pub enum Kind {
 pub struct Step {
     /// The kind of the step.
     pub kind: Kind,
-    /// Index of the sample before the step.
+    /// Index of the first of the two samples.
     pub after: u64,
-    /// The length of the step in µs; negative if it goes back.
+    /// Time from the first to the second sample, in µs; negative for a step back.
     pub microseconds: i64,
 }
 
@@ -51,9 +51,10 @@ impl fmt::Display for Jump {
 pub struct Clock {
     usual_step: f64,
     longest_step: f64,
-    /// Longest step back, in µs, that still counts as samples out of order. A longer step back counts as a restart.
+    /// Longest step back, in µs, that is taken for samples out of order. A longer step back is taken for a restart of
+    /// the recorder's clock.
     longest_back: f64,
-    /// Number of samples for each step forward. It is 1 unless samples come in batches that share a time.
+    /// Mean number of samples that share a time. Above 1 if samples come in batches, otherwise 1.
     samples_a_step: f64,
     previous: Option<i64>,
     seen: u64,
@@ -65,7 +66,7 @@ pub struct Clock {
     span: Option<(i64, i64)>,
     /// Total length of the segments before the current one, in µs.
     before: i64,
-    /// The latest times in µs, over at most [`RUN`] steps.
+    /// The latest times in µs, with at most [`RUN`] steps between them.
     run: Vec<i64>,
     /// Time between samples in µs, measured when the sample rate last changed.
     run_step: f64,
@@ -75,13 +76,13 @@ pub struct Clock {
 
 /// Number of consecutive steps over which the sample rate is measured.
 const RUN: usize = 64;
-/// Longest step back that still counts as samples out of order, in usual steps. A longer step back counts as a restart
-/// of the recorder's clock.
+/// Longest step back that still counts as samples out of order, as a multiple of the usual step. A longer step back
+/// counts as a restart of the recorder's clock.
 const RESTART: f64 = 10.0;
-/// Factor by which the sample rate must change to be reported.
+/// Factor by which the sample rate must rise or fall before the change is reported.
 const JUMP: f64 = 1.5;
 
-/// The number of findings of one kind, such as gaps, and the first few of these findings.
+/// The number of findings of one kind, such as gaps, with the first few of them.
 #[derive(Clone, Debug)]
 struct Listed<T> {
     count: u64,
@@ -95,8 +96,9 @@ impl<T> Default for Listed<T> {
 }
 
 impl Clock {
-    /// Makes a clock. The usual step is measured in `first_times` or, if `first_times` is empty, computed from `rate`
-    /// in samples a second. A step longer than `steps` usual steps counts as a gap.
+    /// Makes a clock. The usual step between the times of two samples is measured in `first_times`. If it cannot be
+    /// measured, it is computed from `rate`, in samples a second. A step longer than `steps` times the usual step
+    /// counts as a gap.
     pub fn new(first_times: &[i64], rate: Option<f64>, steps: f64) -> Self {
         let are_sorted = !is_disordered(first_times);
         let usual = if are_sorted {
@@ -148,7 +150,8 @@ impl Clock {
         self.gaps.count
     }
 
-    /// Returns the number of steps back in time. Restarts of the clock are not counted.
+    /// Returns the number of samples whose time is earlier than the time of the preceding sample. Restarts of the clock
+    /// are not counted.
     pub fn steps_back(&self) -> u64 {
         self.backward.count
     }
@@ -284,8 +287,7 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Returns whether times are out of order. They are if more than two steps go back, and if these steps are more than a
-/// tenth of the steps that are not 0.
+/// Returns true if more than two steps go back, and if these are more than a tenth of the steps that are not 0.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();

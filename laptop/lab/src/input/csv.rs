@@ -29,9 +29,9 @@ const AHEAD: usize = 64;
 /// A CSV table that is being read: the chosen columns, and the columns with the times, if the table has times.
 pub(super) struct Table {
     rows: Rows,
-    /// Number of comments below the header.
+    /// Number of comment lines below the header.
     comments: Rc<Cell<u64>>,
-    /// A note on where the table is cut.
+    /// A note for the user on what was left out at the end of a truncated table.
     cut: Rc<Cell<Option<String>>>,
     ahead: VecDeque<ByteRecord>,
     /// The current row.
@@ -58,7 +58,8 @@ struct Column {
 struct Time {
     column: Column,
     reading: Reading,
-    /// The column with the nanoseconds that belong to whole seconds in `column`, if there is one.
+    /// Column of nanoseconds, which are added to the whole seconds in `column`. `None` if the times are in a single
+    /// column.
     nanoseconds: Option<Column>,
     has_decimal_commas: bool,
 }
@@ -89,8 +90,8 @@ impl Table {
         Self::of_text(text, 0, cut, file, options)
     }
 
-    /// Opens a table whose file has another format than CSV. `rows` is the table as CSV; its header is not counted as a
-    /// line of the file.
+    /// Opens a table from a file that is not CSV. `rows` is the table converted to CSV. The file has no line for the
+    /// header line of `rows`, so line numbers in errors do not count the header line.
     ///
     /// # Errors
     /// See [`open`](Self::open).
@@ -99,7 +100,8 @@ impl Table {
         Self::of_text(rows, 1, Rc::default(), file, options)
     }
 
-    /// Opens a table of CSV text. `above` is the number of lines at the start of `text` that are not in the file.
+    /// Opens a table of CSV text. `above` is the number of lines that were added at the start of `text`, such as a
+    /// header. The file itself has no such lines.
     fn of_text(
         text: Box<dyn Read>,
         above: u64,
@@ -304,7 +306,7 @@ impl Table {
 }
 
 impl Time {
-    /// Reads the time of a row in ps; returns `None` if a field is not a time.
+    /// Returns the time of a row, in ps. Returns `None` if a field of the time is invalid.
     fn read(&self, record: &ByteRecord) -> Option<i128> {
         let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
         let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;
@@ -362,13 +364,13 @@ struct Rows {
     reader: Reader<Box<dyn Read>>,
     /// Whether the table's lines end in CR and LF. If they do, the CSV reader counts the LF as part of the next line.
     is_of_windows: bool,
-    /// Number of lines at the start of the text that are not in the file.
+    /// Number of lines that were added at the start of the text, such as a header. The file itself has no such lines.
     above: u64,
 }
 
 impl Rows {
     /// Makes a reader of the rows in `start` and then in `input`. Comment lines are counted in `count`. `above` is the
-    /// number of lines in `start` that are not in the file.
+    /// number of lines that were added at the start of `start`, such as a header. The file itself has no such lines.
     fn new(
         start: Start,
         input: impl Read + 'static,
@@ -399,8 +401,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the line at which `record`, the row read last, begins. The line is counted back from the reader's
-    /// position, because the record's own position is the position of the comments before the record.
+    /// Returns the number of the line at which `record`, the row read last, begins. The position that `record` stores
+    /// is of no use here: if comments precede the row, that position is where the comments begin.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
@@ -429,7 +431,8 @@ impl<R: Read> Read for Comments<R> {
     }
 }
 
-/// Reads the rows that are examined first. The position of each record is set to the line at which its row begins.
+/// Reads the first rows, from which the header and the format of the times are found. Sets the position of each record
+/// to the line at which its row begins.
 fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     let mut records = VecDeque::new();
     let mut record = ByteRecord::new();
@@ -488,7 +491,7 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
     }
 }
 
-/// Returns the columns that hold neither times nor counts.
+/// Returns the columns of signals: all columns except that of the times and those that count rows, such as `index`.
 fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
     let is_signal = move |&(index, name): &(usize, &String)| {
         time.is_none_or(|time| time.index != index)
@@ -508,7 +511,8 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// Returns the only column that holds neither times nor counts. Returns an error if no column does, or if several do.
+/// Returns the only column that holds neither times nor counts. Returns an error if there is no such column, or if
+/// there are several.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {

@@ -8,9 +8,9 @@ use csv::{ByteRecord, ReaderBuilder};
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
 
-/// The comments at the start of a table, and the first line after them.
+/// The comments at the start of a table, and the two lines after them.
 pub(super) struct Start {
-    /// The bytes of the comments and of the line after them, as in the file.
+    /// The bytes of the comments and of the two lines after them, as in the file.
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
@@ -25,7 +25,8 @@ pub(super) struct Header {
 }
 
 impl Start {
-    /// Reads lines up to the first line that is neither a comment nor empty, and then that line and the next line.
+    /// Reads the start of a table: the comments and empty lines at the top, the first line after them, and one more
+    /// line.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read.
@@ -49,12 +50,13 @@ impl Start {
         self.text[..self.next].ends_with(b"\r\n")
     }
 
-    /// Returns whether the line after the first line that is not a comment is itself a comment.
+    /// Returns whether the second line after the comments at the start is itself a comment.
     pub(super) fn is_followed_by_comment(&self) -> bool {
         self.text[self.next..].starts_with(b"#")
     }
 
-    /// Returns the delimiter that occurs most often in the first line after the comments.
+    /// Returns the delimiter that occurs most often in the first line after the comments. If the line contains no
+    /// delimiter, returns a blank for aligned columns and a comma for all others.
     pub(super) fn delimiter(&self) -> u8 {
         let (header, row) = (&self.text[self.line..self.next], &self.text[self.next..]);
         match delimiter(header) {
@@ -64,9 +66,9 @@ impl Start {
         }
     }
 
-    /// Returns the header if a comment holds it. The header is the last comment that contains no number and has as many
-    /// fields as the line after the comments, which must contain a number. `asked` is the delimiter, if the user gave
-    /// one.
+    /// Returns the header if it stands in a comment. A comment is the header if it contains no number and has as many
+    /// fields as the line after the comments. This line must contain a number. Of several such comments, the last one
+    /// is the header. `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
@@ -82,8 +84,8 @@ impl Start {
     }
 }
 
-/// Returns whether the first row holds samples rather than names. It does if it contains numbers, and if no text in it
-/// stands above a number in the second row.
+/// Returns whether the first row holds samples rather than names. Such a row contains numbers, and no text in it stands
+/// above a number in the second row.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);

@@ -61,11 +61,12 @@ impl Deref for InputOptions {
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
-    /// Columns of a table by name, such as `gyro_x`, or `all`. For a log, fields as `TOPIC.FIELD`.
+    /// Columns of a table by name, such as `gyro_x`. The name `all` stands for all columns except times and counts. For
+    /// a log, fields as `TOPIC.FIELD`.
     pub columns: Vec<String>,
-    /// Column of a table, or field of a log such as `header.stamp`, that holds the time. By default, a table's column
-    /// is found by the names that Betaflight, `ArduPilot`, PX4, ROS and pandas use, and a log's messages have the time
-    /// at which they were recorded.
+    /// Name of the column or field that holds the time: a column of a table, or a field of a log, such as
+    /// `header.stamp`. The default for a table is a column with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas
+    /// uses for the time. The default for a message of a log is the time at which the message was recorded.
     pub time: Option<String>,
     /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
     /// `stamp_ns`, or from the column's values.
@@ -76,11 +77,11 @@ pub struct ChannelOptions {
     pub topic: Option<String>,
     /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,
-    /// Further fields of the topic.
+    /// Further fields of the topic, read after those in [`field`](Self::field).
     pub fields: Vec<String>,
     /// Samples a second, for a recording without times.
     pub rate: Option<f64>,
-    /// Longest step in time that does not count as a gap, in usual steps.
+    /// Longest step between the times of two samples that does not count as a gap, as a multiple of the usual step.
     pub gap: f64,
     /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
     /// row is an error.
@@ -129,8 +130,8 @@ impl FromStr for Delimiter {
 /// Consecutive samples of all channels, with their times if the recording has any.
 #[derive(Debug, Default)]
 pub struct Chunk {
-    /// The samples of each channel. All channels have the same number of samples. Samples that are not finite in the
-    /// recording are NaN or infinite.
+    /// The samples of each channel. All channels have the same number of samples. A sample that is missing or not
+    /// finite in the recording is NaN or infinite.
     pub columns: Vec<Vec<f64>>,
     /// The samples' times in µs, one for each row. Empty if the recording has no times.
     pub times: Vec<i64>,
@@ -289,7 +290,8 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// Returns these options. If the input is a table and no column is chosen, all columns are chosen.
+    /// If the input is a table and no column was chosen, returns a copy of these options with all columns chosen.
+    /// Otherwise, returns an unchanged copy.
     ///
     /// # Errors
     /// Returns an error if the file cannot be opened.
@@ -308,17 +310,17 @@ impl InputOptions {
         self.input == Path::new("-")
     }
 
-    /// Returns the input's name for messages.
+    /// Returns the name that messages to the user give the input: its path, or `standard input`.
     pub fn name(&self) -> String {
         if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
     }
 
-    /// Returns the columns that were chosen.
+    /// Returns the table columns that the options choose.
     fn columns(&self) -> impl Iterator<Item = &str> {
         self.column.iter().chain(&self.columns).map(String::as_str)
     }
 
-    /// Returns the fields that were chosen.
+    /// Returns the message fields that the options choose.
     fn fields(&self) -> impl Iterator<Item = &str> {
         self.field.iter().chain(&self.fields).map(String::as_str)
     }

@@ -7,11 +7,10 @@ use catalogue::run::Words;
 /// Ranges of 32-bit clocks, in µs. The first clock counts µs, the second ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Longest time in µs between two samples over which a wrap of the clock is always recognised. [`STEPS`] may allow a
-/// longer time.
+/// Limit in µs on the time between the last sample before a wrap of the clock and the first sample after it. A wrap
+/// within the limit is recognised. [`STEPS`] may raise the limit.
 const SECOND: i64 = 1_000_000;
-/// Longest time between two samples over which a wrap of the clock is recognised, as a multiple of the latest step
-/// forward. Applies if this time is longer than [`SECOND`].
+/// Factor that may raise the limit [`SECOND`]. The limit is at least this multiple of the latest step forward.
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.
@@ -25,12 +24,13 @@ pub struct Rollover {
     count: i64,
     /// Range of the clock in µs. Each wrap sets the clock back by its range.
     range: i64,
-    /// Index of the sample before the first wrap.
+    /// Index of the last sample before the clock wrapped around for the first time.
     first: u64,
 }
 
 impl Rollover {
-    /// Returns the continued time of the next sample, in µs. `shown` is the time on the 32-bit clock, in µs.
+    /// Extends the time of the next sample beyond 32 bits, and returns it in µs. `shown` is the time on the 32-bit
+    /// clock, in µs.
     pub fn take(&mut self, shown: i64) -> i64 {
         let previous = self.previous.unwrap_or(shown);
         let step = shown.saturating_sub(previous);

@@ -6,7 +6,8 @@ use std::io::{self, Read};
 /// each line.
 pub(super) struct OneBlank<R> {
     input: R,
-    /// Whether a blank was read that is written only if the line continues.
+    /// Whether the latest bytes were blanks or tabs after a field. These bytes become one blank if another field
+    /// follows in the line; otherwise they are removed.
     is_waiting: bool,
     is_begun: bool,
     held: Vec<u8>,

@@ -15,8 +15,8 @@ const PARQUET: &str = if cfg!(feature = "datasets") {
     "a Parquet file; export it as CSV"
 };
 
-/// Kinds of files that are not tables. Each entry has the first bytes of such a file, and words for the user, which
-/// name the kind of file and suggest what to do.
+/// Kinds of files that are not tables. Each entry has the first bytes of such a file, and a text for the user. The text
+/// names the kind of file and suggests what to do.
 const OTHERS: [(&[u8], &str); 12] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet; export it as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet; export it as CSV"),
@@ -139,8 +139,9 @@ mod encoding {
     }
 }
 
-/// Decodes Latin-1 only, for the web page. The browser decodes files in other encodings before this library reads them.
-/// The conversion tables of all encodings would make up a tenth of the page.
+/// Replacements of the text decoders, for the web page. They decode only Latin-1, because the conversion tables of all
+/// encodings would make up a tenth of the page. The browser decodes files in other encodings before this library reads
+/// them.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

@@ -77,9 +77,10 @@ impl fmt::Display for TimeUnit {
 pub(super) enum Named {
     /// The times are in the given unit.
     In(TimeUnit),
-    /// The values decide the unit. Whole numbers that are too small for a time since 1970 are in the given unit.
+    /// The unit follows from the values. The given unit applies to whole numbers that are too small for times since
+    /// 1970.
     Whole(TimeUnit),
-    /// The column has times only if its values are dates.
+    /// The values are times if they are dates; otherwise the column has no times.
     Dates,
 }
 
@@ -158,7 +159,7 @@ fn last_word(name: &str) -> Option<(&str, &str)> {
 /// The format of a column's times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// Numbers in the given unit.
+    /// Times as numbers in the given unit.
     Numbers(TimeUnit),
     /// Dates with a time, such as `2024-05-01 12:00:00.005`.
     Dates,
@@ -206,7 +207,8 @@ impl Reading {
     }
 }
 
-/// Converts a time from ps to whole µs, the resolution of all recordings, rounding halves up.
+/// Converts a time from ps to µs, because recordings have times in whole µs. Rounds to the nearest µs, and rounds
+/// halves up.
 pub(super) fn microseconds(picoseconds: i128) -> i64 {
     let rounded = picoseconds.saturating_add(MICROSECOND / 2).div_euclid(MICROSECOND);
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
@@ -215,7 +217,7 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
 /// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp are used, while a
 /// float would keep only 15. Returns `None` if the field contains an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
-    /// Maximum number of digits before the decimal point, which keeps the sum within 128 bits.
+    /// Maximum number of digits before the decimal point. The limit keeps the time in ps within 128 bits.
     const MOST: usize = 24;
     let (is_negative, digits) = match field {
         [b'-', digits @ ..] => (true, digits),

@@ -3,7 +3,7 @@
 
 use super::{CHUNK, Clock, Rollover};
 
-/// Summary of the times of a recording that is read once, without storing it.
+/// Summary of the times of a recording. The times are added one by one, and are not all stored.
 pub(super) struct Times {
     gap: f64,
     /// The first times, from which the usual step is computed.
@@ -38,7 +38,8 @@ impl Times {
         clock
     }
 
-    /// Returns the length, rate and gaps of the times, and how often the recorder's clock wrapped around.
+    /// Returns two results: the duration, sample rate and gaps that the times show, and the wraps of the recorder's
+    /// 32-bit clock.
     pub(super) fn finish(mut self) -> (Clock, Rollover) {
         let clock = self.clock.take().unwrap_or_else(|| self.started());
         (clock, self.rollover)

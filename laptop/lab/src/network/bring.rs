@@ -1,5 +1,5 @@
-//! Brings a trained network onto a chip: quantises the network, runs it on the chip's model, and compares it with the
-//! original.
+//! Brings a trained network onto a chip: quantises the network, runs the quantised network on the chip's model, and
+//! compares the spikes with those of the original.
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
@@ -7,8 +7,7 @@ use crate::network::NetworkKind;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Number of time steps in a window. Comparisons count the spikes of each output within a window, and ask which outputs
-/// have the most.
+/// Number of time steps in a window. For each window, comparisons check whether the same outputs have the most spikes.
 pub const WINDOW: usize = 20;
 
 /// A network to bring onto a chip, and the recordings on which it is tuned and tested.
@@ -19,26 +18,26 @@ pub struct Request<'a> {
     pub trained: &'a Trained,
     /// Input spikes of the recording on which the chip's parameters are tuned, by step.
     pub tuned: &'a Trains,
-    /// A second recording, on which the quantised network is only tested; `None` to test it on `tuned` only.
+    /// A second recording, which only tests the quantised network. If `None`, the network is tested on `tuned`.
     pub held_out: Option<HeldOut<'a>>,
-    /// Spikes of the outputs that the training framework computed, by step: for the recording `tuned`, then for
-    /// `held_out`. `None` if these spikes are not known.
+    /// Output spikes that the training framework computed, by step. The first entry is for the recording `tuned`, the
+    /// second for `held_out`. `None` if the framework's spikes are not known.
     pub framework: Option<(&'a Trains, &'a Trains)>,
     /// When neurons compare their potentials with their thresholds. `None` tries both possibilities and chooses the one
-    /// whose spikes agree better with double precision. Chips that offer no choice ignore the setting.
+    /// whose spikes agree better with double precision. Has no effect on chips that offer no choice.
     pub compare: Option<Compare>,
     /// Called during the search for the chip's parameters, with the number of finished parts of the search and the
     /// total number of parts.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// A recording for testing a network after its parameters were tuned on another.
+/// A recording on which a network is tested after its parameters were tuned on a different recording.
 #[derive(Clone, Copy)]
 pub struct HeldOut<'a> {
     /// Input spikes of all steps, including those before `from`.
     pub steps: &'a Trains,
-    /// Index of the first step that is compared. Earlier steps run only to bring the network into its state at `from`;
-    /// parameters may have been tuned on them.
+    /// Index of the first step that is compared. The steps before `from` only bring the network into its state.
+    /// Parameters may have been tuned on those earlier steps.
     pub from: usize,
 }
 
@@ -50,10 +49,10 @@ pub struct Brought {
     pub tuned: Figures,
     /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
-    /// Each part of the chip's arithmetic, with its effect by itself. To measure the effect, the network runs in double
-    /// precision except for this part. The number is the share of active steps in which the same outputs fire as in
-    /// full double precision. Active steps are those in which an output fires in either run. The recording is the
-    /// held-out one or, if there is none, the tuned one.
+    /// The effect of each part of the chip's arithmetic. To find the effect, the network runs with this part alone, and
+    /// otherwise in double precision. The number is the share of active steps in which this run and full double
+    /// precision fire the same outputs. A step is active if an output fires in either run. The recording is the
+    /// held-out one. If there is none, it is the recording on which the parameters were tuned.
     pub costs: Vec<(Cost, f64)>,
     /// Share of active steps in which the same outputs fire in double precision and in the training framework. A low
     /// share suggests that the network's file, or the rule of its neurons, was understood wrongly. `None` if the
@@ -72,11 +71,12 @@ pub struct Figures {
     pub agreeing: usize,
     /// Number of active steps: those in which an output fires, in double precision or on the chip.
     pub active: usize,
-    /// Number of active steps in which the same outputs fire in double precision and on the chip.
+    /// Number of [`active`](Self::active) steps in which the same outputs fire in double precision and on the chip.
     pub active_agreeing: usize,
     /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
     pub windows: usize,
-    /// Number of these windows in which the same outputs have the most spikes in double precision and on the chip.
+    /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in double precision
+    /// as on the chip.
     pub windows_agreeing: usize,
     /// Mean number of clock cycles that the chip takes for a step. For the flight controller: mean number of weights
     /// that a step adds.
@@ -98,9 +98,10 @@ pub struct PotentialFigures {
     pub outputs: usize,
     /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
-    /// Root mean square of the potentials in double precision, in the units of the training.
+    /// Root mean square of the potentials in double precision, in the units of the trained network.
     pub size: f64,
-    /// Root mean square of the difference between the chip's potentials and those in double precision.
+    /// Root mean square of the difference between the chip's potentials and those in double precision, in the same
+    /// units.
     pub error: f64,
 }
 
@@ -121,7 +122,8 @@ pub struct LayerFigures {
     pub distance: f64,
 }
 
-/// Quantises the network for the chip, runs it on the chip's model, and compares it with the original.
+/// Quantises the network for the chip, runs the quantised network on the chip's model, and compares the spikes with
+/// those of the original.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip, if the framework's spikes do not fit the network, or if the
@@ -156,8 +158,8 @@ pub fn bring(request: &Request) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs, reading })
 }
 
-/// Compares two spike trains step by step. Among the steps in which at least one of them has a spike, returns the share
-/// in which the same neurons fire in both; `None` if neither train has a spike.
+/// Compares two spike trains step by step. Counts the steps in which at least one train has a spike, and returns the
+/// share of these steps in which the same neurons fire in both. Returns `None` if neither train has a spike.
 fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     let active = one.iter().zip(other).filter(|(one, other)| !one.is_empty() || !other.is_empty());
     let (active, same) = active.fold((0, 0), |(active, same), (one, other)| {
@@ -170,9 +172,9 @@ fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
 /// The reference for comparisons: the spikes and potentials of one run in double precision, and the sizes of the
 /// layers.
 pub(super) struct Original {
-    /// Name and number of neurons of each layer whose neurons fire.
+    /// For each layer whose neurons fire: the layer's name and its number of neurons.
     pub layers: Vec<(String, usize)>,
-    /// Name of the output layer and number of outputs, if they never fire; `None` if the outputs are spikes.
+    /// Name of the output layer and number of outputs, if the outputs never fire; `None` if the outputs are spikes.
     pub readout: Option<(String, usize)>,
     pub fired: Vec<Trains>,
     /// The outputs' potentials, by step; compared only if the outputs never fire.
@@ -227,7 +229,7 @@ impl Original {
     }
 }
 
-/// Runs the quantised network on the chip's model, and compares it with the original from step `from` on.
+/// Runs the quantised network on the chip's model, and compares the result with the original from step `from` on.
 pub(super) fn figures(
     original: &Original,
     network: &dyn OnChip,
@@ -348,8 +350,8 @@ impl Figures {
         }
     }
 
-    /// Returns how well the network on the chip agrees with double precision, from 0 to 1. This is the mean of the
-    /// share of active steps that agree and the share of windows that agree.
+    /// Returns how well the network on the chip agrees with double precision, from 0 to 1. This is the mean of two
+    /// shares: of the active steps that agree, and of the windows that agree.
     pub(super) fn holds(&self) -> f64 {
         let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
         f64::midpoint(self.agreement().unwrap_or(0.0), windows)

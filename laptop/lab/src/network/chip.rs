@@ -11,8 +11,8 @@ pub trait Chip: Sync {
     /// Returns the name by which the command line selects the chip, such as `tinyodin`.
     fn name(&self) -> &'static str;
 
-    /// Searches for the chip's parameters with which each layer's spikes are nearest to the layer's target, its spikes
-    /// in `fired`. `inputs` are the network's input spikes by step. `compare` has the meaning of
+    /// Searches for the chip's parameters with which the spikes of each layer are nearest to those in `fired`. `inputs`
+    /// are the network's input spikes by step. `compare` has the meaning of
     /// [`Request::compare`](super::Request::compare). Calls `progress` with the number of finished parts of the search
     /// and the total number of parts.
     ///
@@ -28,13 +28,13 @@ pub trait Chip: Sync {
     ) -> Result<Box<dyn OnChip>>;
 }
 
-/// When a chip's neurons compare their potentials with their thresholds. The choice exists only on chips that support
-/// both.
+/// The time at which a chip's neurons compare their potentials with their thresholds. The choice exists only on chips
+/// that support both variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// After each spike that arrives, as the chip does by default.
+    /// Comparison after each spike that arrives: the chip's default.
     Spike,
-    /// Once in each time step, as in training. For this, the driver sends extra events to the chip.
+    /// Comparison once in each time step, as in training. The driver sends extra events to the chip for this purpose.
     Step,
 }
 
@@ -69,8 +69,8 @@ pub trait OnChip {
     /// outputs are potentials, one more entry counts the outputs' weights.
     fn clipped(&self) -> Vec<usize>;
 
-    /// Returns Rust source that defines the network. It compiles without `std` if `spikewire-chips` has its feature
-    /// `embedded-hal`.
+    /// Returns Rust source that defines the network. The source compiles without `std` if `spikewire-chips` has its
+    /// feature `embedded-hal`.
     fn emit(&self, remarks: &Remarks) -> String;
 
     /// Returns the network as bytes, which the driver can load at run time.
@@ -101,7 +101,7 @@ pub trait OnChip {
 pub struct Ran {
     /// The neurons that fired, by layer, then by step.
     pub fired: Vec<Trains>,
-    /// The outputs' potentials by step, in the units of the training; empty if the outputs are spikes.
+    /// The outputs' potentials by step, in the units of the trained network; empty if the outputs are spikes.
     pub potentials: Vec<Vec<f64>>,
     /// For each step, the number of clock cycles that the chip takes. For the flight controller: the number of weights
     /// that the step adds.
@@ -114,8 +114,8 @@ pub struct Ran {
 pub struct Stepped {
     /// The neurons that fired in the step, by layer.
     pub fired: Vec<Vec<u16>>,
-    /// Number of clock cycles that the chip took for the step. For the flight controller: number of weights that the
-    /// step added.
+    /// Number of clock cycles that the step took on the chip. If the network runs on the flight controller instead,
+    /// this is the number of weights that the step added.
     pub clocks: u64,
 }
 
@@ -130,7 +130,8 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    /// Returns the duration of `steps` steps as text that begins with a comma; empty if it is not known.
+    /// Returns the duration of `steps` steps as text that begins with a comma; empty if the duration of a step is not
+    /// known.
     pub(super) fn micros(&self, steps: usize) -> String {
         self.step_us.map_or(String::new(), |step| {
             format!(", {:.0} µs in the recording", step * steps as f64)
@@ -145,7 +146,7 @@ pub(super) fn lines(items: impl Iterator<Item = String>) -> String {
 
 /// Calls `write` with a buffer that has room for the largest network; returns the bytes written.
 pub(super) fn written<E>(write: impl FnOnce(&mut [u8]) -> Result<usize, E>) -> Result<Vec<u8>, E> {
-    /// Size of the buffer in bytes: more than any network needs on any chip.
+    /// Size of the buffer in bytes. No network for any of the chips takes more bytes.
     const LARGEST: usize = 256 * 1024;
     let mut bytes = vec![0; LARGEST];
     let length = write(&mut bytes)?;
@@ -158,7 +159,7 @@ pub(super) fn list(numbers: impl Iterator<Item = impl Display>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Converts an error that a chip's driver reports while it runs on the chip's model.
+/// Wraps an error that a chip's driver returned while a network ran on the chip's model.
 pub(super) fn refused<B, P>(error: ChipError<B, P>) -> crate::Error
 where
     ChipError<B, P>: std::error::Error + Send + Sync + 'static,

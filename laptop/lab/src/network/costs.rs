@@ -9,11 +9,11 @@ use std::fmt::{self, Display};
 /// A part of a chip's arithmetic that differs from double precision and changes a network's spikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
-    /// Neurons compare their potentials with their thresholds after each spike, instead of once in each step.
+    /// Comparing potentials with thresholds after each spike, instead of once in each step.
     Order,
-    /// A leak subtracts a fixed amount, instead of a share of the potential.
+    /// Leaks that subtract a fixed amount, instead of a share of the potential.
     Leak,
-    /// A neuron's weights are rounded to whole numbers.
+    /// Rounding a neuron's weights to whole numbers.
     Weights {
         /// Largest absolute value of a weight after rounding.
         largest: f64,
@@ -35,9 +35,10 @@ impl Display for Cost {
 const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
 
 impl Cost {
-    /// Runs the network on `inputs`, in double precision except for this part of the chip's arithmetic. Returns the
-    /// spikes of the last layer. Parameters of this part, such as fixed leaks, are fitted to a target: `fired` contains
-    /// the spikes that each layer should fire for the inputs `tuned`.
+    /// Runs the network on `inputs` in double precision, with one exception: the part of the chip's arithmetic that
+    /// this cost stands for. Returns the spikes of the last layer. Parameters of this part, such as fixed leaks, are
+    /// fitted beforehand. The fit makes each layer fire the spikes in `fired` when the inputs `tuned` arrive, as far as
+    /// possible.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -115,9 +116,10 @@ fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) ->
     inputs.iter().map(of_step).collect()
 }
 
-/// Runs one step of neuron `at`; returns whether it fires. A spike resets the neuron in the same step. If `leak` is
-/// given, it is the amount that replaces the neuron's trained leak. If `by_spike` is true, the neuron compares its
-/// potential with its threshold after each spike that arrives, instead of once.
+/// Runs one step of the layer's neuron `at`, and returns whether the neuron fires. A spike resets the neuron in the
+/// same step. If `leak` is given, a fixed leak of this amount replaces the trained leak. If `by_spike` is true, the
+/// neuron compares its potential with its threshold after each spike that arrives. Otherwise, it compares once, after
+/// all spikes of the step.
 fn step(
     layer: &Layer,
     at: usize,

@@ -19,7 +19,8 @@ impl Distance {
         self.sum += self.difference * self.difference;
     }
 
-    /// Returns the distance up to the last step added; further steps can only increase it.
+    /// Returns the distance between the two spike trains over the steps added so far. Further steps can only increase
+    /// it.
     pub fn so_far(self) -> f64 {
         (1.0 - KEPT * KEPT) * self.sum
     }

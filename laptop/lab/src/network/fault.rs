@@ -10,8 +10,8 @@ use spikewire_chips::ReckOnAnswer;
 pub(super) use crate::Result;
 
 kinds! {
-    /// The reason for which a network is refused, or a setting or spikes that are given with the network. Reasons that
-    /// lie in a single layer are in `LayerKind`.
+    /// The reason for which a network is refused. Also covers refused settings of a network, and refused spikes that
+    /// are given with it. Reasons that concern a single layer are in `LayerKind`.
     pub enum NetworkKind by spell of subject {
         OpenRule { framework: Option<Framework>, open: Vec<Choice> } => (
             "the file does not say by which rule its neurons step: {}",
@@ -175,7 +175,7 @@ kinds! {
 }
 room!(ModelKind, Model);
 
-/// Returns the error `$kind` from the function that contains the macro, unless `$condition` is true.
+/// Leaves the enclosing function with the error `$kind`, unless `$condition` is true.
 macro_rules! ensure {
     ($condition:expr, $kind:expr) => {
         let holds: bool = $condition;

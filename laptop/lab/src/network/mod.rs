@@ -60,8 +60,8 @@ impl File {
         Err(NetworkKind::NoNetwork.at(path))
     }
 
-    /// Converts the network to the form that `spikewire-network` runs on the flight controller. `asked` completes what
-    /// the file leaves open about how neurons decay, fire and reset.
+    /// Converts the network to the form that `spikewire-network` runs on the flight controller. `asked` makes the
+    /// choices about decay, firing and reset that the file leaves open.
     ///
     /// # Errors
     /// Returns an error if the file and `asked` together leave part of the rule open, or if they contradict each other.
@@ -72,8 +72,8 @@ impl File {
         }
     }
 
-    /// Converts the network to the form that can be brought onto chips. `asked` completes what the file leaves open
-    /// about how neurons decay, fire and reset. If it does not settle the duration of a step, a step lasts `seconds`,
+    /// Converts the network to the form that can be brought onto chips. `asked` makes the choices about decay, firing
+    /// and reset that the file leaves open. If `asked` leaves the duration of a step open too, a step lasts `seconds`,
     /// as in the recording.
     ///
     /// # Errors

@@ -10,8 +10,8 @@ use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
 use std::collections::BTreeMap;
 
-/// Maximum size of an array in a file, in bytes. It prevents huge allocations for damaged files; 256 neurons with 256
-/// weights each need 512 KiB at most.
+/// Maximum size of an array in a file, in bytes. The limit prevents huge allocations for damaged files; 256 neurons
+/// with 256 weights each need 512 KiB at most.
 const MOST_BYTES: usize = 1 << 26;
 
 /// The layers of a NIR graph, from input to output. Time constants are in seconds.
@@ -48,8 +48,8 @@ pub(super) struct Neurons {
     /// Threshold of each neuron; `None` if the neurons never fire.
     pub(super) threshold: Option<Array>,
     pub(super) reset: Option<Array>,
-    /// Time constant and weight of the synaptic current; `None` for neurons without such a current, on whose potential
-    /// an input spike acts only in its own step.
+    /// Time constant and weight of the synaptic current. `None` for neurons without such a current: an input spike then
+    /// acts on the potential in its own step only.
     pub(super) synapse: Option<Synapse>,
 }
 
@@ -72,8 +72,8 @@ impl Array {
     }
 }
 
-/// A NIR graph in which nested graphs were replaced by their nodes. Such a node is named by its path, such as
-/// `graph.node`.
+/// A NIR graph in which nested graphs were replaced by their nodes. The name of a node from a nested graph is its path,
+/// such as `graph.node`.
 #[derive(Default)]
 struct Graph {
     nodes: BTreeMap<String, Group>,
@@ -153,15 +153,16 @@ fn node_at(name: &str) -> Spot {
     Spot::Part(format!("node `{name}`"))
 }
 
-/// Number of levels to which graphs may be nested.
+/// Maximum number of levels of graphs within graphs.
 const DEEPEST: usize = 8;
 
 impl Graph {
-    /// Adds the nodes and edges of the NIR graph in `group`, and of the graphs nested in it, to this graph. Their names
-    /// get the prefix `path`. Returns the names of the input node and the output node of the graph in `group`.
+    /// Adds the nodes and edges of the NIR graph in `group` to this graph, together with those of the graphs nested in
+    /// it. The name of each node gets the prefix `path`. `depth` is the number of graphs around the graph in `group`.
+    /// Returns the names of the input node and the output node of the graph in `group`.
     ///
     /// # Errors
-    /// Returns an error if the group is not a graph with one input and one output.
+    /// Returns an error if the group is not a graph with one input and one output, or if graphs are nested too deeply.
     fn take(&mut self, group: &Group, path: &str, depth: usize) -> Result<(String, String)> {
         let at = || Place { file: None, spot: (!path.is_empty()).then(|| node_at(path)) };
         ensure!(depth < DEEPEST, NirKind::TooDeep { most: DEEPEST }.at(at()));
@@ -215,7 +216,8 @@ impl Graph {
         })
     }
 
-    /// Redirects edges from and to nested graphs to the output and input nodes of those graphs.
+    /// Replaces nested graphs in edges: an edge from a nested graph starts at the output node of that graph, and an
+    /// edge to a nested graph ends at its input node.
     fn join(&mut self) {
         for (from, to) in &mut self.edges {
             if let Some((_, output)) = self.inner.get(from) {
@@ -237,7 +239,7 @@ impl Graph {
         after
     }
 
-    /// Follows the chain of nodes from `first` to `last`. Returns the name of each node on it, with the node's
+    /// Follows the chain of nodes from `first` to `last`. Returns the name of each node on the chain, with the node's
     /// connections back to itself.
     ///
     /// # Errors

@@ -29,8 +29,8 @@ struct Written {
     name: Option<String>,
     /// The weights: one row for each neuron, with one weight for each input.
     weights: Vec<Vec<f64>>,
-    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer, whose spikes
-    /// act one step later.
+    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer. Spikes act
+    /// through these weights one step later.
     #[serde(default)]
     recurrent: Vec<Vec<f64>>,
     #[serde(default)]
@@ -67,7 +67,7 @@ impl Numbers {
 /// Reads a network from JSON.
 ///
 /// # Errors
-/// Returns an error if the JSON has a different structure, or if a number is invalid.
+/// Returns an error if the JSON does not have the structure of a network, or if a number is invalid.
 pub(crate) fn read(bytes: &[u8]) -> Result<Trained> {
     let network: Network = serde_json::from_slice(bytes)?;
     let layers = network.layers.into_iter().enumerate().map(|(at, written)| {

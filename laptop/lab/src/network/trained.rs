@@ -15,15 +15,15 @@ pub type Trains = Vec<Vec<u16>>;
 pub struct Trained {
     /// The layers whose neurons fire, from input to output.
     pub layers: Vec<Layer>,
-    /// Output neurons that never fire and that follow the last of `layers`; `None` if the outputs are the spikes of
-    /// that layer.
+    /// Output neurons that never fire and that follow the last of `layers`. `None` if the outputs are the spikes of the
+    /// last layer.
     pub readout: Option<Readout>,
 }
 
 /// Leaky neurons that never fire, and whose potentials are the network's outputs.
 #[derive(Clone, Debug)]
 pub struct Readout {
-    /// Name in the network's file.
+    /// Name of the layer in the network's file.
     pub name: String,
     /// The weights: one row for each output, with one weight for each neuron of the last layer.
     pub weights: Vec<Vec<f64>>,
@@ -66,12 +66,13 @@ impl Readout {
 /// A layer of neurons that fire, and the weights that lead to them.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// Name in the network's file.
+    /// Name of the layer in the network's file.
     pub name: String,
     /// The weights: one row for each neuron, with one weight for each input.
     pub weights: Vec<Vec<f64>>,
-    /// The recurrent weights: one row for each neuron, with one weight for each neuron of the same layer, whose spikes
-    /// act one step later. Empty unless the layer is recurrent.
+    /// The recurrent weights, from the layer's neurons to the same neurons. Each row holds the weights that lead to one
+    /// neuron: one weight from each neuron of the layer. A spike acts one step after it was fired. Empty unless the
+    /// layer is recurrent.
     pub recurrent: Vec<Vec<f64>>,
     /// For each neuron, the amount that every step adds to its potential.
     pub bias: Vec<f64>,
@@ -259,11 +260,11 @@ impl Trained {
         Ok(Self { readout, ..network })
     }
 
-    /// Sets how the neurons of each layer reset, and whether they fire at the threshold or only above it. Both follow
-    /// `asked`, which contains at most one reset for all layers, or one reset for each layer.
+    /// Sets how the neurons of each layer reset, and whether they fire at the threshold or only above it. Takes both
+    /// from `asked`. A single reset in `asked` applies to all layers. Several resets apply to one layer each.
     ///
     /// # Errors
-    /// Returns an error if `asked` contains several resets, and their number is not that of the layers.
+    /// Returns an error if `asked` contains several resets, and their number is not the number of layers.
     pub(super) fn reset_by(mut self, asked: &Asked) -> Result<Self> {
         let (rule, resets, layers) = (asked.or_plain(), &asked.resets, self.layers.len());
         ensure!(
@@ -277,9 +278,10 @@ impl Trained {
         Ok(self)
     }
 
-    /// Converts layers in which a spike subtracts the threshold in the same step, for chips that subtract it one step
-    /// later. The leak of a step no longer reduces the amount that a late subtraction removes. A positive weight from
-    /// each neuron to itself makes up for the difference.
+    /// Converts layers for chips on which a spike subtracts the threshold one step later. Only layers that subtract the
+    /// threshold in the same step are changed. In these layers, the next leak also reduces the subtracted amount. On
+    /// the chip, it does not, so the chip would subtract too much. A positive weight from each neuron to itself makes
+    /// up for the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {
@@ -316,8 +318,8 @@ impl Trained {
         all
     }
 
-    /// Returns the outputs' potentials by step, given the spikes `fired` of all layers; empty if the outputs are the
-    /// spikes of the last layer.
+    /// Computes the potentials of the outputs in each step from `fired`, the spikes of all layers. Returns an empty
+    /// list if the network's outputs are the spikes of the last layer.
     pub fn potentials(&self, fired: &[Trains]) -> Vec<Vec<f64>> {
         let (Some(readout), Some(fired)) = (&self.readout, fired.last()) else { return vec![] };
         readout.run(fired)

@@ -35,8 +35,8 @@ enum Place {
     Memory(Vec<u8>),
 }
 
-/// Checks that a path ends as a table does: in `.csv`, in `.txt`, or without an ending. Other programs recognise a
-/// table by its ending. A device may have any name. The error lists the endings of tables, followed by `others`.
+/// Checks that a table's name has an ending by which other programs recognise tables: `.csv`, `.txt` or none. A device
+/// may have any name. The error lists these endings, followed by the text `others`.
 ///
 /// # Errors
 /// Returns an error if the path has a different ending.
@@ -71,7 +71,8 @@ impl Output {
         Self::to(path)
     }
 
-    /// Opens the output at `path`, or standard output if `path` is `None` or `-`, for a command without an input file.
+    /// Opens the output at `path`, or standard output if `path` is `None` or `-`. This function is for commands without
+    /// an input file. It cannot check that the output is a different file from the input.
     ///
     /// # Errors
     /// Returns an error if no file can be written at `path`.
@@ -165,7 +166,7 @@ impl Output {
     }
 }
 
-/// Adds a file's name to an error in writing the file, and keeps the error's kind.
+/// Adds the file's name to an error that occurred while the file was written. Keeps the error's kind.
 fn unwritten(name: &str, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{name}: cannot be written: {error}"))
 }

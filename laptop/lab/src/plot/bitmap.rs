@@ -9,7 +9,7 @@ use tiny_skia::{
     Transform,
 };
 
-/// A picture in memory, on which plotters draws.
+/// A picture in memory, on which the crate `plotters` draws.
 pub(super) struct Bitmap<'a> {
     pixels: &'a mut Pixmap,
 }

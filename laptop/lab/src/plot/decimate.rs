@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// Returns the first, lowest, highest and last point in each column of pixels, in the order of the points. `columns`
-/// columns span `range`.
+/// Reduces points to the first, lowest, highest and last point in each column of pixels. Keeps the order of the points.
+/// `columns` is the number of columns, and `range` the range of x that all columns together cover.
 ///
 /// A line through these points covers the same pixels as a line through all points.
 pub(super) fn decimate(
@@ -31,7 +31,8 @@ pub(super) fn decimate(
     kept
 }
 
-/// Returns the column of pixels in which `x` lies, if `columns` columns span `range`.
+/// Returns the column of pixels in which `x` lies. `columns` is the number of columns, and `range` the range of x that
+/// all columns together cover.
 pub(super) fn column(x: f64, range: &Range<f64>, columns: u32) -> i64 {
     let width = range.end - range.start;
     if width > 0.0 { ((x - range.start) / width * f64::from(columns)) as i64 } else { 0 }

@@ -1,4 +1,5 @@
-//! Draws the panel of efficiencies, with a bar for each trial.
+//! Draws the panel of spiking efficiencies, with a bar for each trial. The efficiency is the share of samples without a
+//! spike.
 
 use super::FONT;
 use super::palette::{self, GRID, INK};

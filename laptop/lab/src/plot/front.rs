@@ -1,6 +1,7 @@
 //! Draws Pareto fronts of spikes against error. The front of a scheme consists of the settings that no other settings
-//! beat in both spikes and error. A scheme that forms part of the common front of all schemes has a colour, and a name
-//! beside its line. All other schemes are grey.
+//! of the scheme beat in both spikes and error. The common front consists of the settings that no settings of any
+//! scheme beat. A scheme that forms part of the common front has a colour, and a name beside its line. All other
+//! schemes are grey.
 
 use super::FONT;
 use super::palette::{DISTINCT, GRID, INK, OTHERS};
@@ -16,7 +17,7 @@ pub struct Panel {
     pub title: String,
     /// The signal's unit, if it is known.
     pub unit: Option<String>,
-    /// The front of each scheme.
+    /// The Pareto front of each scheme: its best settings, by spikes and error.
     pub curves: Vec<Curve>,
 }
 
@@ -33,7 +34,8 @@ const LOWEST: f64 = -100.0;
 /// Number of steps into which the efficiency axis is divided to compare schemes.
 const STEPS: usize = 400;
 
-/// A scheme that forms a part of the common front, and the colour of its line.
+/// A scheme that forms a part of the common front (the least error of all schemes at each efficiency), and the colour
+/// of the scheme's line.
 pub(super) type Named = (Scheme, RGBColor);
 
 /// Returns the efficiency, in percent, at the given step along the axis, from 0 to [`STEPS`].
@@ -43,8 +45,9 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front. For each step along the efficiency axis, it has the scheme with the least error at
-    /// that efficiency or above, and the efficiency and error of the scheme's setting.
+    /// Returns the common front. Its item for a step along the efficiency axis is the scheme with the least error at
+    /// that efficiency or above, with the efficiency and the error that it reaches; `None` if no scheme reaches that
+    /// efficiency.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);
@@ -58,8 +61,9 @@ impl Panel {
     }
 }
 
-/// Returns the schemes that form most of the common fronts. The scheme with the largest share comes first. At most as
-/// many schemes are returned as there are colours.
+/// Returns the schemes that get a name and a colour, each with its colour. These are the schemes that form the largest
+/// shares of all channels' common fronts, the largest share first. At most as many schemes are returned as there are
+/// colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
     /// A scheme gets a name and a colour only if it forms more than this share of the common fronts.
     const PART: f64 = 0.03;
@@ -182,8 +186,9 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the efficiency and error of the middle one of the points that `scheme` contributes to the panel's common
-/// front. Only points with an efficiency of at least `left` percent count. Returns `None` if there are no such points.
+/// Finds the point at which the panel names the line of `scheme`: the middle of the scheme's part of the common front.
+/// Returns the efficiency and error at this point. Leaves out points with an efficiency below `left` percent, and
+/// returns `None` if no points are left.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

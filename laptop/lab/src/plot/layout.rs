@@ -53,7 +53,7 @@ pub(super) fn fronts_size(panels: &[front::Panel]) -> (u32, u32) {
     (width, front::legend_height(&front::named(panels), width) + FRONT.1 * rows as u32)
 }
 
-/// Draws a legend, and below it the fronts of each channel in a grid.
+/// Draws a legend, and below it a grid of panels, one for each channel. A panel shows the schemes' Pareto fronts.
 pub(super) fn fill_fronts<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     panels: &[front::Panel],

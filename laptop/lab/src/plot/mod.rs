@@ -25,7 +25,7 @@ use crate::output::Output;
 
 /// The recording that a picture shows, and the trials of schemes on this recording.
 pub struct Picture<'a> {
-    /// The recording that the trials encoded.
+    /// The recording that was encoded and decoded in the trials.
     pub recording: &'a Recording,
     /// The trials, one for each panel.
     pub trials: &'a [Trial],

@@ -1,5 +1,5 @@
-//! The colours of pictures: the paper's blue for the signal and orange for the reconstruction, and the catalogue's
-//! colours of the schemes.
+//! The colours of pictures. As in the paper, the signal is blue and the reconstruction orange. Each scheme has the
+//! colour that the scheme catalogue gives it.
 
 use crate::scheme::Scheme;
 use plotters::style::RGBColor;
@@ -12,7 +12,7 @@ pub(super) const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xea);
 pub(super) const UP: RGBColor = RGBColor(0x2b, 0x2f, 0x36);
 pub(super) const DOWN: RGBColor = RGBColor(0xc2, 0x3b, 0x4e);
 
-/// Colour of the lines of schemes that form no part of the common front.
+/// Colour of the lines of schemes that form no part of the common Pareto front.
 pub(super) const OTHERS: RGBColor = RGBColor(0xb8, 0xbd, 0xc5);
 /// Colours that the colour-blind can tell apart, after Okabe and Ito.
 pub(super) const DISTINCT: [RGBColor; 5] = [

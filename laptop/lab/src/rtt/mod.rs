@@ -70,7 +70,8 @@ fn copy(
 ) -> Result<()> {
     /// Time between polls of an empty channel. A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
     const PAUSE: Duration = Duration::from_millis(1);
-    /// Maximum number of bytes that are read after the request to stop, in case the board never pauses.
+    /// Maximum number of bytes that are read after `is_due` returned true. The limit ends the copy even if the board
+    /// sends without a pause.
     const REST: u64 = 1 << 20;
     let mut buffer = vec![0; 1 << 14];
     let mut last = None;

@@ -1,4 +1,4 @@
-//! Reads a board's channel through probe-rs.
+//! Reads an RTT channel of a board through a debug probe, with the library probe-rs.
 
 use super::{CaptureKind, Channel};
 use crate::{Error, Result};
@@ -30,8 +30,8 @@ pub fn with_channel(
     board: &Board,
     use_it: impl FnOnce(&mut dyn Channel) -> Result<()>,
 ) -> Result<()> {
-    /// Longest time to search for the control block. The search repeats because a board that has just started must
-    /// first set up the block.
+    /// Longest time to search for RTT's control block, the table in the board's memory that lists the channels. The
+    /// search repeats because a board that has just started must first set up this table.
     const PATIENCE: Duration = Duration::from_secs(2);
     let Board { chip, probe, channel: number, address } = board;
     let target = Registry::from_builtin_families()
@@ -84,7 +84,7 @@ fn hint() -> &'static str {
     }
 }
 
-/// An RTT channel of a board that runs on while the channel is read.
+/// A channel of RTT: a buffer in a board's memory that a debug probe reads. The board keeps running meanwhile.
 struct Probed<'a> {
     core: Core<'a>,
     rtt: Rtt,

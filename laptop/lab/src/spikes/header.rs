@@ -10,11 +10,11 @@ use std::str::FromStr;
 /// The header of a file of spikes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// The scheme.
+    /// The scheme of the spikes.
     pub scheme: Scheme,
-    /// The sample type.
+    /// The sample type of the encoder.
     pub sample: SampleType,
-    /// All parameters that decoding needs. Each channel has a set of its own.
+    /// All parameters that decoding needs, as one set for each channel.
     pub channels: Vec<Settings>,
     /// Sample rate in Hz, if known.
     pub rate: Option<f64>,
@@ -22,8 +22,8 @@ pub struct Header {
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters.
-/// It uses parameters that were derived from them.
+/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters,
+/// but the parameters that were derived from them.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =
@@ -34,7 +34,7 @@ pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
 /// Version of the file format.
 const VERSION: &str = "1";
 
-/// Maximum number of channels, which is the number of addresses.
+/// Maximum number of channels: the number of possible addresses.
 const MOST_CHANNELS: usize = 1 << 16;
 
 /// Keys of the notes in a header, besides the parameters in [`unrecorded`]. Decoding does not need the notes.

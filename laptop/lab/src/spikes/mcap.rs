@@ -176,7 +176,7 @@ fn text(text: &str) -> Vec<u8> {
     long(text.as_bytes())
 }
 
-/// Returns `bytes` after their length in 4 bytes.
+/// Returns the length of `bytes` as 4 bytes, followed by `bytes`.
 fn long(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat()
 }

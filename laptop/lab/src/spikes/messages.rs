@@ -19,17 +19,17 @@ pub struct Messages {
     channels: Vec<(String, u64)>,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Number of sub-timesteps of each sample.
+    /// Number of sub-timesteps (slots) of each sample.
     slots: usize,
     is_signed: bool,
-    /// Whether the log has a header, as this library writes it. In such a log, a message whose input is missing or NaN
-    /// stands for a sample that was not encoded.
+    /// Whether the log has a header, as in logs that this library wrote. In such a log, a message stands for a sample
+    /// that was not encoded if the message's field `input` is missing or NaN.
     has_header: bool,
     items: VecDeque<Item>,
 }
 
 impl Messages {
-    /// Opens a log, and returns the header of its spikes. If the log has no header, one is made from all messages.
+    /// Opens a log, and returns the header of its spikes. If the log has no header, makes a header from all messages.
     ///
     /// # Errors
     /// Returns an error if the log has no spikes, or if its messages lack a parameter that decoding needs.
@@ -142,7 +142,7 @@ struct Found {
     /// Text of the header, in logs that this library wrote.
     header: Option<String>,
     scheme: String,
-    /// Start value in the first message of the topic.
+    /// Value from which decoding starts, as given in the topic's first message.
     start: f64,
     range: (f64, f64),
     neurons: usize,
@@ -255,15 +255,16 @@ fn lacks(log: &Reading, name: &'static str) -> Error {
     SpikesKind::NoField { name }.at(log.place())
 }
 
-/// Maximum number of neurons, which is the number of addresses.
+/// Maximum number of neurons: the number of possible addresses.
 const MOST: usize = 1 << 16;
 
 #[cfg(test)]
 mod tests {
     use super::Found;
 
-    /// A log with the scheme `gaussian_fields` of the toolbox is decoded as GRF over a range moved down by one field,
-    /// because neuron 7 of the toolbox has the centre of this crate's neuron 6. With the scheme `grf`, the range stays.
+    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The range moves down by
+    /// the distance between two neighbouring fields, because neuron 7 of the toolbox has the same centre as neuron 6 of
+    /// this crate. For a log with the scheme `grf`, the range stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

@@ -1,8 +1,9 @@
 //! Files of spikes. Lines `# key=value` hold everything that decoding needs. Below them is a table with the columns
 //! `index,address,polarity`.
 //!
-//! `index` is the sample's index or, with sub-timesteps, that index times the number of slots, plus the slot. Neurons
-//! are numbered across all channels: the neurons of channel 1 follow the neurons of channel 0.
+//! `index` is the sample's index. If a scheme divides each sample into sub-timesteps (slots), `index` counts slots
+//! instead: `sample * slots + slot`. Neurons are numbered across all channels: the neurons of channel 1 follow the
+//! neurons of channel 0.
 //!
 //! Comments between the events report values that were not finite, and gaps in time. Each comment stands where the
 //! value or gap occurs. Further comments give the time at the first sample, before each gap, and at the last sample.
@@ -39,7 +40,8 @@ pub trait Record {
     /// Returns an error if the file cannot hold the samples.
     fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
 
-    /// Writes events. All events passed later must belong to the finite sample number `decided` or to later samples.
+    /// Writes events. `decided` counts the finite samples, from the first one, whose events are complete after this
+    /// call. Later calls must only pass events of later samples.
     ///
     /// # Errors
     /// Returns an error if the spikes cannot be written.
@@ -63,7 +65,7 @@ pub trait Spikes {
     /// Returns an error if an item is invalid, or if the end of the file is missing.
     fn next(&mut self) -> Result<Item>;
 
-    /// Returns the place of the latest item, for an error.
+    /// Returns the place of the latest item in the file, to be named in an error.
     fn place(&self) -> Place;
 
     /// Returns notes for the user on the file. The notes are complete once the last item was read.

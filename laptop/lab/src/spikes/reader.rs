@@ -118,7 +118,7 @@ impl<R: BufRead> Reader<R> {
         Ok((reader, header))
     }
 
-    /// Parses a sample's index and a number, separated by a comma.
+    /// Parses the text `SAMPLE,NUMBER`: the index of a sample, and a whole number.
     fn pair(&self, value: &str) -> Result<(u64, i64)> {
         let (sample, number) = value.split_once(',').unwrap_or((value, ""));
         let number = number.parse();

@@ -1,5 +1,5 @@
-//! Records spikes as messages in a ROS 1 bag or an MCAP file. The topic `event` has one message for each sample, as in
-//! the paper's toolbox.
+//! Records spikes as messages in a ROS 1 bag or an MCAP file. The topic `event` has one message for each sample. Its
+//! messages are those of the toolbox that belongs to the paper *A toolbox for neuromorphic perception in robotics*.
 //!
 //! A single message on the topic `event_header` holds the header of a file of spikes as text. With this header, every
 //! scheme can be decoded. The channels after the first are on the topics `event_1`, `event_2` and so on.
@@ -67,7 +67,7 @@ pub struct Recorder {
     container: Box<dyn Container>,
     format: Format,
     kind: Kind,
-    /// For each channel, a message with the content that all messages of the channel share.
+    /// For each channel, a template of its messages, with the content that does not change from sample to sample.
     empty: Vec<Spyke>,
     /// The header's lines, until they have been written.
     header: Option<String>,
@@ -78,7 +78,7 @@ pub struct Recorder {
     pending: VecDeque<Pending>,
     /// Number of finite samples written so far. Encoders number samples by counting finite samples.
     finite: u64,
-    /// Events of samples that may still get more events.
+    /// Events that are not written yet, in the order of their samples.
     events: VecDeque<Event>,
     summary: Summary,
 }
@@ -91,7 +91,7 @@ struct Pending {
 
 /// First time in µs that a message cannot hold, because a message stores seconds in 32 bits.
 const LATEST: u64 = (1 << 32) * 1_000_000;
-/// Topic of the first channel's spikes, as in the toolbox.
+/// Topic of the first channel's spikes. The paper's toolbox uses the same name.
 pub(super) const EVENT: &str = "event";
 /// Topic of the header.
 pub(super) const HEADER: &str = "event_header";

@@ -1,9 +1,10 @@
-//! The message types of the paper's toolbox: the spikes of one sample, with parameters for decoding.
+//! The message types of the toolbox that belongs to the paper *A toolbox for neuromorphic perception in robotics*. A
+//! message holds the spikes of one sample, with parameters for decoding.
 
 use super::recorder::Format;
 use std::time::Duration;
 
-/// The toolbox's message of one sample.
+/// A message of the paper's toolbox: the spikes of one sample, and parameters for decoding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
     /// Number of spikes of each neuron, negative for spikes down. The numbers of all neurons in one sub-timestep
@@ -17,16 +18,16 @@ pub(crate) struct Spyke {
     pub threshold: f32,
     /// The sample that was encoded.
     pub input: f32,
-    /// Name of the scheme in the toolbox.
+    /// Name of the scheme in the paper's toolbox.
     pub scheme: &'static str,
-    /// Time of the sample.
+    /// Time of the sample by the recording's clock. If the recording has no times, the time since the first sample.
     pub time: Duration,
 }
 
 /// A type of ROS message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Spikes of one neuron.
+    /// A spike of one neuron.
     Spyke,
     /// Spikes of several neurons, or of several sub-timesteps.
     SpykeArray,
@@ -34,7 +35,8 @@ pub(crate) enum Kind {
     String,
 }
 
-/// Definition of the fields after the spikes, in the language of ROS messages.
+/// Definition of the fields that follow the spikes in the messages `spyke` and `spyke_array`, as text in the format of
+/// ROS.
 const FIELDS: &str = "float32 start
 float32 min_input
 float32 max_input
@@ -71,7 +73,7 @@ impl Kind {
         }
     }
 
-    /// Returns the definition of the type for ROS 2, followed by the definitions of nested types.
+    /// Returns the definition of the message type in the format of ROS 2, followed by the definitions of nested types.
     pub(crate) fn definition_ros2(self) -> String {
         let time = "builtin_interfaces/Time timestamp";
         let line = "=".repeat(80);

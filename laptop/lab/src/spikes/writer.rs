@@ -11,8 +11,9 @@ use std::io::Write;
 
 /// A file of spikes that is being written.
 ///
-/// Encoders count only finite samples, while the file counts all samples. If an encoder looks ahead, its events come
-/// late. The writer then holds back notes on later samples until the events are written.
+/// Encoders count only finite samples, while the file counts all samples. The comments of the file, such as notes on
+/// gaps, stand between the events in the order of the samples. If an encoder looks ahead, its events come late. The
+/// writer then holds back the notes on later samples until the events are written.
 pub struct Writer {
     output: Output,
     slots: u64,
@@ -23,7 +24,8 @@ pub struct Writer {
     pending: VecDeque<(u64, i64)>,
     /// Number of finite samples before the first one in `pending`.
     first_pending: u64,
-    /// Notes that wait, each with the index of its sample. A note must come before the events of later samples.
+    /// Notes that are not written yet, each with the index of its sample. A note must be written before the events of
+    /// later samples.
     notes: VecDeque<(u64, String)>,
     /// First index and length of the current run of samples that were not finite.
     rejected_run: Option<(u64, u64)>,

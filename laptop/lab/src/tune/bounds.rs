@@ -1,23 +1,24 @@
-//! Reports parameters whose best value lies at a bound of the search, if the scheme allows values beyond this bound.
+//! Reports parameters whose best value lies at a bound of the search, so that a better value may lie beyond the bound.
+//! Leaves out a parameter if the scheme allows no value beyond the bound.
 
 use super::Problem;
 use super::space::{Axis, Role, Space};
 use crate::brief::short;
 use catalogue::run::Asked;
 
-/// A bound of a parameter's search at which the best settings lie.
+/// A parameter whose best value lies at a bound of its search.
 #[derive(Clone, Debug)]
 pub struct Bound {
     /// Name of the parameter.
     pub parameter: &'static str,
     /// Value of the parameter in the best settings, formatted.
     pub value: String,
-    /// The lowest and highest value that were searched, formatted.
+    /// The lowest and the highest value that the search could try, formatted.
     pub searched: [String; 2],
 }
 
 impl Bound {
-    /// Returns a sentence for the user that reports the bound.
+    /// Returns a sentence for the user: the parameter, its value, and the bounds within which the value was searched.
     pub fn words(&self) -> String {
         let Self { parameter, value, searched: [low, high] } = self;
         format!(
@@ -26,8 +27,8 @@ impl Bound {
     }
 }
 
-/// Returns the bounds of the search at which the settings `best` lie. A bound is left out if the scheme itself allows
-/// no value beyond it.
+/// Returns the parameters whose values in the settings `best` lie at a bound of the search. Leaves out a parameter if
+/// the scheme allows no value beyond the bound.
 pub(super) fn bounds(problem: &Problem, space: &Space, best: &Asked) -> Vec<Bound> {
     /// Largest distance from a bound at which a value counts as lying at the bound, as a share of the axis.
     const NEAR: f64 = 0.02;
@@ -57,8 +58,8 @@ pub(super) fn bounds(problem: &Problem, space: &Space, best: &Asked) -> Vec<Boun
     found
 }
 
-/// Returns the value of the axis's parameter in `options`. Returns `None` for an axis whose bounds mean nothing to a
-/// user.
+/// Returns the value of the axis's parameter in `options`. Returns `None` for an axis that is not reported, such as the
+/// length of a filter.
 fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     match axis.role {
         Role::Log(_) | Role::Around(..) | Role::Whole | Role::Most => options.number(axis.name),
@@ -75,8 +76,8 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
     }
 }
 
-/// Returns a number just beyond a bound of an axis. On an axis of whole numbers, this is the next whole number. On
-/// other axes, it is a fiftieth of the axis away from the bound.
+/// Returns a number just beyond a bound of an axis: the next whole number on an axis of whole numbers, otherwise 2 % of
+/// the axis's length beyond the bound.
 fn further(axis: &Axis, is_high: bool) -> f64 {
     let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
     match axis.role {

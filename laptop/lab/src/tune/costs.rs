@@ -26,18 +26,18 @@ static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
 /// The costs of one channel on a flight controller.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Costs {
-    /// Latency of the code: the number of samples from a sample to its code.
+    /// Latency of the code: how many samples after a sample the encoder emits its code.
     pub latency: usize,
     /// Size of the encoder's state in bytes, if known.
     pub ram: Option<usize>,
     /// Mean number of instructions to encode a sample, if measured.
     pub instructions: Option<f64>,
-    /// Whether `instructions` is an upper bound, scaled from a shorter filter that was measured.
+    /// Whether `instructions` is an upper bound. The bound is scaled up from a measured filter that is shorter.
     pub is_bound: bool,
 }
 
 impl Costs {
-    /// Looks up the costs of settings on `core`, a core with measured counts.
+    /// Looks up what settings cost on `core`, one of the processor cores whose instructions were counted.
     pub fn new(scheme: Scheme, settings: &Settings, latency: usize, core: &str) -> Self {
         let counted = scheme.counted(settings).ok();
         let measured = counted.and_then(|counted| {
@@ -63,7 +63,8 @@ impl Costs {
     }
 }
 
-/// Returns the name of the measured sample type that has the same width as `sample`.
+/// Returns the name of the sample type whose measured instruction counts stand for `sample`. Both types have the same
+/// width.
 fn measured_as(sample: SampleType) -> &'static str {
     match sample {
         SampleType::F32 => "f32",

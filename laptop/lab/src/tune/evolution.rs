@@ -1,15 +1,17 @@
 //! Adaptive differential evolution with a shrinking number of parents: L-SHADE, after Tanabe and Fukunaga (2014).
 //!
-//! The number of parents shrinks with the share of the caller's budget that is spent, which makes even a small budget
-//! converge as far as it can. Points lie in the unit cube.
+//! The number of parents shrinks with the share of the caller's budget that is spent. Even a search with a small budget
+//! thus converges as far as possible. Points lie in the unit cube.
 
 use super::chance::Chance;
 
-/// Number of successful scale factors, and of crossover rates, that are remembered.
+/// Number of entries in the memory of scale factors, and in the memory of crossover rates. An entry is a mean of values
+/// that gave points better than their parents.
 const MEMORY: usize = 6;
-/// Number of parents at the end of the budget.
+/// Number of parents at the end of the search. Parents are the points from which new points are made. The number of
+/// parents falls while the budget is spent.
 const FEWEST: usize = 4;
-/// Share of the parents that count as the best. Each new point moves towards one of the best parents.
+/// Share of all parents that count as best parents. Each new point moves towards one of these best parents.
 const BEST: f64 = 0.15;
 
 /// An optimiser that seeks the smallest value of a function. The caller computes the values.
@@ -91,11 +93,12 @@ impl Evolution {
         point
     }
 
-    /// Takes the values of the points that `ask` returned, in their order. The caller may have moved points, and may
-    /// leave out the last points.
+    /// Takes points that `ask` returned, in the same order, each with its value. The caller may have changed the
+    /// coordinates of these points, and may leave out points at the end.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Largest weight of a point that is better than its parent. The weight is the difference of their values.
-        /// Without a maximum, the weights of settings that break a limit would outweigh all other weights.
+        /// Maximum weight of a point that is better than its parent. Up to this maximum, the weight is the amount by
+        /// which the function is smaller at the point than at its parent. Without a maximum, points whose parents break
+        /// a limit would outweigh all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);
@@ -130,7 +133,7 @@ mod tests {
     use super::{Chance, Evolution};
 
     /// In a bowl of five dimensions, the evolution comes within a squared distance of 1e-3 of the minimum with 400
-    /// points. As many random points would not come so near.
+    /// points. 400 random points would not come so near.
     #[test]
     fn a_bowl_is_descended() {
         let value = |point: &[f64]| point.iter().map(|own| (own - 0.3).powi(2)).sum::<f64>();

@@ -7,14 +7,16 @@ use realfft::RealFftPlanner;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Figures over the scored parts of stretches of a recording. Each stretch is coded in one piece.
+/// Figures that rate settings, such as the RMSE and the number of spikes. They cover the scored samples of one or more
+/// stretches (runs of samples that are coded in one piece).
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Figures {
     /// Number of samples.
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percentage of samples without a spike, for a code that has at most one spike a sample.
+    /// Efficiency in percent: 100 less the number of spikes for every 100 samples. For a code with at most one spike a
+    /// sample, this is the percentage of samples without a spike.
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
@@ -31,7 +33,8 @@ pub struct Figures {
     pub events_per_second: Option<f64>,
     /// Entropy of the spikes in bits a second: the entropy of a sample's code, times the sample rate.
     pub bits_per_second: Option<f64>,
-    /// Bits a second that raw samples would need if they were rounded to the same RMSE.
+    /// Bits a second that the raw samples need after rounding to a step so large that the rounding error has the code's
+    /// RMSE.
     pub raw_bits_per_second: Option<f64>,
 }
 
@@ -102,7 +105,8 @@ impl Figures {
     }
 }
 
-/// Longest lag that is tried in either direction, in samples.
+/// Largest lag between the signal and the decoded values for which the correlation is computed, in samples. Lags in
+/// both directions are tried.
 const FARTHEST: usize = 100;
 
 #[derive(Default)]
@@ -153,8 +157,8 @@ fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>,
     *codes.entry(Vec::new()).or_default() += silent;
 }
 
-/// Adds a stretch's correlation with its decoded values to `correlations`, for each lag from `-FARTHEST` to `FARTHEST`
-/// samples.
+/// Computes the correlation of a signal with its decoded values for each lag from `-FARTHEST` to `FARTHEST` samples.
+/// Adds the results to `correlations`, which has an entry for each lag.
 fn correlate(values: &[f64], decoded: &[f64], correlations: &mut [f64]) {
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let (center, middle) = (mean(values), mean(decoded));
@@ -207,8 +211,8 @@ mod tests {
         }
     }
 
-    /// Of two waves with 5 and 40 cycles in 1000 samples, only the slower wave counts below a frequency limit between
-    /// them.
+    /// A signal is the sum of two waves, with 5 and 40 cycles in 1000 samples. With a frequency limit between the two,
+    /// only the slower wave is measured.
     #[test]
     fn a_limit_keeps_what_is_below() {
         let wave = |cycles: f64| move |i: i32| (TAU * cycles * f64::from(i) / 1000.0).sin();

@@ -1,5 +1,6 @@
-//! Tunes step codes. Lists the spikes and errors of all thresholds in exact arithmetic, and scores the best thresholds
-//! with the codec.
+//! Tunes step codes, whose spikes each move the decoded value up or down by a step. Computes the number of spikes and
+//! the error at each threshold, in exact arithmetic and without the codec. Then scores only the best thresholds with
+//! the codec.
 
 use super::problem::{Goal, most_spikes};
 use super::search::{BATCH, Run};
@@ -8,25 +9,25 @@ use super::{Scored, Stretch};
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
-/// Smallest threshold whose outcome is listed, as a share of the signal's range.
+/// Smallest threshold in the list of thresholds, as a share of the signal's range.
 const SMALLEST: f64 = 1e-3;
-/// Maximum number of samples that are processed to list outcomes, which bounds the time to seconds.
+/// Maximum number of samples that are processed to list outcomes. An outcome is a threshold with its spikes and its
+/// error. The limit bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
-/// maximum keeps a search with a small budget short.
+/// Factor of a second limit on the number of samples that are processed to list outcomes: this factor times the number
+/// of settings that the search may score. The second limit keeps a search with a small budget short.
 const PASSES_A_SETTING: usize = 200_000;
 /// Number of settings below which the budget does not shorten the list.
 const FEW_SETTINGS: usize = 300;
 /// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
 const NEIGHBOURHOODS: usize = 24;
-/// Number of combinations of integer parameters whose outcomes are listed before the search checks again whether to
-/// stop.
+/// Number of combinations of integer parameters that are listed before the search checks again whether to stop.
 const COMBINATIONS: usize = 8;
-/// Maximum number of listed outcomes that are scored with the codec.
+/// Maximum number of outcomes (thresholds with their spikes and errors) that are scored with the codec.
 const MOST_SCORED: usize = 1000;
 
-/// The combinations of integer parameters, and the outcomes worth scoring. Each outcome has the index of its
-/// combination.
+/// The combinations of integer parameters, and a list of outcomes (thresholds with their spikes and errors) that are
+/// worth scoring with the codec. Each outcome has the index of its combination.
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
@@ -130,7 +131,9 @@ impl Run<'_> {
         Some((combinations, all))
     }
 
-    /// Returns a function that rates an outcome on `samples` samples by the goal. A smaller result is better.
+    /// Returns a function that rates an outcome (a threshold with its spikes and error) by how well it reaches the
+    /// goal. A smaller rating is better. `samples` is the number of samples in which the spikes and the error were
+    /// counted.
     fn in_order(&self, samples: usize) -> impl Fn(&Outcome) -> f64 + use<> {
         const NOT_ALLOWED: f64 = 1e100;
         let (goal, count) = (self.problem.goal, samples as f64);
@@ -150,7 +153,7 @@ impl Run<'_> {
     }
 }
 
-/// Converts an outcome to options: the integer parameters of `combination`, with the outcome's threshold and step.
+/// Returns the options that give an outcome: the parameters in `combination`, and the outcome's threshold and step.
 fn of(outcome: &Outcome, combination: &Asked) -> Asked {
     let mut options = combination.clone();
     options.set("threshold", outcome.threshold);

@@ -10,9 +10,10 @@ use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings};
 /// The goal of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The least RMSE, with at least this percentage of samples without a spike.
+    /// The least RMSE among settings that have at least this efficiency, in percent. The efficiency is 100 less the
+    /// number of spikes for every 100 samples.
     LeastError(f64),
-    /// The greatest spiking efficiency, with at most this RMSE.
+    /// The highest efficiency among settings that have at most this RMSE.
     MostEfficient(f64),
     /// The Pareto front: all settings that no other settings beat in both spikes and error.
     Front,
@@ -33,7 +34,7 @@ pub enum Over {
 pub struct Limits {
     /// Maximum size of a channel's encoder, in bytes.
     pub ram: Option<f64>,
-    /// Maximum of the mean number of instructions to encode a sample.
+    /// Upper limit on the mean number of instructions that encoding a sample takes.
     pub instructions: Option<f64>,
     /// Maximum delay of the code, in samples.
     pub latency: Option<f64>,
@@ -57,7 +58,8 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Returns the percentage of samples without a spike.
+    /// Returns the efficiency in percent: 100 less the number of spikes for every 100 samples. For a code with at most
+    /// one spike a sample, this is the percentage of samples without a spike.
     pub fn efficiency(&self) -> f64 {
         (1.0 - self.spikes as f64 / self.samples as f64) * 100.0
     }
@@ -73,25 +75,26 @@ impl Tally {
     }
 }
 
-/// A quantity that a request may limit.
+/// A quantity that a request may limit. The limit is a maximum, except for [`Efficiency`](Self::Efficiency), whose
+/// limit is a minimum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// Size of a channel's encoder in bytes, limited from above.
+    /// Size of a channel's encoder in bytes.
     Ram,
-    /// Instructions to encode a sample, limited from above.
+    /// Mean number of instructions that encoding a sample takes.
     Instructions,
-    /// Delay of the code in samples, limited from above.
+    /// Delay of the code in samples.
     Latency,
-    /// Events a second, limited from above.
+    /// Number of events a second.
     Rate,
-    /// Percentage of samples without a spike, limited from below.
+    /// Efficiency in percent.
     Efficiency,
-    /// Root mean square error, limited from above.
+    /// Root mean square error, in the signal's unit.
     Rmse,
 }
 
 impl Limit {
-    /// Returns the name of the request's setting that limits the quantity.
+    /// Returns the name under which a request sets this limit, such as `max_ram`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ram => "max_ram",
@@ -104,14 +107,14 @@ impl Limit {
     }
 }
 
-/// A limit that settings break.
+/// A limit that settings break, and by how much they break it.
 #[derive(Clone, Debug)]
 pub struct Excess {
     /// The limited quantity.
     pub limit: Limit,
-    /// Value of the quantity that the settings have.
+    /// Value of the quantity for these settings.
     pub value: f64,
-    /// Value of the quantity that the limit allows.
+    /// The limit itself: the largest or smallest value that is allowed.
     pub allowed: f64,
     /// Amount by which the limit is exceeded, as a share of the limit.
     pub part: f64,
@@ -120,18 +123,18 @@ pub struct Excess {
 /// Settings, and their score on the stretches to tune on.
 #[derive(Clone, Debug)]
 pub struct Scored {
-    /// The settings.
+    /// The options that give the settings.
     pub options: Asked,
     /// Counts of samples, spikes and errors.
     pub tally: Tally,
-    /// Costs on a flight controller.
+    /// Costs of the settings on a flight controller, such as memory and instructions.
     pub costs: Costs,
-    /// The limits that the settings break, including the one in the goal.
+    /// The limits that the settings break. The goal's limit on RMSE or efficiency is one of the possible limits.
     pub excess: Vec<Excess>,
 }
 
 impl Scored {
-    /// Returns whether the settings keep to all limits, including the one in the goal.
+    /// Returns whether the settings break no limit. The goal's limit on RMSE or efficiency is one of the limits.
     pub fn is_allowed(&self) -> bool {
         self.excess.is_empty()
     }
@@ -153,9 +156,9 @@ pub struct Problem<'a> {
     pub over: Over,
     /// Upper limits on what settings may cost.
     pub limits: &'a Limits,
-    /// The core whose measured instruction counts apply.
+    /// Name of the processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: &'a str,
-    /// Range and mean of the stretches to tune on.
+    /// Range and mean of the samples in `train`.
     pub extent: Extent,
     calibrated: Calibrated,
 }
@@ -179,8 +182,8 @@ impl<'a> Problem<'a> {
         Self { scheme, sample, fixed, train, goal, over, limits, core, extent, calibrated }
     }
 
-    /// Completes options to full settings for a stretch. A missing parameter gets its default, or is taken from the
-    /// calibration or the stretch's samples.
+    /// Completes `options` to the settings for a stretch. A missing parameter gets its default, or a value that is
+    /// derived from the samples used for tuning or from the stretch's samples.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.
@@ -198,7 +201,8 @@ impl<'a> Problem<'a> {
         Ok(self.scheme.resolve(sample, options, &known)?)
     }
 
-    /// Encodes and decodes a stretch; returns its events, decoded values and latency.
+    /// Encodes and decodes a stretch (a part of a recording). Returns the events, the decoded values, and the code's
+    /// latency in samples.
     ///
     /// # Errors
     /// Returns an error if the options are invalid.
@@ -227,7 +231,8 @@ impl<'a> Problem<'a> {
         Ok((events, decoded, codec.latency()))
     }
 
-    /// Scores settings on stretches. Returns the counts, and the code's latency in samples.
+    /// Scores settings on stretches (parts of recordings). Returns the counts of samples, spikes and errors, and the
+    /// code's latency in samples.
     ///
     /// # Errors
     /// Returns an error if the settings are invalid.
@@ -241,7 +246,8 @@ impl<'a> Problem<'a> {
         Ok((tally, latency))
     }
 
-    /// Scores settings as [`tally`](Self::tally) does. Also returns the full settings for the last stretch.
+    /// Scores settings on stretches, like [`tally`](Self::tally). Returns the counts, the code's latency in samples,
+    /// and the complete settings for the last stretch.
     fn tallied(
         &self,
         options: &Asked,
@@ -351,8 +357,8 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// Returns the value, for a goal, of a number of spikes and a sum of squared errors. Limits are not regarded. A
-    /// smaller value is better.
+    /// Returns the value of a number of spikes and a sum of squared errors for a goal; a smaller value is better.
+    /// Ignores all limits that are not part of the goal.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();
@@ -376,7 +382,8 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Smallest value of settings that break a limit.
+/// Smallest result of [`Problem::value`] for settings that break a limit. Settings that break no limit have smaller
+/// results.
 const NOT_ALLOWED: f64 = 1e12;
 
 /// Returns the largest number of spikes at which the efficiency is at least `efficiency` percent. If the percentage was

@@ -37,23 +37,25 @@ pub struct Row {
     pub sample: String,
     /// The parameters, by the names that files and other commands use.
     pub parameters: BTreeMap<&'static str, Value>,
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
-    /// Figures on the stretches that were held out, if there are any.
+    /// Figures on the stretches that were held out from tuning. `None` if no stretch was held out.
     pub held_out: Option<Figures>,
     /// Figures on whole segments of the recordings, each coded in one piece.
     pub whole: Figures,
-    /// Figures of the paper's settings on the same stretches, if the paper has settings for the scheme.
+    /// Figures of the settings that the toolbox paper gives for the scheme, on the same stretches as `tuned_on` and
+    /// `held_out`. `None` if the paper gives none.
     pub paper: Option<Paper>,
-    /// Costs on a flight controller.
+    /// Costs of the settings on a flight controller, such as memory and instructions.
     pub costs: Costs,
     /// Change of the RMSE from `f32` to the sample type, in percent. `None` if the sample type is `f32`.
     pub quantisation: Option<f64>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were listed and compared in exact arithmetic.
+    /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
+    /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether every possible outcome was listed.
+    /// Whether `listed` counts all outcomes that are possible, over all thresholds.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent.
     pub is_cut_short: bool,
@@ -66,12 +68,13 @@ pub struct Row {
     brief: String,
 }
 
-/// Figures of the paper's settings on the stretches of a channel.
+/// Figures of the settings that the paper *A toolbox for neuromorphic perception in robotics* gives for a scheme. The
+/// figures are computed on the stretches of a channel.
 #[derive(Debug, Serialize)]
 pub struct Paper {
-    /// Figures on the stretches that were tuned on.
+    /// Figures on the stretches (parts of the recordings) that were used for tuning.
     pub tuned_on: Figures,
-    /// Figures on the stretches that were held out, if there are any.
+    /// Figures on the stretches that were held out from tuning. `None` if no stretch was held out.
     pub held_out: Option<Figures>,
 }
 
@@ -132,7 +135,7 @@ impl Row {
 
     /// Returns reasons not to trust the settings, a sentence each.
     fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
-        /// Factor by which an RMSE on held-out blocks may be too large or too small by chance.
+        /// Factor by which chance alone can make an RMSE on held-out blocks too large or too small.
         const BY_CHANCE: f64 = 1.25;
         /// Factor by which the RMSE may be larger on held-out blocks before overfitting is reported.
         const FAR: f64 = 1.5;
@@ -224,7 +227,8 @@ impl Row {
         flags
     }
 
-    /// Returns comments on the settings of a channel, for the file that holds them.
+    /// Returns the comments, one for each line, for a file with a channel's settings. The comments name the channel,
+    /// the scheme and the sample type, and give the settings' efficiency and RMSE.
     pub fn comments(&self, channel: &str) -> Vec<String> {
         let Self { scheme, sample, tuned_on, held_out, .. } = self;
         let held_out = held_out.map_or(String::new(), |own| {
@@ -319,7 +323,8 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
     row.notes.iter().try_for_each(|note| writeln!(text, "  {note}"))
 }
 
-/// Returns words for the user that name the limits which the best settings break, and the distance from each limit.
+/// Returns a text for the user: no settings keep to all limits. For each limit that the best settings break, the text
+/// states the limit and the value that the settings reach.
 pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
     let settings = problem
         .train

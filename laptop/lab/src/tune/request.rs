@@ -25,9 +25,11 @@ pub struct TuneRequest {
     pub sample: SampleType,
     /// Parameters that keep the given values.
     pub fixed: Asked,
-    /// Whether the taps of a filter are searched one by one, rather than by shape, length and sum.
+    /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
+    /// and sum.
     pub free_taps: bool,
-    /// The goal. `None` stands for the least error at the efficiency of the paper's settings.
+    /// Goal of the search. `None` stands for the least error at an efficiency at least as high as that of the paper's
+    /// settings.
     pub goal: Option<Goal>,
     /// Upper limits on what settings may cost.
     pub limits: Limits,
@@ -46,7 +48,7 @@ pub struct TuneRequest {
     pub seconds: Option<f64>,
     /// Seed of the search: the same seed and number of settings give the same result on every machine.
     pub seed: u64,
-    /// Whether to search even if a recording is a bad guide: only noise, too short, full of holes, or clipped.
+    /// Whether to search even if a recording is unfit for tuning: only noise, too short, full of holes, or clipped.
     pub anyway: bool,
 }
 
@@ -54,8 +56,8 @@ impl TuneRequest {
     /// Default number of settings to score for each scheme and channel.
     pub const EVALUATIONS: usize = 4000;
 
-    /// Requests parameters of `schemes` for `logs`, in `f32` and for the efficiency of the paper's settings. The
-    /// recordings are cut into 20 blocks, 30 % of which are held out.
+    /// Makes a request to tune `schemes` on `logs`, in `f32`. The goal is the least error at the efficiency of the
+    /// paper's settings. The recordings are cut into 20 blocks, 30 % of which are held out.
     pub fn new(logs: Vec<Vec<Recording>>, schemes: Vec<Scheme>) -> Self {
         Self {
             logs,
@@ -195,13 +197,13 @@ pub struct Tuned {
 pub struct Curve {
     /// The scheme.
     pub scheme: Scheme,
-    /// Efficiency in percent and RMSE of each setting.
+    /// Efficiency in percent and RMSE at each point of the front.
     pub points: Vec<(f64, f64)>,
     /// Efficiency in percent and RMSE of the paper's settings, if the scheme has any.
     pub paper: Option<(f64, f64)>,
 }
 
-/// Searches the parameters of schemes on the channels of logs. If a scheme misses the goal, [`Tuned::missed`] gives the
+/// Searches for parameters of schemes on the channels of logs. If a scheme misses the goal, [`Tuned::missed`] gives the
 /// reason.
 ///
 /// # Errors
@@ -257,7 +259,7 @@ enum Outcome {
     Missed(Words),
 }
 
-/// Searches the parameters of one scheme on one channel.
+/// Searches for parameters of one scheme on one channel.
 fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) -> Result<Outcome> {
     let TuneRequest { sample, fixed, limits, .. } = request;
     let core = costs::core(&request.core)?;

@@ -1,4 +1,5 @@
-//! Searches settings. If the scheme can list its outcomes, the search is exact; otherwise, it uses evolution.
+//! Searches for settings. If the scheme can list the outcomes of all thresholds, the search is exact; otherwise, the
+//! search is an evolution.
 //!
 //! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
 //! every machine.
@@ -22,7 +23,7 @@ pub struct Budget<'a> {
     pub deadline: Option<Instant>,
     /// Returns whether the user wants the search to stop.
     pub is_stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Called with the number of settings scored so far, and the best of them.
+    /// Called after each batch with the number of settings scored so far, and the best of them.
     pub tick: &'a (dyn Fn(usize, Option<&Scored>) + Sync),
 }
 
@@ -34,13 +35,14 @@ pub struct Found {
     pub front: Vec<Scored>,
     /// Number of settings that were scored with the codec.
     pub evaluated: usize,
-    /// Number of outcomes that were listed and compared in exact arithmetic, if the scheme can list them.
+    /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
+    /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether every possible outcome was listed.
+    /// Whether every possible outcome of a threshold was listed.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
-    /// The bounds of the search at which the best settings lie, if the scheme allows values beyond these bounds.
+    /// The parameters whose best value lies at a bound of the search, if the scheme allows values beyond this bound.
     pub bounds: Vec<Bound>,
 }
 
@@ -49,7 +51,8 @@ pub struct Found {
 pub struct Method {
     /// Seed of the random generator.
     pub seed: u64,
-    /// Whether the taps of a filter are searched one by one.
+    /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
+    /// and sum.
     pub free_taps: bool,
 }
 
@@ -63,12 +66,12 @@ const ROUNDS: [usize; 5] = [30, 100, 300, 1000, 4000];
 const LONGER: usize = 4;
 /// Efficiencies in percent. To find a Pareto front, settings are searched for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
-/// Smallest maximum that [`Run::tighten`] sets.
+/// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
 /// Value of settings that cannot be built. It is worse than the value of any other settings.
 const NONE: f64 = 1e30;
 
-/// Searches the best settings for a problem within a budget.
+/// Searches for the best settings for a problem within a budget.
 pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     let rounded: Vec<Vec<f64>> =
         problem.train.iter().map(|stretch| stretch.rounded(problem.sample)).collect();
@@ -232,9 +235,9 @@ impl Run<'_> {
         }
     }
 
-    /// Lowers a parameter that is a maximum, such as the largest number of spikes in a sample. The parameter becomes
-    /// twice the number that the signal needs, because a higher maximum costs time. It stays at [`ROOM`] or above,
-    /// because held-out blocks and other recordings may jump further.
+    /// Lowers the parameter that limits the number of spikes in a sample, because a high limit costs time. The new
+    /// limit is twice the largest number of spikes in a sample of the signal, but at least [`ROOM`]. Held-out blocks
+    /// and other recordings may need more spikes than this signal.
     fn tighten(&mut self, space: &Space) -> Option<()> {
         let axis = space.axes().iter().find(|axis| axis.role == Role::Most)?;
         let problem = self.problem;

@@ -22,7 +22,7 @@ impl Extent {
     }
 }
 
-/// An axis of the search: one number from which a parameter is computed, with its bounds.
+/// An axis of the search: a number from which a parameter is computed, and the bounds of this number.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub name: &'static str,
@@ -31,14 +31,14 @@ pub(super) struct Axis {
     pub high: f64,
 }
 
-/// The conversion of a number on an axis to a parameter.
+/// The meaning of the numbers on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     /// The natural logarithm of a quotient: the parameter divided by the given unit.
     Log(f64),
-    /// Offset of the parameter from the first given value, divided by the second given value.
+    /// The difference between the parameter and the first given value, divided by the second given value.
     Around(f64, f64),
-    /// The parameter divided by the sum of the taps of the scheme's filter.
+    /// The quotient of the parameter and the sum of the absolute values of the filter's taps.
     OfFilter,
     /// The natural logarithm of a quotient: the parameter divided by the threshold.
     Thresholds,
@@ -50,11 +50,11 @@ pub(super) enum Role {
     Length,
     Shape,
     Alpha,
-    /// The natural logarithm of a quotient: the sum of the filter's taps divided by the height of the signal's mean
-    /// above the shift. The quotient is the number of samples for each spike while the signal is at its mean. The two
-    /// values are the bounds of the sum of the taps.
+    /// The natural logarithm of the quotient S / H. S is the sum of the filter's taps. H is the height of the signal's
+    /// mean above the parameter `shift`. A signal that stays at its mean gives one spike every S / H samples. The two
+    /// values are the lower and the upper bound of S.
     Sum(f64, f64),
-    /// A tap of the filter divided by the given unit.
+    /// A tap of the filter, as a multiple of the given unit.
     Tap(f64),
 }
 
@@ -69,18 +69,19 @@ pub(crate) struct Space {
     extent: Extent,
 }
 
-/// The axis along which a scheme compares many values in one pass over the signal.
+/// An axis of the search space. In one pass over the signal, a scheme can compare many values on this axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inner {
-    /// Index of the axis.
+    /// Index of the axis in the space.
     pub axis: usize,
-    /// If true, the axis is the sum of the filter's taps, and the compared values are factors of this sum. If false,
+    /// Whether the axis is the sum of the filter's taps. The compared values are then factors of this sum. Otherwise,
     /// the axis is the threshold, and the compared values are thresholds.
     pub is_factor: bool,
 }
 
 impl Space {
-    /// Makes the space of the scheme's parameters that `fixed` leaves open.
+    /// Makes the space of those of the scheme's parameters that are searched and have no value in `fixed`. `extent`
+    /// holds the range and mean of the samples.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {
@@ -93,8 +94,8 @@ impl Space {
         Self { axes, fixed: fixed.clone(), extent }
     }
 
-    /// Returns the space in which the filter's single taps replace its shape, length and sum, and integer parameters
-    /// keep their values in `found`.
+    /// Returns a search space in which each tap of the filter has an axis. The axes for the filter's shape, length and
+    /// sum are left out. Parameters that are integers or words have no axes either, and keep their values in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -125,14 +126,16 @@ impl Space {
         &self.axes
     }
 
-    /// Returns the number on an axis at `place`, from 0 at its lower bound to 1 at its upper bound.
+    /// Converts a place on the axis of index `axis` to the number at this place. `place` runs from 0 at the axis's
+    /// lower bound to 1 at its upper bound.
     pub(crate) fn number(&self, axis: usize, place: f64) -> f64 {
         let Axis { low, high, .. } = self.axes[axis];
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns the axis along which a scheme can compare many values in one pass: the threshold as a share of the
-    /// filter's sum, or the sum itself if the scheme has no threshold.
+    /// Returns the axis along which a scheme can compare many values in one pass. This is the axis of the threshold, as
+    /// a share of the sum of the taps' absolute values. If the scheme has no threshold, it is the axis of the sum of
+    /// the taps.
     pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
         let has_threshold =
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
@@ -145,9 +148,9 @@ impl Space {
         Some(Inner { axis, is_factor: !has_threshold })
     }
 
-    /// Returns `count` points to start from, spread over each axis, for a code that may spike at the share `share` of
-    /// the samples. The sums of filters are such that the code reaches the largest sample if it spikes at every sample,
-    /// and reaches the mean with as many spikes as allowed.
+    /// Returns `count` points to start from, spread over each axis. `share` is the share of samples at which the code
+    /// may spike. The sums of filter taps are chosen such that spikes at about this share of the samples decode to the
+    /// signal's mean.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);
@@ -205,7 +208,8 @@ impl Space {
         all
     }
 
-    /// Converts a point of the unit cube to options.
+    /// Converts a point of the unit cube to options, which give values to the scheme's parameters. The point has one
+    /// coordinate for each axis.
     pub(crate) fn options(&self, point: &[f64]) -> Asked {
         let numbers: Vec<f64> =
             point.iter().enumerate().map(|(axis, place)| self.number(axis, *place)).collect();
@@ -256,15 +260,15 @@ impl Space {
         options
     }
 
-    /// Returns the height of the signal's mean above `shift`, or above the signal's minimum if `None`. The height is at
-    /// least 1 % of the signal's range.
+    /// Returns the height of the signal's mean above `shift` or, if `shift` is `None`, above the signal's minimum. The
+    /// height is at least 1 % of the signal's range.
     fn height(&self, shift: Option<f64>) -> f64 {
         let Extent { min, mean, .. } = self.extent;
         (mean - shift.unwrap_or(min)).max(0.01 * self.extent.range())
     }
 
-    /// Converts options to a point of the unit cube. On an axis for which the options have no value, the point lies in
-    /// the middle.
+    /// Converts options to a point of the unit cube, with one coordinate for each axis. If the options have no value
+    /// for an axis, the coordinate is 0.5.
     pub(crate) fn point(&self, options: &Asked) -> Vec<f64> {
         let number = |name: &str| options.number(name);
         let taps = taps_of(options).unwrap_or_default();
@@ -323,7 +327,8 @@ impl Shaped {
     }
 }
 
-/// Returns the taps of the parameter `filter`, which is given by a shape or as a list.
+/// Returns the taps that the parameter `filter` gives as a list, or as a shape such as `triang:15`. Returns `None` if
+/// the parameter is missing or invalid.
 fn taps_of(asked: &Asked) -> Option<Vec<f64>> {
     match asked.get("filter")? {
         Value::Word(shape) => taps(shape).ok(),
@@ -364,7 +369,8 @@ mod tests {
     use crate::scheme::Scheme;
     use catalogue::run::Asked;
 
-    /// Each scheme accepts the options at the lower bounds of its space, at the upper bounds, and in the middle.
+    /// Each scheme accepts the options at the lower bounds of all axes of its search space, those at the upper bounds,
+    /// and those in the middle.
     #[test]
     fn every_corner_is_understood() {
         for scheme in Scheme::all() {

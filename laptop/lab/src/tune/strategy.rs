@@ -14,9 +14,9 @@ pub(super) struct Strategy {
     mean: Vec<f64>,
     /// Step size common to all axes.
     step: f64,
-    /// The variance along each axis.
+    /// Variance of the points of a generation along each axis, before the factor `step` is applied.
     variances: Vec<f64>,
-    /// Evolution path of the mean, by which the step size is adapted.
+    /// Evolution path of the mean. The step size is adapted by the length of this path.
     path: Vec<f64>,
     /// Evolution path of the mean over more generations, by which the variances are adapted.
     long_path: Vec<f64>,
@@ -45,7 +45,7 @@ impl Strategy {
         }
     }
 
-    /// Returns the next points, whose values the caller is to compute.
+    /// Returns the next points at which the caller is to compute the function.
     pub(super) fn ask(&mut self) -> Vec<Vec<f64>> {
         let Self { chance, mean, variances, step, .. } = self;
         let mut point = || {
@@ -55,7 +55,8 @@ impl Strategy {
         (0..POINTS).map(|_| point()).collect()
     }
 
-    /// Takes the points that `ask` returned, with their values, and adapts mean, step size and variances.
+    /// Takes the points that `ask` returned, each with the function's value there. Adapts the mean, the step size and
+    /// the variances from which `ask` draws the next points.
     pub(super) fn tell(&mut self, mut points: Vec<(Vec<f64>, f64)>) {
         points.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let axes = self.mean.len() as f64;

@@ -7,7 +7,7 @@ use crate::trial::Recording;
 use catalogue::run::{Given, SampleType};
 use std::ops::Range;
 
-/// Consecutive samples that are coded in one piece, and the ranges of samples that are scored.
+/// Consecutive samples that are coded in one piece, and the ranges of those samples that are scored.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// The samples that are coded.
@@ -81,7 +81,7 @@ impl Stretch {
     }
 }
 
-/// The part of a recording that is held out.
+/// How much of a recording is held out.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldOut {
     /// Number of blocks into which the recording is cut.
@@ -90,11 +90,11 @@ pub struct HoldOut {
     pub part: f64,
 }
 
-/// Fewest samples in a block.
+/// Minimum number of samples in each block of a recording.
 const SHORTEST: usize = 20;
 
-/// Offset of the held-out blocks, which are spread evenly. With this offset, neither the first nor the last block is
-/// held out.
+/// Offset of the held-out blocks, which are spread evenly. If 30 % of 20 blocks are held out, neither the first nor the
+/// last block is among them.
 const OFFSET: f64 = 0.35;
 
 /// Cuts a recording into blocks. Returns the stretches whose blocks to tune on are scored, and the stretches whose

@@ -15,7 +15,7 @@ pub struct Summary {
     pub columns: Vec<ColumnSummary>,
     /// Number of rows.
     pub rows: u64,
-    /// The times of the rows: length, rate and gaps.
+    /// Duration, sample rate and gaps of the table, from the times of the rows.
     pub clock: Clock,
     /// Wraps of the recorder's 32-bit clock.
     pub rollover: Rollover,
@@ -30,7 +30,7 @@ pub struct ColumnSummary {
     pub name: String,
     /// Number of rows in which the value is missing or not finite.
     pub missing: u64,
-    /// Line and text of the first field that is not a number.
+    /// The first field in the column that is not a number: number of its line, and its text.
     pub text: Option<(u64, String)>,
 }
 

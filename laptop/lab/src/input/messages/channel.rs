@@ -17,8 +17,7 @@ pub struct Channel {
     time: Option<String>,
     time_unit: Option<TimeUnit>,
     skip_non_finite: bool,
-    /// For each topic of the log, the positions of the chosen fields. `None` if the topic does not have the chosen
-    /// name.
+    /// For each topic of the log, the positions of the chosen fields; `None` if the topic's name is not the chosen one.
     plans: Vec<Option<Plan>>,
     samples: u64,
     values: Vec<f64>,
@@ -26,7 +25,7 @@ pub struct Channel {
     notes: Vec<Words>,
 }
 
-/// Positions of the chosen fields in a message, and of the field that holds the time, if a field does.
+/// Positions of the chosen fields in a message, and of the field that holds the time, if there is one.
 struct Plan {
     fields: Vec<Path>,
     time: Option<Time>,
@@ -66,8 +65,8 @@ impl Channel {
         })
     }
 
-    /// Finds the positions of the chosen fields in the messages of topics that the log has introduced since the last
-    /// call.
+    /// Plans how to read the topics that the log has introduced since the last call. Finds the positions of the chosen
+    /// fields in the messages of these topics.
     fn plan(&mut self) -> Result<()> {
         for topic in self.log.topics().iter().skip(self.plans.len()) {
             // ROS accepts a topic's name with and without a leading slash.
@@ -111,8 +110,8 @@ impl Channel {
         Ok(Plan { fields, time })
     }
 
-    /// Returns the unit of a field that holds times. This is the unit that the user chose or, if the user chose none,
-    /// the unit that the field's name suggests.
+    /// Returns the unit of a field that holds times: the unit that the user chose or, if the user chose none, the unit
+    /// that the field's name suggests.
     fn unit(&self, field: &str) -> TimeUnit {
         self.time_unit.unwrap_or_else(|| {
             match of_given(field.rsplit('.').next().unwrap_or(field)) {

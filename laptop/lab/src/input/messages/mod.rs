@@ -10,7 +10,7 @@ pub use overview::{Overview, overview};
 
 use flight_logs::Damage;
 
-/// Returns the log reader's treatment of damage. The reader skips damage if `accept_cut`; otherwise it refuses the log.
+/// Returns how a log reader treats damage: it skips the damage if `accept_cut`; otherwise, it refuses the log.
 pub fn damage(accept_cut: bool) -> Damage {
     if accept_cut { Damage::Skip } else { Damage::Refuse }
 }

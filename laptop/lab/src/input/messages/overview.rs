@@ -21,11 +21,11 @@ pub struct Overview {
     pub texts: Vec<String>,
     /// The reason that the fields cannot be read. `None` if they can be read.
     pub unread: Option<String>,
-    /// Number of messages.
+    /// Number of messages of the topic.
     pub count: u64,
     /// The times of the messages: length, rate and gaps.
     pub clock: Clock,
-    /// Wraps of the recorder's 32-bit clock.
+    /// The wraps of the recorder's 32-bit clock: their number, and the sample before the first wrap.
     pub rollover: Rollover,
     /// Number of missing messages, according to the counter in the messages.
     pub missing: u64,

@@ -1,8 +1,7 @@
-//! Converts tables in other formats to the lines of a CSV table. The formats are JSON lines, `NumPy`'s arrays, and
-//! Parquet.
+//! Converts tables in other formats (JSON lines, `NumPy` arrays and Parquet) to the lines of a CSV table.
 //!
-//! The same rules for columns, times and missing values thus apply to all tables. A number keeps its digits if the file
-//! has it as text. Otherwise, it becomes the shortest text that reads back as the same number.
+//! The same rules for columns, times and missing values thus apply to all tables. A number that the file stores as text
+//! keeps its digits. A binary number becomes the shortest text that reads back as the same number.
 
 mod json;
 mod numpy;
@@ -15,13 +14,15 @@ use std::fs::File;
 use std::io::{self, Read, Seek};
 use std::path::Path;
 
-/// First bytes of three formats: `NPY` of `NumPy`'s arrays, `NPZ` of archives of such arrays, `PARQUET` of Parquet.
+/// First bytes of a file with one `NumPy` array.
 const NPY: &[u8] = b"\x93NUMPY";
+/// First bytes of an archive of `NumPy` arrays.
 const NPZ: &[u8] = b"PK\x03\x04";
+/// First bytes of a Parquet file.
 #[cfg(feature = "datasets")]
 const PARQUET: &[u8] = b"PAR1";
 
-/// A source of rows, which are read as lines of CSV.
+/// A table in a format other than CSV. Its rows are converted to lines of CSV.
 trait Rows {
     /// Appends the next row to `text` as a line of CSV, with its line end. Returns false at the end of the table.
     fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool>;
@@ -106,8 +107,8 @@ pub(super) fn of_file(path: &Path, name: &str) -> Result<Option<Box<dyn Read>>> 
     Ok(None)
 }
 
-/// Converts an input of JSON lines or of a `NumPy` array to CSV. Returns the input unchanged, as the inner error, if
-/// its first bytes `head` belong to neither format.
+/// Converts JSON lines or a `NumPy` array to CSV. `head` holds the first bytes of the input. If these bytes belong to
+/// neither format, returns `Ok(Err(input))` with the input unchanged.
 ///
 /// # Errors
 /// Returns an error if the first line or the header cannot be read, or holds no table.

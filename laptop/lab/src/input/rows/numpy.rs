@@ -1,7 +1,7 @@
 //! Converts `NumPy`'s arrays to CSV tables. A structured array gives a column for each field, and a plain array gives a
 //! column for each of its columns. An `.npz` archive gives the columns of all its arrays.
 //!
-//! The header is parsed here, because the crate `npyz` 0.9 needs a parser generator and a C compiler for that.
+//! The header is parsed here rather than by the crate `npyz` 0.9, which needs a parser generator and a C compiler.
 
 use super::{Lines, Rows, end, odd};
 use crate::Result;
@@ -136,7 +136,7 @@ impl Array {
     }
 }
 
-/// Reads a whole array that is stored column by column into memory, and returns its bytes row by row.
+/// Reads an array that is stored column by column, and returns the bytes of the whole array row by row.
 fn by_rows(mut input: impl Read, size: usize, columns: usize, rows: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input.read_to_end(&mut bytes)?;

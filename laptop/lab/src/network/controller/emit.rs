@@ -17,8 +17,8 @@ pub(super) trait Spelled: Number {
 
     fn spell(self) -> String;
     fn spell_factor(factor: Self::Factor) -> String;
-    /// Returns the Rust source that constructs a matrix of weights with these rows. `shift` is the number of low bits
-    /// that packed weights leave out.
+    /// Returns the Rust source that constructs a matrix of weights with these rows. The source holds integer weights
+    /// without their `shift` low bits, which are 0.
     fn spell_weights(rows: &[&[Self]], shift: u32) -> String;
 }
 
@@ -67,8 +67,8 @@ fn spell_rows<K: Copy>(rows: &[&[K]], spell: impl Fn(K) -> String) -> String {
 }
 
 /// Returns the Rust source of a module that defines the network. For integers, `shifts` are the left shifts of the
-/// layers' weights, and `units` the values of integer potentials of 1, in the units of the trained network. Both are
-/// empty for floating point. `check` are the input spikes of the self-test.
+/// layers' weights. For each output, `units` contains the value of an integer potential of 1, in the units of the
+/// trained network. Both lists are empty for floating point. `check` contains the input spikes of the self-test.
 pub(super) fn emit<K: Spelled>(
     net: &Net<K>,
     shifts: &[u32],
@@ -87,7 +87,7 @@ pub(super) fn emit<K: Spelled>(
         let count = net.layers.last().map_or(0, |layer| layer.neurons.len());
         _ = write!(
             body,
-            "\n/// The value of a potential of 1, of each output.\npub const UNITS: [f32; {count}] = [{units}];\n"
+            "\n/// For each output, the value of a potential of 1, in the units of the trained network.\npub const UNITS: [f32; {count}] = [{units}];\n"
         );
     }
     body += &checked(net, check);
@@ -110,7 +110,8 @@ use spikewire_network::{{{used}}};
     )
 }
 
-/// Names of `spikewire-network` that a generated module imports if it uses them.
+/// Types and functions of `spikewire-network` that a generated module may use. The module imports only those that it
+/// uses.
 const NAMES: [&str; 17] = [
     "Cuba",
     "Forward",
@@ -287,7 +288,7 @@ fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
     let compared = compared.collect::<Vec<_>>().join("\n            && ");
     let numbers = K::TYPE;
     format!(
-        "\n/// Steps from rest: the inputs that fire, and the neurons of each layer that must.
+        "\n/// Steps from rest: for each step, the inputs that fire, and the neurons of each layer that must then fire.
 #[rustfmt::skip]
 static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
 {rows}];
@@ -296,8 +297,8 @@ static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
 #[rustfmt::skip]
 static POTENTIALS: [{numbers}; {outputs}] = [{last}];
 
-/// Runs {steps} steps whose spikes and potentials are known, bit by bit. Do not arm if it returns false: the flash, the
-/// compiler or the core has made another network of it.
+/// Returns whether {steps} steps give the known spikes and potentials, bit by bit. If not, the flash, the compiler or
+/// the core has altered the network: do not arm.
 pub fn is_intact() -> bool {{
     let mut state = NETWORK.state();
     let spikes_are = STEPS.iter().all(|(inputs, [{names}])| {{

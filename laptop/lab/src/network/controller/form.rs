@@ -12,11 +12,12 @@ use crate::network::fault::{Context, FitKind, LayerKind, Result, ensure};
 /// Largest absolute value of a number that `spikewire-network` accepts in `f32`.
 const LARGEST: f64 = 1e15;
 
-/// Smallest time constant of a current that is taken for exactly one step, as a share of a step. It is below 1 because
-/// the step of a recording may be a little longer than that of the training.
+/// Smallest time constant of a current, as a share of a step, that is rounded up to one step. It is below 1 because a
+/// step of the recording may be a little longer than a step of the training.
 const A_STEP: f64 = 0.98;
 
-/// Gains that differ from 1 by less than this are taken for exactly 1, in files of snnTorch and `SpikingJelly`.
+/// Rounding error of gains in files of snnTorch and `SpikingJelly`. A gain that differs from 1 by less than this error
+/// is taken for exactly 1.
 const ROUNDING: f64 = 1e-5;
 
 impl Model {
@@ -139,8 +140,8 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
-/// Converts a matrix of recurrent weights, which has one row for each receiving neuron. The result contains only the
-/// weights from each neuron to itself if all other weights are 0.
+/// Converts a matrix of recurrent weights, which has one row for each receiving neuron. If all weights between
+/// different neurons are 0, the result contains only the weight from each neuron to itself.
 fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
@@ -214,7 +215,8 @@ fn of_stage(stage: Stage, mut rule: Rule, notes: &mut Vec<String>) -> Result<Lay
 
 struct Stepped {
     neuron: Neuron<f64>,
-    /// Factor by which the weights that lead to the neuron must be multiplied.
+    /// Factor for all weights that lead to the neuron. It depends on the neuron's resistance and time constants, and on
+    /// the duration of a step.
     gain: f64,
 }
 
@@ -285,8 +287,8 @@ impl Neuron<f64> {
 /// Returns the factor by which a step multiplies a quantity that decays with time constant `tau`, in seconds.
 ///
 /// # Errors
-/// Returns an error if `tau` is not positive, or so short that [`Decay::Euler`] would give a negative factor (which
-/// becomes 0 for snnTorch).
+/// Returns an error if `tau` is not positive. Also returns an error if [`Decay::Euler`] would give a negative factor,
+/// because `tau` is shorter than a step; for snnTorch, the factor is then 0.
 fn left(tau: f64, rule: &Rule) -> Result<f64> {
     let Rule { dt, framework, decay, .. } = *rule;
     ensure!(tau > 0.0 && tau.is_finite(), LayerKind::TimeConstant { tau });

@@ -39,7 +39,7 @@ pub enum Numbers {
     Integer,
 }
 
-/// A network to bring onto the controller, and the recordings on which it is tuned and tested.
+/// A network to bring onto the flight controller, and the recordings on which the network is tuned and tested.
 pub struct ControllerRequest<'a> {
     /// The network in double precision.
     pub model: &'a Model,
@@ -53,7 +53,7 @@ pub struct ControllerRequest<'a> {
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// Number of steps in the self-test that the generated source contains. The flight controller runs it before arming.
+/// Number of steps in the generated self-test, which the flight controller runs before arming.
 const CHECKED: usize = 10;
 
 /// A network in the number type of the controller.
@@ -62,7 +62,7 @@ enum Held {
     Integer(Integers),
 }
 
-/// A network as the controller stores it.
+/// A network in the number type of the controller, with notes for the user and the inputs of the self-test.
 struct OnController {
     held: Held,
     notes: Vec<String>,
@@ -198,7 +198,7 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
 /// Chooses the steps of the self-test. Returns the inputs of [`CHECKED`] consecutive steps in which the network,
 /// started from rest, fires the most spikes; steps in which an output fires are preferred.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
-    /// Maximum number of series of [`CHECKED`] steps that are tried.
+    /// Maximum number of sequences of [`CHECKED`] steps whose spikes are counted to find the best sequence.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
     let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);

@@ -23,7 +23,7 @@ pub(super) struct Layer<K: Number> {
     pub rule: Rule,
 }
 
-/// Recurrent weights of a layer, through which its spikes act on its own neurons one step later.
+/// Recurrent weights of a layer. Through them, a spike of the layer acts on the layer's own neurons one step later.
 #[derive(Clone, Debug)]
 pub(super) enum Recurrent<K> {
     None,
@@ -53,7 +53,8 @@ pub(super) struct Neuron<K: Number> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spike<K> {
     pub threshold: K,
-    /// The value to which a spike sets the potential, or which it subtracts from the potential.
+    /// The potential after a spike or, for a reset that subtracts, the amount that a spike subtracts from the
+    /// potential.
     pub reset: K,
 }
 
@@ -216,7 +217,7 @@ impl<K: Number> Net<K> {
     }
 
     /// Runs one step of all layers. Returns the number of weights that were added, and the number of neurons whose
-    /// potential or current had to be limited to its range.
+    /// potential or current had to be limited to the range of the number type.
     pub(super) fn step(&self, state: &mut [State<K>], inputs: &[u16]) -> (usize, u32) {
         let (mut operations, mut saturated) = (0, 0);
         let mut drive = inputs.to_vec();

@@ -7,15 +7,19 @@ use super::net::{Layer, Neuron, Recurrent, Spike};
 use crate::network::fault::{Context, FitKind, Result, ensure};
 
 /// Maximum share of a synaptic current that may remain after one step. The chips' neurons have no synaptic current, so
-/// the current must end with its step.
+/// a spike must not act on later steps through its current.
 const CURRENT: f64 = 1e-3;
 
 impl Model {
     /// Converts the network to the form that can be brought onto chips.
     ///
     /// # Errors
-    /// Returns an error if a current lasts longer than a step, if neurons that never fire are not the last ones, or if
-    /// they have a bias.
+    /// Returns an error in one of these cases:
+    /// - A synaptic current lasts longer than one step.
+    /// - The last layer never fires, and one of its neurons has a bias.
+    /// - A neuron outside such a last layer never fires.
+    ///
+    /// Also returns the errors of [`Trained::with_readout`].
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =

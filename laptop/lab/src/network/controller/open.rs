@@ -5,8 +5,8 @@ use super::Framework;
 use catalogue::run::Spell;
 use std::fmt::Write as _;
 
-/// A choice about how neurons decay, fire and reset, which the user must make if neither the network's file nor its
-/// framework does.
+/// A choice about how neurons decay, fire and reset. It is left to the user unless the network's file or the training
+/// framework makes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Choice {
@@ -44,7 +44,7 @@ pub(in super::super) fn words(
 }
 
 impl Choice {
-    /// Returns the name of the setting that makes the choice, and a text that lists its values.
+    /// Returns the name of the setting by which the user makes the choice, and a text that lists the possible values.
     const fn values(self, framework: Option<Framework>) -> (&'static str, &'static str) {
         match (self, framework) {
             (Self::Reset, Some(Framework::SnnTorch)) => (

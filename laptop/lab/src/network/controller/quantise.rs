@@ -11,14 +11,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// above 1 clip the largest weights, so that the others are rounded less.
 const SCALES: [f64; 14] =
     [1.0, 0.97, 0.94, 0.91, 0.88, 0.85, 0.8, 0.75, 0.7, 1.05, 1.1, 1.2, 1.4, 1.8];
-/// Largest absolute value of a weight in integers.
+/// Largest absolute value of a weight after it was converted to an integer.
 const LARGEST: f64 = 127.0;
-/// Maximum left shift of a layer's weights, which gives potentials more binary digits than weights. The shift is
-/// smaller if thresholds would leave their range.
+/// Maximum number of bits by which a layer's weights are shifted left. The shift gives potentials more binary digits
+/// than weights. A smaller shift is used if thresholds, biases or reset values would otherwise leave their range.
 const SHIFT: u32 = 8;
-/// Largest absolute value of a bias, threshold or reset value in integers.
+/// Largest absolute value of a bias, threshold or reset value after it was converted to an integer.
 const MOST: f64 = (1 << 27) as f64;
-/// Maximum number of steps of the recording that the search for scales uses.
+/// Maximum number of steps of the recording that are simulated in the search for scales.
 const STEPS: usize = 4_000;
 
 /// Returns the network with each number rounded to `f32`.
@@ -58,7 +58,8 @@ pub(super) struct Integers {
     pub shifts: Vec<u32>,
     /// Number of weights that exceeded 8 bits and were clipped, for each layer.
     pub clipped: Vec<usize>,
-    /// For each neuron of the last layer, the value of an integer potential of 1, in the units of the trained network.
+    /// For each neuron of the last layer, the factor that converts its integer potential to the units of the trained
+    /// network.
     pub units: Vec<f64>,
 }
 
@@ -114,12 +115,12 @@ fn has(fired: &[u16], neuron: usize) -> bool {
 struct Column {
     /// The weight of each input, after the layer's left shift.
     weights: Vec<i32>,
-    /// The recurrent weights that lead to the neuron, after the left shift: one for each neuron of the layer. If
-    /// neurons do not act on one another, only the weight from the neuron to itself.
+    /// The recurrent weights that lead to the neuron, after the left shift. There is one weight for each neuron of the
+    /// layer. If neurons do not act on one another, the list contains only the weight from the neuron to itself.
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
-    /// Value of an integer potential of 1, in the units of the trained network.
+    /// Factor that converts an integer potential to the units of the trained network.
     unit: f64,
 }
 
@@ -217,8 +218,8 @@ impl Column {
         Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
     }
 
-    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. The other
-    /// neurons of its layer fire as in `own`, their spikes in double precision.
+    /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. `own` contains
+    /// the spikes of the neuron's layer in double precision, which act on the neuron through recurrent weights.
     fn distance(
         &self,
         rule: Rule,

@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 /// The training framework whose rule a network follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framework {
-    /// The framework snnTorch. It trains with several kinds of reset, and its files do not say with which one.
+    /// The framework snnTorch. It trains with several kinds of reset, and a file does not say which kind was used.
     SnnTorch,
     /// The framework Norse.
     Norse,
@@ -63,26 +63,27 @@ pub enum Decay {
 pub enum Current {
     /// The current after this step's inputs were added to it.
     New,
-    /// The current of the step before.
+    /// The current before this step's decay and inputs.
     Old,
-    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`, and not its
-    /// weight times `dt / tau`.
+    /// Like [`New`](Self::New), but a spike adds its whole weight to the current, as in Norse's `LIFCell`. With `New`,
+    /// a spike adds its weight times `dt / tau`.
     Whole,
 }
 
-/// The parts of a rule that the user gave. The framework may imply further parts; the others are open.
+/// The parts of the rule for decay, firing and reset that the user gave. The other parts are `None` or empty. The
+/// framework may imply some of these.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The training framework, which implies some of the other parts.
     pub framework: Option<Framework>,
-    /// How a spike resets its neuron: one entry for all layers, or one entry for each layer that fires; empty if not
-    /// given.
+    /// The ways in which a spike resets its neuron. A single entry applies to all layers. Otherwise, there is
+    /// one entry for each layer that fires. Empty if the user gave none.
     pub resets: Vec<Reset>,
     /// Whether a neuron fires at its threshold, or only above it.
     pub fires: Option<Fires>,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Option<Decay>,
-    /// Which value of the synaptic current a step adds to the potential.
+    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
     pub current: Option<Current>,
     /// Duration of a step, in seconds.
     pub dt: Option<f64>,
@@ -99,14 +100,15 @@ pub struct Rule {
     pub fires: Fires,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Decay,
-    /// Which value of the synaptic current a step adds to the potential.
+    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
     pub current: Current,
     /// Duration of a step, in seconds.
     pub dt: f64,
 }
 
-/// The rule of networks in JSON. A neuron fires above its threshold, and a spike sets the potential to 0 in the same
-/// step. Decay and duration of a step play no role, because the parameters in JSON apply to one step.
+/// The rule that the neurons of a network in JSON follow. A neuron fires if its potential is above its threshold. The
+/// spike sets the potential to 0 in the same step. `decay` and `dt` play no role, because the parameters in JSON apply
+/// to one step.
 pub(super) const PLAIN: Rule = Rule {
     framework: None,
     reset: Reset::ToValue,
@@ -143,7 +145,7 @@ impl Framework {
         }
     }
 
-    /// Returns the parts of the rule that the framework implies.
+    /// Returns the parts of the rule for decay, firing and reset that this framework implies.
     fn says(self) -> Asked {
         use {Current as C, Decay as D, Fires as F, Framework as W, Reset as R};
         let (reset, fires, decay, current, dt) = match self {
@@ -199,8 +201,8 @@ impl Asked {
         })
     }
 
-    /// Returns the rule of a network in JSON: [`PLAIN`], with the reset and the condition for firing that the user or
-    /// the framework gives.
+    /// Returns the rule of a network in JSON. This is [`PLAIN`], unless the user or the framework gives another reset
+    /// or another condition for firing.
     pub(in super::super) fn or_plain(&self) -> Rule {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Rule {
@@ -224,8 +226,8 @@ impl Asked {
         }
     }
 
-    /// Returns the reset of the first layer that the user gave. If the user gave no reset, returns the reset in `says`,
-    /// which contains the parts of the rule that the framework implies.
+    /// Returns the first of the resets that the user gave. If the user gave none, returns the first reset in `says`,
+    /// the parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }

@@ -16,7 +16,7 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     });
     let answer = match network.unit {
         Some(unit) => format!(
-            "/// The value of 1 in an answer, in the units of the training.\npub const UNIT: f32 = {:?};",
+            "/// The value of 1 in an answer, in the units of the trained network.\npub const UNIT: f32 = {:?};",
             unit as f32
         ),
         None => format!(
@@ -38,7 +38,8 @@ pub const FIRED: u32 = {FIRED};"
 
 use spikewire_chips::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
 {bias}
-/// Number of steps from inputs to the answer that shows their effect; a step is a tick{micros}.
+/// Delay of the chip's answers, in steps: an answer shows the effect of the inputs of `LATE` steps before.
+/// A step is a tick{micros}.
 pub const LATE: usize = {late};
 
 {answer}

@@ -35,7 +35,7 @@ impl Chip for ReckOn {
     }
 }
 
-/// Number of SPI clock pulses in the transfer of one 32-bit word and its header.
+/// Number of SPI clock pulses in a transfer of a header and one 32-bit word.
 const FRAME: u32 = 64;
 
 impl OnChip for Quantised {

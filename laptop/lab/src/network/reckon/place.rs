@@ -8,15 +8,15 @@ const NEURONS: usize = 256;
 const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
 
-/// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair with a
-/// common leak and threshold. Therefore both hold neurons of the same layer whose trained leaks are as similar as
-/// possible.
+/// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which
+/// shares a leak and a threshold. The network's neurons in a pair therefore belong to the same layer, and their trained
+/// leaks are as similar as possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
     /// that stays free because a layer has an odd number of neurons.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
-    /// For each layer and each of its neurons, the number of the chip's neuron that holds it.
+    /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
     by_layer: Vec<Vec<usize>>,
 }
 
@@ -67,8 +67,8 @@ impl Places {
         self.by_layer[layer][neuron]
     }
 
-    /// Returns, for each pair of the chip's neurons, the layer and index of each of the network's neurons that the pair
-    /// holds. A pair holds two neurons, or one if its second neuron stays free.
+    /// Returns, for each pair of neurons on the chip, the network's neurons that the pair holds. Each is given by its
+    /// layer and its index in the layer. A pair holds two neurons, or one if its second place stays free.
     pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
     }

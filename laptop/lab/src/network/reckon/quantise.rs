@@ -20,8 +20,8 @@ const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
-/// Scales to try for a pair of neurons, as multiples of the largest scale at which its weights and potentials fit the
-/// chip.
+/// Scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales are
+/// multiples of the largest scale at which the pair's weights and potentials fit the chip.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
 /// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
@@ -45,9 +45,9 @@ pub(super) struct Quantised {
     /// The weights of outputs: one row for each neuron, with one weight for each output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
-    /// Number of the input that carries the bias and must fire in every step; `None` if the network has no bias.
+    /// Index of the input that carries the bias. This input must fire in every step. `None` if the network has no bias.
     pub(super) bias: Option<usize>,
-    /// Name and number of neurons of each layer.
+    /// For each layer: its name and its number of neurons.
     pub(super) layers: Vec<(String, usize)>,
     /// Value of an output's potential of 1 on the chip, in the units of the trained network; `None` if the outputs
     /// report the spikes of neurons.
@@ -55,8 +55,9 @@ pub(super) struct Quantised {
     /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
     /// these weights.
     pub(super) changes: Vec<Change>,
-    /// Number of neurons and outputs whose leak on the chip differs from the trained one, because several share a leak.
-    /// The second number is the largest difference between a decay factor on the chip and the trained one.
+    /// Differences between the leaks on the chip and the trained leaks. The leaks differ because two neurons of a pair
+    /// share one, and all outputs share one. The first figure is the number of neurons and outputs whose leak differs.
+    /// The second figure is the largest difference between a decay factor on the chip and the trained factor.
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -124,8 +125,9 @@ impl Source {
     }
 }
 
-/// Returns the largest scale at which the weights and potentials of a pair of neurons fit the chip. `shifts` are the
-/// left shifts of input weights and of weights between neurons.
+/// Returns the scale of a pair of neurons: the largest factor by which the pair's weights and potentials can be
+/// multiplied so that all of them fit the chip. `shifts` are the chip's left shifts of input weights and of weights
+/// between neurons.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -135,8 +137,9 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     (ROOM / room).min(of_kind(0)).min(of_kind(1))
 }
 
-/// Returns a measure of how much rounding changes a pair of neurons. It is the sum of the squared changes of the
-/// weights and of the squared losses of potential. Potential is lost because the chip rounds each leak.
+/// Returns a measure of how much rounding changes a pair: two neurons of the chip that share a leak and a threshold.
+/// The measure sums the squared changes of the weights and the squared losses of potential. A neuron loses potential
+/// because the chip rounds each leak.
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -383,8 +386,8 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Runs the neuron on the spikes `drives`, and returns the distance of its spikes from those that neuron `neuron`
-    /// has in `fired`.
+    /// Runs the neuron on the spikes in `drives`. Returns the distance between its spikes and the spikes in `fired` of
+    /// the neuron with index `neuron`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let mut is_over = false;
@@ -407,7 +410,8 @@ impl<'a> Held<'a> {
 }
 
 impl Quantised {
-    /// Returns the number of ticks from a step's inputs to the answer that shows their effect.
+    /// Returns the delay of the chip's outputs: the number of ticks from the inputs of a step to the answer that shows
+    /// their effect.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
     }
@@ -435,10 +439,12 @@ impl Quantised {
         *most = most.max(difference);
     }
 
-    /// Sets the outputs' weights, shift and leak, for a network whose outputs are potentials.
+    /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
+    /// spikes.
     ///
     /// # Errors
-    /// Returns an error if the outputs keep too little of their potential to be read.
+    /// Returns an error if the outputs' leak is too strong for the chip. The mean share of the potential that the
+    /// outputs keep in a step then rounds to 0.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
         let mean = keep.iter().sum::<f64>() / keep.len() as f64;

@@ -13,10 +13,12 @@ type Chip = ReckOn<Spi, Port>;
 /// Number of the chip's clock cycles in one SPI clock cycle.
 const RATIO: u32 = 10;
 
-/// Loads the network into the chip's model, and runs it on all inputs as one sample. A step sends its inputs, the bias
-/// and a tick. Neurons of the first layer fire at the next tick, those of each further layer one tick later, and the
-/// outputs show the last layer's spikes one tick after that. The result does not contain these delays: as in double
-/// precision, a spike passes through all layers within one step.
+/// Loads the network into the chip's model and runs the network on all inputs. All steps belong to one sample of
+/// the chip. Each step sends its input spikes, the bias and a tick.
+///
+/// On the chip, the first layer fires at the tick of the next step. Each further layer fires one tick after the layer
+/// before. The outputs show the last layer's spikes one tick after that layer fires. These delays are removed from the
+/// result: as in double precision, a spike passes through all layers within one step.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.

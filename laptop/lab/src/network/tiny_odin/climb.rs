@@ -1,9 +1,12 @@
 //! Hill climbing, which searches for the parameters of a neuron on the chip.
 
-/// Searches for a choice of parameters with a small `distance`; returns the distance and the choice. Starts from the
-/// `climbs` best of the choices in `first`, and moves each to its best neighbour until no neighbour is nearer. The
-/// second argument of `distance` is the smallest distance that is no longer useful: `distance` may stop computing when
-/// it reaches this limit, which saves time because most choices do.
+/// Searches for the choice of parameters with the smallest distance. Returns the smallest distance found, and its
+/// choice. The search starts from the `climbs` best choices in `first`. It moves each of them to its best neighbour,
+/// again and again, until no neighbour has a smaller distance.
+///
+/// The function `distance` computes the distance of a choice. Its second argument is a limit, at and above which a
+/// distance is of no use. The function may stop as soon as the distance reaches the limit, and return any number that
+/// is not below the limit. This saves time for most choices.
 pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
     first: impl IntoIterator<Item = C>,
     neighbours: impl Fn(C) -> N,

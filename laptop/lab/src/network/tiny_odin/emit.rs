@@ -4,7 +4,7 @@ use super::super::chip::{Remarks, lines, list};
 use super::Quantised;
 use spikewire_chips::{Describe, TinyOdinNeuron};
 
-/// Returns Rust source that defines the network. It compiles without `std` if `spikewire-chips` has its feature
+/// Returns Rust source that defines the network. The source compiles without `std` if `spikewire-chips` has its feature
 /// `embedded-hal`.
 pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     let (count, inputs) = (network.neurons(), network.inputs());

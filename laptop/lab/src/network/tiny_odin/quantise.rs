@@ -15,25 +15,25 @@ const NEURONS: usize = 256;
 const ROWS: usize = 256;
 const MAX_THRESHOLD: f64 = 2047.0;
 const MAX_LEAK: f64 = 127.0;
-/// Values to try for a neuron's largest weight on the chip. Values above 7 are clipped to the chip's range; the smaller
-/// weights are then rounded less.
+/// Values to try for a neuron's largest weight on the chip. A value above 7 clips the largest weights to the chip's
+/// range, but rounds the smaller weights more finely.
 const LARGEST: [f64; 20] = [
     7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 10.0, 3.0, 12.0, 2.0, 14.0, 1.0, 16.0, 6.5, 5.5, 4.5, 3.5, 7.5,
     8.5, 20.0,
 ];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 const CLIMBS: usize = 2;
-/// Leaks to try, as multiples of the amount that the trained neuron loses, at a potential of half its threshold,
-/// between two leaks of the chip.
+/// Leaks to try for a neuron, as multiples of a reference. The reference is the amount that the trained neuron loses
+/// between two leaks of the chip, starting from half its threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
-/// Maximum number of neurons of each layer on which the search compares intervals between leaks.
+/// Maximum number of neurons that the search takes from each layer to compare intervals between leaks.
 const SURVEYED: usize = 32;
-/// The value that stands for a leak where a function takes a weight.
+/// A value that stands for a leak where a function expects a weight. It is below all weights of the chip.
 const LEAK: i8 = i8::MIN;
-/// Maximum number of spikes of a layer in a step. The simulation of a step stops after more spikes, because the layer's
-/// recurrent spikes then drive the layer without end.
+/// Maximum number of spikes of a layer that are simulated in a step. The limit ends steps in which a layer's recurrent
+/// spikes make the layer fire without end.
 const MOST_SPIKES: usize = 10_000;
-/// Numbers of steps to try between two leaks of all neurons.
+/// Intervals to try between two leaks, in steps. A leak moves the potential of every neuron towards 0.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
 
 /// A network in tinyODIN's integers. The chip's neurons are those of all layers, one layer after the other. If the
@@ -46,29 +46,27 @@ pub(super) struct Quantised {
     inputs: usize,
     /// Whether the network has a bias.
     pub has_bias: bool,
-    /// Whether neurons send spikes to other neurons or to themselves: a layer is recurrent, or there are several
-    /// layers.
+    /// Whether spikes of neurons act on neurons, in a recurrent layer or from one layer to the next.
     is_recurrent: bool,
     /// Number of steps between two leaks of all neurons.
     pub steps_a_leak: usize,
 }
 
-/// The neurons of a layer.
 #[derive(Clone, Debug)]
 pub(super) struct ChipLayer {
     /// Name of the layer in the network's file.
     pub name: String,
-    /// Number of inputs, which for later layers are the neurons of the layer before.
+    /// Number of inputs of the layer: the network's inputs for the first layer, and the neurons of the layer before for
+    /// others.
     inputs: usize,
-    /// The neurons, in order.
     pub neurons: Vec<ChipNeuron>,
 }
 
 /// A neuron, and the weights that lead to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ChipNeuron {
-    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
-    /// inputs.
+    /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
+    /// neuron of the layer follows.
     pub weights: Vec<i8>,
     /// Weight that acts in every step.
     pub bias: i8,
@@ -171,8 +169,8 @@ fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
     Ok(())
 }
 
-/// The spikes that act on a layer. Each step lists the spikes of the inputs; in a recurrent layer, the layer's own
-/// spikes of the step follow. Neurons of the layer are numbered after the inputs.
+/// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
+/// the layer's own neurons that fire in the same step follow. They are numbered after the inputs.
 struct Drive {
     /// For each step, the index in `spikes` just after the step's last spike.
     ends: Vec<usize>,
@@ -180,8 +178,8 @@ struct Drive {
 }
 
 impl Drive {
-    /// Lists the spikes in the order in which the chip applies them. The layer's own spikes, `fired`, act in the step
-    /// in which they occur, after the inputs.
+    /// Lists the spikes that act on a layer, in the order in which the chip applies them. In each step, the inputs come
+    /// first. In a recurrent layer, its own spikes of the same step follow, as `fired` lists them.
     fn new(inputs: &Trains, layer: &Layer, fired: &Trains) -> Self {
         let (mut ends, mut spikes) = (Vec::new(), Vec::new());
         let first = layer.inputs() as u16;
@@ -210,7 +208,8 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
 impl ChipLayer {
     /// Runs the layer as the chip does: all neurons compare their potentials with their thresholds after each spike,
     /// and the layer's own spikes wait behind earlier spikes. Returns the neurons that fire in each step. In a
-    /// recurrent layer, `own` is the number of its first neuron among the inputs.
+    /// recurrent layer, `own` is the index of the first recurrent weight in [`weights`](ChipNeuron::weights). In other
+    /// layers, `own` is `None`.
     fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
         let mut potentials = vec![0_i32; self.neurons.len()];
         let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {
@@ -347,8 +346,8 @@ impl ChipNeuron {
         }
     }
 
-    /// Runs the neuron on the spikes that act on it in `aim`, and returns the distance between the neuron's spikes and
-    /// the target of `aim`. Returns infinity as soon as the distance reaches `most`.
+    /// Runs the neuron on the spikes in `aim.drive`. Returns the distance between the neuron's spikes and the spikes in
+    /// `aim.target`. Returns infinity as soon as the distance reaches `most`.
     fn distance(&self, aim: &Aim, most: f64) -> f64 {
         let mut distance = Distance::default();
         let threshold = i32::from(self.threshold);

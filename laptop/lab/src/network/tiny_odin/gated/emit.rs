@@ -1,10 +1,12 @@
-//! Writes a network whose neurons compare once a step as Rust source: constant data for `spikewire_chips`.
+//! Writes Rust source for a network whose neurons compare their potentials with their thresholds once a step. The
+//! source is constant data for `spikewire_chips`.
 
 use super::super::super::chip::{Remarks, lines, list};
 use super::Gated;
 use spikewire_chips::{Describe, Steps, StepsLayer, TinyOdinNeuron};
 
-/// Returns Rust source that defines the network and the sequence of events in its steps. It compiles without `std`.
+/// Returns Rust source that defines the network and the sequence of events in its steps. The source compiles without
+/// `std`.
 pub(super) fn emit(network: &Gated, remarks: &Remarks) -> String {
     let (source, meaning) = (&remarks.source, &remarks.inputs);
     let (count, rows) = (network.neurons(), network.inputs());
@@ -31,7 +33,7 @@ use spikewire_chips::{{Inputs, Steps, StepsLayer, TinyOdinNetwork, TinyOdinNeuro
 #[rustfmt::skip]
 pub static STEPS: Steps = {steps};
 
-/// Neurons in each layer: {layers}. Its inputs are the rows that `STEPS` uses.
+/// Neurons in each layer: {layers}. The inputs of the network are the rows that `STEPS` uses.
 #[rustfmt::skip]
 pub static NETWORK: TinyOdinNetwork<{rows}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [

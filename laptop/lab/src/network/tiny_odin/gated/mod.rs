@@ -1,7 +1,7 @@
-//! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. While a step's
-//! inputs arrive, all potentials are offset downwards so far that no neuron fires. Then a series of events, each called
-//! a *rung*, raises the neurons until the offset is gone and they compare. Further events lower the neurons again.
-//! `spikewire_chips::Steps` documents the whole sequence.
+//! Networks for tinyODIN whose neurons compare their potentials with their thresholds once a step. A step starts with
+//! all potentials below their true values by an offset, so that no neuron fires while the step's inputs arrive. Then a
+//! series of events, each called a *rung*, raises the neurons. Neurons whose potentials thereby reach their thresholds
+//! fire. Further events lower all neurons to the offset again. `spikewire_chips::Steps` documents the whole sequence.
 
 mod emit;
 mod neuron;
@@ -24,9 +24,10 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Maximum number of neurons of each layer on which the search compares [shapes](Shape).
+/// Maximum number of neurons that the search takes from each layer to compare [shapes](Shape).
 const SURVEYED: usize = 8;
-/// Number of [shapes](Shape) with which the whole network is quantised: the best for a sample of its neurons.
+/// Number of [shapes](Shape) with which the whole network is quantised. The best shapes are chosen on a sample of the
+/// network's neurons.
 const CHOSEN: usize = 2;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
@@ -192,8 +193,8 @@ impl Gated {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
     }
 
-    /// Returns the layer that the chip's neuron `neuron` belongs to, its index in the layer, and its parameters; `None`
-    /// if the neuron is not in use.
+    /// Finds the chip's neuron `neuron` in the network. Returns the index of its layer, its index in this layer, and
+    /// its parameters. Returns `None` if the network does not use the neuron.
     fn at(&self, neuron: usize) -> Option<(usize, usize, &GatedNeuron)> {
         let mut first = 0;
         for (at, layer) in self.layers.iter().enumerate() {
@@ -205,13 +206,13 @@ impl Gated {
         None
     }
 
-    /// Returns the number of rows of synapses for inputs, bias and neurons, and the number of all rows. All rows
-    /// include the rows that raise or lower neurons.
+    /// Returns two numbers of rows of synapses. The first number counts the rows for inputs, bias and neurons. The
+    /// second number also counts the rows that raise or lower the potentials of whole layers.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
 
-    /// Returns the weight that row `row` of the chip's synapses has for neuron `post`. `spikewire_chips::Steps`
+    /// Returns the weight of the synapse in row `row` that leads to the chip's neuron `post`. `spikewire_chips::Steps`
     /// documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };

@@ -2,12 +2,12 @@
 
 use super::shape::Shape;
 
-/// A neuron that compares its potential with its threshold once a step, and the weights that lead to the neuron.
-/// Potentials do not include the offset by which the chip lowers the neuron during a step.
+/// A neuron that compares its potential with its threshold once a step, and the weights that lead to the neuron. The
+/// chip lowers the potentials of all neurons by an offset during a step. Potentials are given here without this offset.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
-    /// The weight of each input; in a recurrent layer also the weight of each neuron of the layer, after those of the
-    /// inputs. On the chip, a weight is the sum over several rows of synapses.
+    /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
+    /// neuron of the layer follows. On the chip, a weight is the sum over several rows of synapses.
     pub weights: Vec<i16>,
     /// Weight that acts in every step.
     pub bias: i16,
@@ -15,9 +15,9 @@ pub(super) struct GatedNeuron {
     pub threshold: u16,
     /// Amount by which a leak moves the chip's potential towards 0.
     pub leak: u8,
-    /// Amount by which a rung (one event of the series that raises neurons) raises the potential.
-    pub rung: u8,
     /// Amount by which a rung raises the potential. A rung is one of the events that raise the neurons in a step.
+    pub rung: u8,
+    /// Number of leaks that only this neuron receives, in each step in which it fires.
     pub own_leaks: u16,
     /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
@@ -26,7 +26,7 @@ pub(super) struct GatedNeuron {
 /// The sums of the weights that act on a neuron in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Added {
-    /// Sum of all weights.
+    /// Sum of all weights that act on the neuron in the step.
     pub all: i32,
     /// Sum of the positive weights only. The potential may rise by this sum during the step, because positive weights
     /// may arrive before negative ones.
@@ -46,8 +46,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl GatedNeuron {
-    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that all
-    /// neurons receive in the step. Each leak is given as the number of events that have lowered the neurons before it.
+    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` has one entry for each leak
+    /// that all neurons receive in the step. The entry is the number of events that lower the neurons before this leak.
     #[inline]
     pub(super) fn step(
         &self,
@@ -86,9 +86,9 @@ impl GatedNeuron {
         (weight.signum() * (weight.abs() / rows + rest)) as i8
     }
 
-    /// Returns the initial potential and the threshold of the chip's neuron. The initial potential is the offset
-    /// downwards, of [`below`](Shape::below) rungs. The threshold is higher than the neuron's by
-    /// [`above`](Shape::above) rungs.
+    /// Returns the neuron's initial potential and threshold on the chip. A rung is an event that raises the potential
+    /// by [`rung`](Self::rung). The initial potential is [`below`](Shape::below) rungs below 0. The threshold on the
+    /// chip is [`above`](Shape::above) rungs higher than [`threshold`](Self::threshold).
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

@@ -1,5 +1,5 @@
-//! Runs a network whose neurons compare once a step on tinyODIN's model, which is exact to the clock cycle, through the
-//! driver of `spikewire-chips`.
+//! Runs a network whose neurons compare their potentials with their thresholds once a step. Runs it on tinyODIN's
+//! model, which is exact to the clock cycle, through the driver of `spikewire-chips`.
 
 use super::super::super::chip::{Stepped, refused};
 use super::super::run::{self, RATIO};
@@ -9,8 +9,8 @@ use silicon::Board;
 use spikewire_chips::{Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput};
 
 impl Gated {
-    /// Converts the sequence of events in the network's steps to the driver's form, and calls `see` with it. Returns
-    /// the result of `see`.
+    /// Converts the sequence of events in the network's steps to the driver's form, and calls `see` with this form.
+    /// Returns the result of `see`.
     pub(super) fn with_steps<T>(&self, see: impl FnOnce(&Steps) -> T) -> T {
         let layers = self.layers.iter();
         let layers: Vec<StepsLayer> = layers

@@ -8,17 +8,18 @@ use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
-/// Values to try for a neuron's largest weight on the chip, for each row of synapses that a weight takes. Values above
-/// 7 are clipped to the chip's range; the smaller weights are then rounded less. The last value rounds weights of up to
-/// 4 rows to 0, so that the neuron stays silent.
+/// Values to try for a neuron's largest weight on the chip, divided by the number of rows of synapses over which each
+/// weight is split. A value above 7 clips the largest weights to the chip's range, but rounds the smaller weights more
+/// finely. The last value rounds all weights to 0 if a weight is split over at most 4 rows. The neuron then stays
+/// silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
-/// Amounts by which a rung (an event that raises the neurons) raises a potential, in the initial choices of the search.
+/// Amounts to try first for a rung, an event that raises the neurons' potentials.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
 
-/// The spikes that act on a layer. Each step lists the spikes of the inputs; in a recurrent layer, the layer's own
-/// spikes of the step before follow. Neurons of the layer are numbered after the inputs.
+/// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
+/// the layer's own neurons that fired one step earlier follow. They are numbered after the inputs.
 pub(super) struct Drive {
     ends: Vec<usize>,
     spikes: Vec<u16>,
@@ -50,13 +51,12 @@ pub(super) struct Aim<'a> {
 /// The parameters of a neuron that the search varies.
 #[derive(Clone, Copy, PartialEq)]
 struct Choice {
-    /// Value of a weight of 1 on the chip, in the units of the trained network.
+    /// Factor that converts a weight on the chip to the units of the trained network.
     unit: f64,
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Number of leaks that the neuron receives after a spike, in addition to those that its reset needs; negative for
-    /// fewer leaks.
+    /// Number of leaks after a spike, in addition to the number that [`own_leaks`] returns. Negative for fewer leaks.
     more: i16,
 }
 
@@ -179,8 +179,8 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
 }
 
 /// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, these
-/// leaks move the potential to 0, from which other events of the step may have moved it. If spikes subtract the
-/// threshold, these leaks make up for the difference between the chip's reset and the subtraction.
+/// leaks bring the potential back to 0 after other events of the step have moved it. If spikes subtract the threshold,
+/// these leaks make up for the difference between the chip's reset and the subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {

@@ -4,36 +4,36 @@
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, NEURONS, ROWS};
 
-/// A step sends leaks to all neurons when neurons at rest stand at several heights. This is the maximum number of
-/// heights above the middle one, which is at or near 0. As many heights are below the middle one.
+/// Maximum number of leaks that a step sends while a neuron at rest has a potential above 0. The step sends the same
+/// number of leaks while the potential is below 0, and one leak while it is at or near 0.
 const LEVELS: u16 = 6;
 /// Numbers of rows of synapses to try for each weight.
 const ROWS_TRIED: [u16; 4] = [1, 2, 4, 8];
-/// Factor by which the number of rungs (events that raise the neurons) exceeds the number that the recording needs. The
-/// excess is for other recordings, in which a step may add more to a potential.
+/// Number of rungs (events that raise the neurons) in a shape, as a multiple of the number that the recording needs.
+/// The spare rungs serve other recordings, in which a step may add more to a potential.
 const SPARE: f64 = 1.5;
 /// Maximum number of rungs (events that raise the neurons) between two leaks.
 const WIDEST: f64 = 12.0;
 
-/// The sequence of events in each step, which is the same for all neurons. A *rung* is an event that raises the neurons
-/// by a fixed amount. An offset downwards keeps the neurons from firing until enough rungs have raised them.
+/// The sequence of events in each step, which is the same for all neurons. An offset downwards first keeps the neurons
+/// from firing. Then events called *rungs* raise the neurons, each by a fixed amount, until they can fire.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Number of rows of synapses for each input or sending neuron. A weight is the sum over its rows.
+    /// Number of rows of synapses that each input or sending neuron has. Each of its weights is split over these rows.
     pub rows: u16,
     /// Number of rungs that raise a neuron at rest from 0 to the potential at which it compares with its threshold.
     /// They follow the rungs that [`below`](Self::below) counts.
     pub above: u16,
     /// Number of rungs that raise a neuron at rest from the offset to 0.
     pub below: u16,
-    /// The leaks that all neurons receive in a step, as one list for each step of a cycle that repeats. For each leak,
-    /// the list contains the number of events that have lowered the neurons before it.
+    /// The leaks that all neurons receive: one list for each step. After the last list, the next step uses the first
+    /// list again. A list has one entry for each leak: the number of events that lower the neurons before this leak.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of rungs that raise all neurons again at the end of a step. The neurons that fired then receive leaks
-    /// that no other neurons receive. 0 if spikes subtract the threshold.
+    /// Number of rungs that raise all neurons again at the end of a step. Each neuron that fired in the step then
+    /// receives leaks of its own. 0 if spikes subtract the threshold.
     pub lift: u16,
     /// Number of rungs between two leaks of a step. Several leaks in a step together reduce a potential by a share of
-    /// its value. 0 if all neurons receive fewer than two leaks in a step.
+    /// its value. 0 if a step sends fewer than two leaks to all neurons.
     pub spacing: u16,
 }
 
@@ -46,8 +46,8 @@ impl Shape {
         if self.leaks.is_empty() { &[] } else { &self.leaks[step % self.leaks.len()] }
     }
 
-    /// Returns the number of events in a step of a network with `layers` layers. The number includes neither spikes nor
-    /// the leaks that only the neurons that fired receive.
+    /// Returns the number of events in a step of a network with `layers` layers. Does not count spikes, or leaks that
+    /// are sent only to neurons that fired.
     pub(super) fn events(&self, layers: usize) -> usize {
         let leaks: usize = self.leaks.iter().map(Vec::len).sum();
         usize::from(self.rungs()) * (layers + 1) + leaks / self.leaks.len().max(1)
