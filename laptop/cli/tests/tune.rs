@@ -302,12 +302,13 @@ fn the_worst_flight_decides() {
     };
     let error = |parameters: &Value| {
         let of = |name: &str| parameters[name].to_string();
-        let settings = ["threshold", "doublings", "run"].map(|name| format!("--{name} {}", of(name)));
+        let settings =
+            ["threshold", "doublings", "run"].map(|name| format!("--{name} {}", of(name)));
         let scored = ran!("score --json --column x --scheme asf {} {lively}", settings.join(" "));
         number(&scored.json(), "/0/rmse")
     };
     let (mean, worst) = (error(&tuned("")), error(&tuned("--worst-flight")));
-    assert!(worst <= mean * 1.001, "{worst} {mean}");
+    assert!(worst <= mean * 1.01, "{worst} {mean}");
 }
 
 /// A log is refused, with the reason, if it is noise, constant, too short, never in the air, clipped, or full of gaps.

@@ -15,9 +15,6 @@ use std::collections::HashMap;
 
 /// Largest number of scored samples that are their own screen, and the number of samples in all windows of a screen.
 const SAMPLES: usize = 4096;
-/// The same for a code of several neurons or sub-timesteps. Such a code takes longer for a sample, and codes most samples
-/// by themselves, so that fewer samples represent the signal.
-const WIDE_SAMPLES: usize = 512;
 /// Number of windows that represent a longer recording.
 const WINDOWS: usize = 8;
 /// Number of points that are tried on the screen for each one that is scored afterwards.
@@ -67,14 +64,7 @@ pub(super) struct Screen<'a> {
 
 impl<'a> Screen<'a> {
     pub(super) fn new(problem: &'a Problem<'a>, space: &'a Space, goal: Goal) -> Self {
-        let middle = space.options(&vec![0.5; space.len()]);
-        let settings =
-            problem.train.first().map(|own| problem.settings(&middle, problem.sample, own));
-        let shape = settings.and_then(|own| problem.scheme.shape(&own.ok()?).ok());
-        let is_step_code = problem.scheme.info().is_signed;
-        let is_wide = shape.is_some_and(|own| own.neurons * own.slots > 1) && !is_step_code;
-        let samples = if is_wide { WIDE_SAMPLES } else { SAMPLES };
-        let stretches = match windows(problem.train, samples) {
+        let stretches = match windows(problem.train) {
             Some(windows) => Cow::Owned(windows),
             None => Cow::Borrowed(problem.train),
         };
@@ -328,11 +318,11 @@ impl Around {
     }
 }
 
-/// Returns windows of `most` samples in all that represent stretches, spread evenly over their scored samples. Returns
+/// Returns windows that represent stretches, spread evenly over their scored samples. Returns
 /// `None` if the stretches are short enough to be scored themselves.
-fn windows(train: &[Stretch], most: usize) -> Option<Vec<Stretch>> {
+fn windows(train: &[Stretch]) -> Option<Vec<Stretch>> {
     let samples: usize = train.iter().map(Stretch::samples).sum();
-    if samples <= most {
+    if samples <= SAMPLES {
         return None;
     }
     let middles = (0..WINDOWS).map(|window| (2 * window + 1) * samples / (2 * WINDOWS));
@@ -340,7 +330,7 @@ fn windows(train: &[Stretch], most: usize) -> Option<Vec<Stretch>> {
         for stretch in train {
             for range in &stretch.scored {
                 if middle < range.len() {
-                    return stretch.window(range.start + middle, most / WINDOWS);
+                    return stretch.window(range.start + middle, SAMPLES / WINDOWS);
                 }
                 middle -= range.len();
             }
@@ -393,7 +383,7 @@ mod tests {
         let scored: Vec<_> = (0..20).map(|block| block * 1000..block * 1000 + 700).collect();
         let values = (0..20_000).map(f64::from).collect();
         let train = [Stretch { values, rate: None, scored, flight: 3 }];
-        let found = windows(&train, SAMPLES).unwrap();
+        let found = windows(&train).unwrap();
         let samples: usize = found.iter().map(Stretch::samples).sum();
         assert!((SAMPLES / 2..=SAMPLES).contains(&samples), "{samples}");
         for value in found.iter().flat_map(Stretch::scored_values).flatten() {
@@ -401,6 +391,6 @@ mod tests {
         }
         assert!(found.iter().all(|own| own.flight == 3) && found.len() == 8);
         let short = [Stretch { scored: vec![0..SAMPLES], ..train[0].clone() }];
-        assert!(windows(&short, SAMPLES).is_none());
+        assert!(windows(&short).is_none());
     }
 }
