@@ -152,7 +152,9 @@ impl TuneRequest {
                     None => {}
                 }
                 let (name, mut whole) = (recording.name.clone(), Stretch::whole(recording));
-                whole.iter_mut().for_each(|own| own.flight = flight);
+                for own in &mut whole {
+                    own.flight = flight;
+                }
                 let (train, held_out) = match self.logs.len() {
                     0 | 1 => cut(recording, self.hold_out)?,
                     _ if self.is_held_out(flight) => (Vec::new(), whole.clone()),
