@@ -298,7 +298,7 @@ pub fn share(end: Option<Instant>, left: usize) -> Option<Instant> {
 #[cfg(test)]
 mod tests {
     use super::super::chance::Chance;
-    use super::super::{Goal, Limits, Problem, Stretch};
+    use super::super::{Goal, Limits, Problem, Scored, Stretch};
     use super::{Budget, Method, search};
     use crate::scheme::Scheme;
     use crate::trial::Recording;
@@ -340,7 +340,7 @@ mod tests {
                 .collect();
             let middle = &points[points.len() / 2].tally;
             problem.goal = Goal::LeastError(middle.efficiency().min(97.0));
-            let value = |own| problem.value(problem.goal, own);
+            let value = |own: &Scored| problem.value(problem.goal, own);
             let random = points.iter().map(value).fold(f64::INFINITY, f64::min);
             let mut before = f64::INFINITY;
             for evaluations in [20, 45, 100, 300] {
