@@ -31,7 +31,8 @@ mod op {
 /// Reader of a ROS 1 bag, from start to end.
 pub(crate) struct Bag {
     walk: Walk,
-    /// Index in `walk.topics` of each connection's topic. The key is the connection's number.
+    /// Topic of each connection, as an index in `walk.topics`. The key is the number by which messages refer to the
+    /// connection.
     connections: HashMap<u32, usize>,
     header: Vec<u8>,
     data: Vec<u8>,
@@ -115,8 +116,8 @@ impl Bag {
     }
 }
 
-/// Reads the header or the data of a record into `part`. In the file, the length of a part comes before it, in four
-/// bytes.
+/// Reads one part of a record, its header or its data, into `part`. In the file, each part follows a number of four
+/// bytes, the length of the part.
 ///
 /// # Errors
 /// Returns the reason if the file ends within the part, or cannot be read.
@@ -140,7 +141,7 @@ fn connection(fields: &Fields<'_>, data: &[u8]) -> Option<(u32, Topic)> {
 }
 
 impl Chunked for Bag {
-    /// A record, given by its offset in the file. The record's content is in `header` and `data`.
+    /// Offset of a record in the file. The record's content is in `header` and `data`.
     type Record = u64;
 
     fn walk(&self) -> &Walk {

@@ -69,7 +69,7 @@ pub(crate) fn open(path: &Path) -> Result<File> {
     File::open(path).map_err(|error| Error::of(path, ErrorKind::Open(error)))
 }
 
-/// Returns whether the file as a whole is compressed, by gzip or Zstandard.
+/// Returns whether the file as a whole is compressed, by a method that [`Packing::of`] recognises.
 ///
 /// # Errors
 /// Returns an error if the file cannot be opened or read.
@@ -80,7 +80,7 @@ pub(crate) fn is_packed(path: &Path) -> Result<bool> {
     Ok(Packing::of(&start).is_some())
 }
 
-/// Returns a reader of the file's content, decompressed if it starts as gzip or Zstandard does.
+/// Returns a reader of the file's content. Decompresses the content if [`Packing::of`] recognises a compression.
 fn unpacked(file: File) -> io::Result<Box<dyn Read>> {
     const BUFFER: usize = 1 << 18;
     let mut head = Vec::new();

@@ -15,16 +15,17 @@ pub(crate) struct Chunk {
     taken: usize,
     /// Offset of the chunk in the file.
     at: u64,
-    /// Whether the chunk is known to be incomplete. The fault has then been counted already.
+    /// Whether the chunk is known to be incomplete. If so, its fault has already been counted.
     is_cut: bool,
 }
 
 impl Chunk {
-    /// Makes `bytes` the current chunk. Counts `fault` as damage, unless `is_last` is set. Set `is_last` if the file
-    /// ends within the chunk: the caller has counted this fault already.
+    /// Makes `bytes` the current chunk, which starts at offset `at` in the file. Counts `fault`, if there is one, as
+    /// damage. Set `is_last` if the file ends within the chunk; then `fault` is ignored, because the caller has already
+    /// counted the missing bytes.
     ///
     /// # Errors
-    /// Returns an error if there is a fault and damage is refused.
+    /// Returns an error if a fault is counted and damage is refused.
     pub(crate) fn begin(
         &mut self,
         at: u64,
@@ -46,7 +47,7 @@ impl Chunk {
         &self.bytes[self.taken..]
     }
 
-    /// Returns the number of bytes of the chunk read so far.
+    /// Returns how many bytes of the chunk have been read so far.
     pub(crate) fn taken(&self) -> usize {
         self.taken
     }
@@ -56,7 +57,7 @@ impl Chunk {
         self.at
     }
 
-    /// Marks the bytes of the chunk before index `end` as read.
+    /// Marks all bytes of the chunk before index `end` as read.
     pub(crate) fn take_to(&mut self, end: usize) {
         self.taken = end;
     }
@@ -80,7 +81,7 @@ pub(crate) struct Walk {
     pub topics: Vec<Topic>,
     /// The current chunk; empty between chunks.
     pub chunk: Chunk,
-    /// The content of the last message.
+    /// Content of the message that was read last.
     pub message: Vec<u8>,
     /// Whether the last record outside chunks has been read.
     pub is_over: bool,
@@ -116,10 +117,10 @@ pub(crate) trait Chunked {
     /// A record outside of chunks, as the function `record` returns it.
     type Record;
 
-    /// Returns the state of reading.
+    /// Returns the state of reading: file, faults, topics, current chunk and last message.
     fn walk(&self) -> &Walk;
 
-    /// Returns the state of reading, to change it.
+    /// Returns the state of reading, as a mutable reference.
     fn walk_mut(&mut self) -> &mut Walk;
 
     /// Reads the next record in the current chunk. If the record is a message, returns its entry and stores its content

@@ -40,12 +40,12 @@ pub enum Kind {
     Hidden(Number),
     /// A text of UTF-8, preceded by its length.
     Text,
-    /// A character of a text of fixed length: an array of this type is a text.
+    /// A character in a text of fixed length. The text is an array of this type.
     Character,
-    /// A text of 2 or 4 bytes for each character; the definition does not tell which, so fields after it cannot be
-    /// read.
+    /// A text with 2 or 4 bytes for each character. The definition does not tell the number of bytes, so the fields
+    /// after the text cannot be read.
     WideText,
-    /// A nested message. Pass its index to [`Definition::nested`].
+    /// A nested message. [`Definition::nested`] returns its layout for this index.
     Nested(usize),
 }
 
@@ -117,9 +117,9 @@ pub struct Path(pub Vec<Step>);
 /// One step of a [`Path`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// To the field with this index in the message.
+    /// Step from a message to its field with this index.
     Field(usize),
-    /// To the item with this index in the array.
+    /// Step from an array to its item with this index.
     Item(usize),
 }
 
@@ -256,8 +256,8 @@ impl Definition {
         self.find(asked).ok().filter(|(_, kind)| *kind == Kind::Text).map(|(path, _)| path)
     }
 
-    /// Returns the paths to a time stamp, selected by a name such as `header.stamp`; `None` if the name does not select
-    /// a time stamp.
+    /// Finds a time stamp by a name such as `header.stamp`; returns the paths to its seconds and nanoseconds. Returns
+    /// `None` if the name does not select a time stamp.
     pub fn stamp(&self, asked: &str) -> Option<Stamp> {
         let Ok((path, Kind::Nested(index))) = self.find(asked) else { return None };
         let [seconds, nanoseconds] = &self.nested(index).fields[..] else { return None };
@@ -300,8 +300,8 @@ impl Definition {
         Err(NoNumber::Missing)
     }
 
-    /// Returns the names of all numbers, and the names of all texts. The name of an array is `name[0..9]` if it has 9
-    /// items, or `name[]` if its number of items varies.
+    /// Returns the names of all numbers, and the names of all texts. An array of 9 items is named `name[0..9]`; an
+    /// array of variable length is named `name[]`.
     pub fn names(&self) -> (Vec<String>, Vec<String>) {
         let (mut numbers, mut texts) = (Vec::new(), Vec::new());
         self.add_names(self.root(), "", &mut numbers, &mut texts);

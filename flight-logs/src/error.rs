@@ -9,8 +9,8 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Error of a log that is damaged or cannot be read.
 ///
-/// The error's text names the file and, if possible, the byte. The text gives no advice; [`ErrorKind::rest`] tells
-/// whether [`Damage::Skip`](crate::Damage::Skip) would read more of the log.
+/// The error's text names the file and, if possible, the byte offset of the fault. The text gives no advice;
+/// [`ErrorKind::rest`] tells whether [`Damage::Skip`](crate::Damage::Skip) would read more of the log.
 #[derive(Debug)]
 pub struct Error {
     /// Path of the file, as the caller gave it.
@@ -62,11 +62,11 @@ pub enum ErrorKind {
     },
     /// A message does not contain the value that the caller selected.
     Message {
-        /// Offset of the message, in bytes.
+        /// Offset in the file of the message, or of the chunk that contains the message, in bytes.
         at: u64,
         /// Topic of the message.
         topic: String,
-        /// Reason that the value is not in the message.
+        /// Reason that the value cannot be read from the message.
         fault: MessageFault,
     },
     /// A value was requested before the first message was read, or after the last.
@@ -76,9 +76,9 @@ pub enum ErrorKind {
 /// Part of a damaged log that can still be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
-    /// The messages before the damage, and the messages after it.
+    /// Messages before the damage and messages behind it can be read.
     Behind,
-    /// The messages before the damage, and the messages from this byte on.
+    /// Messages before the damage, and messages from this byte on, can be read.
     From(u64),
     /// Only the messages before the damage.
     Before,

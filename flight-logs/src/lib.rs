@@ -73,7 +73,8 @@ use std::path::Path;
 pub struct Entry {
     /// Index of the message's topic in [`Log::topics`].
     pub topic: usize,
-    /// Time at which the message was recorded, in ns.
+    /// Time at which the message was recorded, in ns. The origin of the time depends on the format: for example, the
+    /// year 1970, or the start of the flight controller.
     pub time: i64,
     /// Offset in the file of the message, or of the chunk that contains it, in bytes.
     pub at: u64,
@@ -171,9 +172,9 @@ impl Kind {
         }
     }
 
-    /// Recognises the format of a log by its first bytes, which must be decompressed; 8 KiB are enough. Returns `None`
-    /// if the bytes are not the start of a log. A ROS 2 bag that is a directory has no first bytes; use [`Kind::of`]
-    /// for it.
+    /// Recognises the format of a log by its first bytes; 8 KiB are enough. If the log is compressed, decompress it
+    /// first. Returns `None` if the bytes are not the start of a log. For a ROS 2 bag that is a directory, use
+    /// [`Kind::of`] instead.
     pub fn of_start(start: &[u8]) -> Option<Self> {
         of_start(start)
     }
@@ -197,7 +198,7 @@ impl Kind {
 /// Error text for a directory that is not a ROS 2 bag.
 const NO_BAG: &str = "a directory, and no bag of ROS 2, which has a file metadata.yaml";
 
-/// Recognises the format of a log by its first bytes, which must be decompressed; returns `None` if the file is no log.
+/// Recognises the format of a log by its first decompressed bytes; returns `None` if they are not the start of a log.
 fn of_start(start: &[u8]) -> Option<Kind> {
     let kinds = [
         (bag::START, Kind::Bag),

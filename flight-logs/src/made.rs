@@ -70,7 +70,8 @@ impl Kind {
         }
     }
 
-    /// Returns a log whose only chunk, which is not compressed, holds the messages with the numbers `samples`.
+    /// Returns a log whose only chunk, which is not compressed, holds a message for each
+    /// value of `samples`.
     pub fn of(self, samples: impl Iterator<Item = u32>) -> Vec<u8> {
         let records: Vec<u8> = samples.flat_map(|sample| self.record(sample)).collect();
         [self.start(), self.chunk("none", &records), self.end()].concat()
@@ -259,8 +260,9 @@ pub fn row(cells: &[Cell<'_>]) -> Vec<u8> {
     [varint(kinds.len() as u64 + 1), kinds, content].concat()
 }
 
-/// Returns a database page of kind `kind` that holds `cells`. `right` is the number of the rightmost child page, for
-/// inner pages only. `head` is the file's header for the first page, and empty for other pages.
+/// Returns a database page that holds `cells`. `kind` is 13 for a leaf page, and 5 for an inner page. `right` is the
+/// number of an inner page's rightmost child page; leaf pages ignore `right`. `head` is the file's header for the first
+/// page, and empty for other pages.
 pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     let mut page = head.to_vec();
     page.extend([kind, 0, 0]);
@@ -280,8 +282,8 @@ pub fn page(kind: u8, cells: &[Vec<u8>], right: u32, head: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Encodes a row as a cell. Returns the cell, and overflow pages with the bytes of the row for which the cell has no
-/// room. `next` is the number that the first overflow page will have.
+/// Encodes a row as a cell of a leaf page. Returns the cell, and overflow pages. The overflow pages hold the end of a
+/// row that is too long for the cell. `next` is the number of the first overflow page.
 pub fn cell(number: u64, row: &[u8], next: u32) -> (Vec<u8>, Vec<Vec<u8>>) {
     let head = [varint(row.len() as u64), varint(number)].concat();
     let (most, least) = (PAGE - 35, (PAGE - 12) * 32 / 255 - 23);
@@ -356,7 +358,7 @@ pub fn database(messages: &[Vec<u8>]) -> Vec<u8> {
     pages.concat()
 }
 
-/// Returns the angular rate in frame number `sample` of the generated blackbox log.
+/// Returns the angular rate, field `gyroADC[0]`, of frame number `sample` in the generated blackbox log.
 pub fn gyro(sample: u32) -> i64 {
     (wave(sample) * 1000.0).round() as i64
 }

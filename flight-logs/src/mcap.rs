@@ -1,5 +1,5 @@
-//! Reads MCAP files: a sequence of records, each with a kind and a length. Messages are records, or lie in chunk
-//! records, which may be compressed.
+//! Reads MCAP files. A file is a sequence of records, each with a kind and a length. Each message is a record. Chunk
+//! records contain further records, and may be compressed.
 //!
 //! The index is not used, so files that were never closed can be read too.
 
@@ -19,7 +19,7 @@ pub(crate) const START: &[u8] = b"\x89MCAP";
 /// First bytes of an MCAP file of version 0, the only one supported.
 const VERSION: &[u8] = b"\x89MCAP0\r\n";
 
-/// Kinds of records: the opcodes.
+/// Opcodes: the bytes that tell the kind of a record.
 mod op {
     pub(crate) const HEADER: u8 = 1;
     pub(crate) const FOOTER: u8 = 2;
@@ -39,7 +39,8 @@ pub(crate) struct Mcap {
     walk: Walk,
     /// Name, encoding and text of each schema. The key is the schema's number.
     schemas: HashMap<u16, (String, String, String)>,
-    /// Index in `walk.topics` of each channel's topic. The key is the channel's number.
+    /// Topic of each channel, as an index in `walk.topics`. The key is the number by which messages refer to the
+    /// channel.
     channels: HashMap<u16, usize>,
     data: Vec<u8>,
 }
@@ -138,7 +139,7 @@ impl Mcap {
 }
 
 impl Chunked for Mcap {
-    /// A record, given by its kind and its offset in the file. The record's content is in `data`.
+    /// Kind of a record, and its offset in the file. The record's content is in `data`.
     type Record = (u8, u64);
 
     fn walk(&self) -> &Walk {

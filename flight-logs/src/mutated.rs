@@ -16,7 +16,8 @@ impl Random {
 
     /// Damages a log one to five times, at random: changes or removes bytes, or truncates the log.
     fn damage(&mut self, log: &mut Vec<u8>) {
-        /// Approximate number of bytes before the first message, where damage is placed more often.
+        /// Approximate number of bytes before the first message. Half of the damage is placed in these bytes, and half
+        /// anywhere in the log.
         const HEAD: usize = 700;
         for _ in 0..=self.below(4) {
             let within = if self.below(2) == 0 { log.len().min(HEAD) } else { log.len() };

@@ -15,13 +15,13 @@ pub enum Packing {
     Zstd,
     /// bzip2.
     Bzip2,
-    /// xz; not read in a browser.
+    /// xz. Not available in a browser.
     #[cfg(not(target_family = "wasm"))]
     Xz,
 }
 
 impl Packing {
-    /// Number of bytes by which a compression is recognised.
+    /// Number of bytes from the start of a file that [`Packing::of`] needs.
     pub const START: usize = 6;
 
     /// Recognises the compression by the first bytes of a file; `None` if the file is not compressed.
@@ -47,8 +47,7 @@ impl Packing {
             Self::Bzip2 => buffered(MultiBzDecoder::new(input)),
             #[cfg(not(target_family = "wasm"))]
             Self::Xz => {
-                /// Limit of the memory for decompression, in KiB. A file written by `xz -9` needs about half of this
-                /// memory.
+                /// Most memory that decompression may use, in KiB. A file written by `xz -9` needs about half as much.
                 const MOST: u32 = 1 << 17;
                 let input = BufReader::new(input);
                 buffered(lzma_rust2::XzReader::new_mem_limit(input, true, MOST))

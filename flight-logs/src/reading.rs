@@ -102,7 +102,7 @@ impl Reading {
         self.log.faults().notes()
     }
 
-    /// Returns whether the current message has a number of this name, which [`number`](Self::number) accepts.
+    /// Returns whether the current message has a number in the field `field`, so that [`number`](Self::number) takes it.
     pub fn has_number(&self, field: &str) -> bool {
         let definition = self.current_topic().and_then(|topic| topic.definition.as_ref().ok());
         definition.is_some_and(|definition| definition.number(field).is_ok())

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Name of the file that every bag directory contains.
 pub(crate) const METADATA: &str = "metadata.yaml";
 
-/// Text for a topic whose messages cannot be read because their definition is unknown.
+/// Reason that the messages of a topic cannot be read if the bag has no definition of them.
 const UNDEFINED: &str = "the bag has no definition of its messages, as those written before ROS 2 Iron; \
     `ros2 bag convert` to MCAP adds it";
 
@@ -24,7 +24,7 @@ pub(crate) struct Sqlite {
     database: Database,
     faults: Faults,
     topics: Vec<Topic>,
-    /// Index in `topics` for each topic of the database. The key is the topic's number in the database.
+    /// Map from the number of a topic in the database to its index in `topics`.
     topic_indices: HashMap<i64, usize>,
     rows: Rows,
     /// Indices of the columns with topic, time and content of a message.
@@ -136,14 +136,17 @@ impl Log for Sqlite {
 pub(crate) struct Directory {
     files: VecDeque<PathBuf>,
     current: Option<Box<dyn Log>>,
-    /// Index in `topics` for each topic of the current file. The order is that of the topics in the file.
+    /// Indices in `topics` of the current file's topics, in the order in which the file lists its topics.
     topic_indices: Vec<usize>,
     topics: Vec<Topic>,
     faults: Faults,
 }
 
 impl Directory {
-    /// Opens a bag, given by the path of its directory or of the file `metadata.yaml` in it.
+    /// Opens a bag. `path` is the directory of the bag, or the file `metadata.yaml` in the directory.
+    ///
+    /// # Errors
+    /// Returns an error if `metadata.yaml` cannot be read, or lists no files.
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
         let metadata = if files::is_dir(path) { path.join(METADATA) } else { path.to_owned() };
         let text = files::read_to_string(&metadata)

@@ -15,7 +15,7 @@ pub(crate) struct Database {
     file: File,
     /// Size of a page in bytes.
     page: u64,
-    /// Size of a page without the reserved bytes at its end.
+    /// Size of a page in bytes, without the bytes that the database reserves at the end of each page.
     used: u64,
     /// Number of pages in the file. The last one may be incomplete.
     pages: u64,
@@ -31,7 +31,8 @@ pub(crate) struct Table {
 /// The rows of a table, read one by one in the order of their row numbers.
 #[derive(Debug)]
 pub(crate) struct Rows {
-    /// Pages from the root down to the current leaf. Each page comes with the index of its next unread cell.
+    /// Path in the table's tree of pages, from the root down to the current leaf. Each page comes with the index of its
+    /// next unread cell, which is a row or a child page.
     stack: Vec<(Page, usize)>,
     /// Number of pages visited so far. If it exceeds the number of pages in the file, pages refer to each other in a
     /// circle.

@@ -27,7 +27,7 @@ impl Topic {
         Self { name, kind, wire, definition }
     }
 
-    /// Creates a topic whose messages cannot be read for the reason `why`.
+    /// Creates a topic whose messages cannot be read; `why` is the reason.
     pub(crate) fn unread(name: String, kind: String, why: String) -> Self {
         Self { name, kind, wire: Wire::Ros1, definition: Err(why) }
     }

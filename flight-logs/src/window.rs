@@ -24,10 +24,11 @@ impl Window {
         Self { bytes, held: Vec::new(), at: 0, start: 0, is_read: false }
     }
 
-    /// Reads bytes until the window holds [`AHEAD`] of them, or the file ends.
+    /// Reads bytes until the window holds at least [`AHEAD`] bytes, or the file ends. Bytes that cannot be read or
+    /// decompressed count as damage, and nothing is read after them.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be read or decompressed, and damage is refused.
+    /// Returns an error at such bytes if damage is refused.
     pub(crate) fn fill(&mut self, faults: &mut Faults) -> Result<()> {
         const MORE: u64 = 1 << 16;
         if self.is_read || self.held.len() - self.at >= AHEAD {
@@ -64,7 +65,7 @@ impl Window {
         self.at = self.held.len().min(self.at.saturating_add(count));
     }
 
-    /// Returns whether the window holds the last bytes of the file, and fewer than [`AHEAD`].
+    /// Returns whether fewer than [`AHEAD`] bytes of the file remain. The window then holds all of them.
     pub(crate) fn is_at_end(&self) -> bool {
         self.is_read && self.left().len() < AHEAD
     }

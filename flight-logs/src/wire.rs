@@ -9,7 +9,8 @@ pub enum Wire {
     /// ROS 1's serialization: the fields one after the other, little-endian, without gaps. Readers of other formats
     /// convert their messages to this encoding.
     Ros1,
-    /// CDR of ROS 2: four bytes that give the byte order, then the fields, each aligned to its size.
+    /// CDR, the serialization of ROS 2: four bytes that give the byte order, followed by the fields. Numbers are
+    /// aligned to their size.
     Cdr,
 }
 
@@ -18,7 +19,8 @@ pub enum Wire {
 pub enum Fault {
     /// The message ends before the field, or within it.
     Short,
-    /// The message is not in plain CDR. The value is the message's first two bytes, which identify its encoding.
+    /// The message has another encoding than plain CDR, the only supported encoding of ROS 2. The value is the
+    /// message's first two bytes, which identify the encoding.
     Encapsulation(u16),
     /// A field before this one is a wide text, whose length depends on the writer.
     WideText,
@@ -48,14 +50,14 @@ pub(crate) fn number(
     }
 }
 
-/// Returns whether a message has bytes after the fields of its definition, apart from up to three bytes of padding in
-/// CDR.
+/// Returns whether a message has more bytes than the fields of its definition. In CDR, the encoding of ROS 2, up to
+/// three bytes of padding are allowed after the fields.
 pub(crate) fn is_longer(wire: Wire, definition: &Definition, message: &[u8]) -> bool {
     let filling = if wire == Wire::Cdr { 3 } else { 0 };
     length(wire, definition, message).is_ok_and(|length| length + filling < message.len())
 }
 
-/// Returns the length of a message's fields by its definition, in bytes.
+/// Returns the number of bytes that the fields of `definition` take in a message.
 pub(crate) fn length(wire: Wire, definition: &Definition, message: &[u8]) -> Result<usize, Fault> {
     let mut input = Input::new(wire, message)?;
     input.skip_struct(definition, definition.root())?;
@@ -242,7 +244,8 @@ mod tests {
     const TEXT: &str = "uint8 a\nfloat64 b\nstring word\nint16[] list\nInner[2] two\n\
         ====\nMSG: t/Inner\nint8 small\nint32 large\n";
 
-    /// A message that is serialized for ROS 1 and as CDR gives the same numbers: 7, 1.5, "ab", [1, -2], (3, 4), (5, 6).
+    /// Serializes the values 7, 1.5, "ab", [1, -2], (3, 4), (5, 6) for ROS 1, and as CDR. Reads the same numbers from
+    /// both messages.
     #[test]
     fn both_ways_give_the_same_numbers() {
         let one = Definition::parse("t/T", TEXT, Dialect::Ros1).unwrap();

@@ -1,15 +1,16 @@
 //! A bank: `N` encoders side by side, their codes as items with time, address and polarity.
 
+use crate::common::{Drawn, cases, in_every_type};
 use host_tests::flight;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use spikewire::population::{Position, Slots};
 use spikewire::rate::{Hough, Taps};
-use spikewire::temporal::StepForward;
+use spikewire::temporal::{SendOnDelta, StepForward};
 use spikewire::timing::FirstSpike;
 use spikewire::{
-    Bank, Code, ConfigError, Event, EventQueue, Item, Keyframe, Output, Overflow, Polarity,
-    Readout, Scheme, Schemes, Source, SpscQueue, Start, Tick, dynamic,
+    Bank, Code, ConfigError, Encoder, Event, EventQueue, Item, Keyframe, Output, Overflow,
+    Polarity, Readout, Sample, Scheme, Schemes, Source, SpscQueue, Start, Tick, dynamic,
 };
 
 static GYRO: StepForward<f32> = StepForward::new(1.0);
@@ -18,12 +19,12 @@ static COUNTS: StepForward<i16> = StepForward::new(1);
 /// One recording a channel, sample by sample through a bank.
 fn events<T, P, const N: usize>(
     bank: &mut Bank<T, N>,
-    channels: &[Vec<f32>; N],
+    channels: &[Vec<P::Sample>; N],
     ticks: &[u32],
 ) -> Vec<Event>
 where
     T: Schemes<N, Scheme = P>,
-    P: Start<Sample = f32>,
+    P: Start,
 {
     let mut events = Vec::new();
     for (i, &tick) in ticks.iter().enumerate() {
@@ -34,13 +35,21 @@ where
 }
 
 /// What each channel's own encoder gives.
-fn expected<P: Start<Sample = f32>, const N: usize>(
+fn expected<P: Start, const N: usize>(
     scheme: &P,
-    channels: &[Vec<f32>; N],
+    channels: &[Vec<P::Sample>; N],
     ticks: &[u32],
     slot_ticks: u32,
 ) -> Vec<Event> {
-    let mut encoders = [(); N].map(|()| scheme.encoder());
+    expected_of(&mut [(); N].map(|()| scheme.encoder()), channels, ticks, slot_ticks)
+}
+
+fn expected_of<P: Start, const N: usize>(
+    encoders: &mut [Encoder<'_, P>; N],
+    channels: &[Vec<P::Sample>; N],
+    ticks: &[u32],
+    slot_ticks: u32,
+) -> Vec<Event> {
     let mut events = Vec::new();
     for (i, &tick) in ticks.iter().enumerate() {
         let mut firings = Vec::new();
@@ -279,7 +288,7 @@ fn float() -> impl Strategy<Value = f32> {
 }
 
 proptest! {
-    #![proptest_config(crate::common::cases(256))]
+    #![proptest_config(cases(256))]
 
     #[test]
     fn drawn_recordings(
@@ -288,14 +297,52 @@ proptest! {
         }),
     ) {
         let channels: [_; 3] = channels.try_into().unwrap();
-        let scheme = StepForward::new(0.5);
-        let mut bank = Bank::new(&scheme);
-        let fired = events(&mut bank, &channels, &ticks);
-        prop_assert_eq!(fired, expected(&scheme, &channels, &ticks, 0));
-        let faults = channels.iter().flatten().filter(|x| !x.is_finite()).count();
-        prop_assert_eq!(bank.rejected() as usize, faults);
         let scheme = Slots::<f32, 4, 100>::new(-1.0..=1.0, 1.5);
         let fired = events(&mut Bank::new(&scheme).with_slot_ticks(slot_ticks), &channels, &ticks);
         prop_assert_eq!(fired, expected(&scheme, &channels, &ticks, slot_ticks));
     }
+}
+
+/// Channels that are quiet are passed over together: events, values and counts are those of an encoder for each.
+fn as_encoders<P: Start, const N: usize>(
+    schemes: [&P; N],
+    channels: &[Vec<P::Sample>; N],
+    slot_ticks: u32,
+) {
+    let length = channels.iter().map(Vec::len).min().unwrap_or(0);
+    let ticks: Vec<_> = (0..length as u32).collect();
+    let mut bank = Bank::per_channel(schemes).with_slot_ticks(slot_ticks);
+    for _ in 0..2 {
+        let mut encoders = schemes.map(Scheme::encoder);
+        assert_eq!(
+            events(&mut bank, channels, &ticks),
+            expected_of(&mut encoders, channels, &ticks, slot_ticks)
+        );
+        for (channel, encoder) in encoders.iter().enumerate() {
+            let bits = |value: Option<P::Sample>| value.map(Sample::to_bits32);
+            assert_eq!(bits(bank.keyframe(channel)), bits(encoder.keyframe()));
+        }
+        assert_eq!(bank.rejected(), encoders.iter().map(Encoder::rejected).sum::<u32>());
+        bank.reset();
+    }
+}
+
+#[test]
+fn quiet_channels() {
+    fn drawn<S: Sample + Drawn>() {
+        let thresholds = [S::positive(), S::positive()];
+        proptest!(cases(500), |(recording in S::recordings(), thresholds in thresholds)| {
+            let channels = std::array::from_fn(|channel| {
+                let (end, beginning) = recording.split_at(recording.len().min(channel));
+                [beginning, end].concat()
+            });
+            let [a, b] = thresholds.map(StepForward::try_new);
+            let (Ok(a), Ok(b)) = (a, b) else { return Ok(()) };
+            as_encoders([&a, &b, &a, &b, &b], &channels, 0);
+            let [a, b] = thresholds.map(SendOnDelta::<S, 3>::new);
+            as_encoders([&a, &a, &b, &a, &b], &channels, 0);
+            as_encoders([&a, &a, &b, &a, &b], &channels, 7);
+        });
+    }
+    in_every_type!(drawn);
 }

@@ -5,7 +5,7 @@ use core::fmt;
 use super::address::addressed;
 use super::schemes::{CodeOf, EncoderStateOf, SampleOf, States};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
-use crate::num::Arithmetic;
+use crate::num::{Bands, Quiet};
 use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Output, Sample, Scheme, Start};
 
 /// The encoders of `N` channels, such as the six of an inertial sensor: one scheme for all channels or one for each,
@@ -17,7 +17,9 @@ use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Output, Sample, Scheme,
 ///   to the sample [`LATENCY`](Scheme::LATENCY) samples earlier. With a tick for each
 ///   [sub-timestep](Self::with_slot_ticks), events come in the order of time, as chips, formats and
 ///   [`Bins`](crate::Bins) need them.
-/// - **Memory:** the channels' states and 8 bytes, and 4 bytes for each reference to a scheme on a 32-bit part.
+/// - **Work:** where all samples lie within their [quiet bands](Scheme::quiet_band), one test of all channels.
+/// - **Memory:** the channels' states, 8 bytes for each channel, 4 in 16 bits, and 8 bytes; and 4 bytes for each reference to
+///   a scheme on a 32-bit part.
 ///
 /// ```
 /// use spikewire::{Bank, Event, Polarity, Tick, temporal::StepForward};
@@ -36,6 +38,8 @@ use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Output, Sample, Scheme,
 /// ```
 pub struct Bank<T: Schemes<N>, const N: usize> {
     channels: T::Channels<EncoderStateOf<T, N>>,
+    /// Bands within which samples change nothing.
+    quiet: Bands<SampleOf<T, N>, N>,
     first_address: u16,
     slot_ticks: u32,
 }
@@ -84,7 +88,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
             assert!(N >= 1, "a bank has at least one channel");
             assert!(Self::ADDRESSES <= 1 << 16, "addresses have 16 bits");
         }
-        Self { channels, first_address: 0, slot_ticks: 0 }
+        Self { channels, quiet: Bands::NONE, first_address: 0, slot_ticks: 0 }
     }
 
     addressed! {
@@ -96,32 +100,81 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
 
     /// Encodes one sample of every channel and passes each event to `emit`.
     #[inline]
-    pub fn encode(&mut self, tick: Tick, samples: [SampleOf<T, N>; N], emit: impl FnMut(Event)) {
-        self.encode_or_skip(tick, samples, emit, || ());
+    pub fn encode(
+        &mut self,
+        tick: Tick,
+        samples: [SampleOf<T, N>; N],
+        mut emit: impl FnMut(Event),
+    ) {
+        self.encode_or_skip(tick, samples, |event| event.into_iter().for_each(&mut emit));
     }
 
-    /// [`encode`](Self::encode), and calls `skip` for each sample that its encoder leaves out: one that is not finite,
+    /// [`encode`](Self::encode), and passes `None` for each sample that its encoder leaves out: one that is not finite,
     /// for a rate code with a filter.
     #[inline]
     fn encode_or_skip(
         &mut self,
         tick: Tick,
         samples: [SampleOf<T, N>; N],
-        mut emit: impl FnMut(Event),
-        mut skip: impl FnMut(),
+        emit: impl FnMut(Option<Event>),
+    ) {
+        if !T::Scheme::HAS_QUIET_BAND {
+            self.encode_each(tick, &samples, emit);
+        } else if !Quiet::are_within(&samples, &self.quiet) {
+            self.encode_apart(tick, &samples, emit);
+        }
+    }
+
+    /// Encodes those samples that lie outside their bands.
+    #[cold]
+    #[inline(never)]
+    fn encode_apart(
+        &mut self,
+        tick: Tick,
+        samples: &[SampleOf<T, N>; N],
+        mut emit: impl FnMut(Option<Event>),
     ) {
         if CodeOf::<T, N>::SLOTS > 1 && self.slot_ticks > 0 {
-            return self.encode_by_slot(tick, samples, emit);
+            return self.encode_each(tick, samples, emit);
+        }
+        for (&sample, channel) in samples.iter().zip(0..N) {
+            if !self.quiet.holds(channel, sample) {
+                self.encode_one(tick, channel, sample, &mut emit);
+            }
+        }
+    }
+
+    /// Encodes the sample of one channel, and brings its band up to date.
+    #[inline(never)]
+    fn encode_one(
+        &mut self,
+        tick: Tick,
+        channel: usize,
+        sample: SampleOf<T, N>,
+        emit: &mut impl FnMut(Option<Event>),
+    ) {
+        if let Some((scheme, state)) = T::each_mut(&mut self.channels).nth(channel) {
+            let first = channel.wrapping_mul(scheme.neurons()) as u16;
+            let first = self.first_address.wrapping_add(first);
+            each_event(tick, first, scheme.encode(state, sample).code(), sample, emit);
+            self.quiet.set(channel, scheme.quiet_band(state));
+        }
+    }
+
+    /// Encodes all samples, channel by channel.
+    #[inline]
+    fn encode_each(
+        &mut self,
+        tick: Tick,
+        samples: &[SampleOf<T, N>; N],
+        mut emit: impl FnMut(Option<Event>),
+    ) {
+        if CodeOf::<T, N>::SLOTS > 1 && self.slot_ticks > 0 {
+            return self.encode_by_slot(tick, samples, |event| emit(Some(event)));
         }
         let mut first = self.first_address;
-        for ((scheme, state), sample) in T::each_mut(&mut self.channels).zip(&samples) {
-            if let Some(code) = scheme.encode(state, *sample).code() {
-                for firing in code.firings() {
-                    emit(event(tick, first, firing));
-                }
-            } else if !sample.is_finite() {
-                skip();
-            }
+        for ((scheme, state), &sample) in T::each_mut(&mut self.channels).zip(samples) {
+            each_event(tick, first, scheme.encode(state, sample).code(), sample, &mut emit);
             first = first.wrapping_add(scheme.neurons() as u16);
         }
     }
@@ -130,13 +183,16 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     fn encode_by_slot(
         &mut self,
         tick: Tick,
-        samples: [SampleOf<T, N>; N],
+        samples: &[SampleOf<T, N>; N],
         mut emit: impl FnMut(Event),
     ) {
         let mut codes = [None; N];
-        let channels = T::each_mut(&mut self.channels);
-        for ((code, (scheme, state)), sample) in codes.iter_mut().zip(channels).zip(samples) {
+        let channels = T::each_mut(&mut self.channels).zip(samples).zip(0..N);
+        for (code, (((scheme, state), &sample), channel)) in codes.iter_mut().zip(channels) {
             *code = scheme.encode(state, sample).code();
+            if T::Scheme::HAS_QUIET_BAND {
+                self.quiet.set(channel, scheme.quiet_band(state));
+            }
         }
         let mut tick = tick;
         for slot in 0..CodeOf::<T, N>::SLOTS {
@@ -160,8 +216,10 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     #[inline]
     pub fn encode_into(&mut self, tick: Tick, samples: [SampleOf<T, N>; N], mut queue: impl Put) {
         let mut skips = false;
-        let emit = |event| queue.put(Item::Event(event));
-        self.encode_or_skip(tick, samples, emit, || skips = true);
+        self.encode_or_skip(tick, samples, |event| match event {
+            Some(event) => queue.put(Item::Event(event)),
+            None => skips = true,
+        });
         if skips {
             queue.put(Item::Break(tick));
         }
@@ -201,6 +259,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         T::Scheme: Start,
     {
         T::each_mut(&mut self.channels).for_each(|(_, state)| *state = T::Scheme::START);
+        self.quiet = Bands::NONE;
     }
 
     /// How many addresses the channels take, up to 65 535.
@@ -249,6 +308,22 @@ where
         bank.field("states", &States::<T, _, N>(&self.channels));
         bank.field("first_address", &self.first_address);
         bank.finish_non_exhaustive()
+    }
+}
+
+/// Passes on the events of a sample's code, or `None` for a sample that is left out.
+#[inline]
+fn each_event<C: Code, S: Sample>(
+    tick: Tick,
+    first_address: u16,
+    code: Option<C>,
+    sample: S,
+    emit: &mut impl FnMut(Option<Event>),
+) {
+    if let Some(code) = code {
+        code.firings().for_each(|firing| emit(Some(event(tick, first_address, firing))));
+    } else if !sample.is_finite() {
+        emit(None);
     }
 }
 

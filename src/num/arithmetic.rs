@@ -12,6 +12,17 @@ pub(crate) trait Arithmetic: Sized {
     /// be a true baseline, which then costs a little more. In 16 bits it is not 0, where coarse samples rest.
     const NO_BASELINE: Self;
 
+    /// A bound of a band: of 16 bits in 32, where it needs not saturate.
+    type Bound: Copy + PartialOrd;
+
+    fn bound(self) -> Self::Bound;
+
+    /// The sample at a bound that another sample has passed.
+    fn of_bound(bound: Self::Bound) -> Self;
+
+    /// The bounds one threshold below and above.
+    fn bounds(around: Self::Bound, threshold: Self) -> [Self::Bound; 2];
+
     fn is_finite(&self) -> bool;
 
     /// A check over a slice's samples, including this one. If the last check is finite, so was every sample: one test
@@ -38,6 +49,23 @@ impl Arithmetic for f32 {
     const ZERO: Self = 0.0;
 
     const NO_BASELINE: Self = f32::NAN;
+
+    type Bound = f32;
+
+    #[inline]
+    fn bound(self) -> f32 {
+        self
+    }
+
+    #[inline]
+    fn of_bound(bound: f32) -> f32 {
+        bound
+    }
+
+    #[inline]
+    fn bounds(around: f32, threshold: f32) -> [f32; 2] {
+        [around - threshold, around + threshold]
+    }
 
     #[inline]
     fn is_finite(&self) -> bool {
@@ -129,6 +157,29 @@ macro_rules! integer_arithmetic {
 
             const NO_BASELINE: Self = $from_bits(if <$bits>::BITS == 16 { <$bits>::MIN } else { 0 });
 
+            type Bound = i32;
+
+            #[inline]
+            fn bound(self) -> i32 {
+                i32::from($to_bits(self))
+            }
+
+            #[inline]
+            fn of_bound(bound: i32) -> Self {
+                $from_bits(bound as $bits)
+            }
+
+            // A bound that saturates is an end of the type: no sample lies beyond it, nor beyond the exact bound.
+            #[inline]
+            fn bounds(around: i32, threshold: Self) -> [i32; 2] {
+                let threshold = threshold.bound();
+                if <$bits>::BITS == 16 {
+                    [around.wrapping_sub(threshold), around.wrapping_add(threshold)]
+                } else {
+                    [around.saturating_sub(threshold), around.saturating_add(threshold)]
+                }
+            }
+
             #[inline]
             fn is_finite(&self) -> bool {
                 true
@@ -159,12 +210,12 @@ macro_rules! integer_arithmetic {
                 self.wrapping_shl(times.into())
             }
 
-            // A bound that saturates is an end of the type: no sample lies beyond it, nor beyond the exact bound.
             #[inline]
             fn step(self, previous: Self, threshold: Self) -> Ordering {
-                if self > previous.saturating_add(threshold) {
+                let [lower, upper] = Self::bounds(previous.bound(), threshold);
+                if self.bound() > upper {
                     Ordering::Greater
-                } else if self < previous.saturating_sub(threshold) {
+                } else if self.bound() < lower {
                     Ordering::Less
                 } else {
                     Ordering::Equal

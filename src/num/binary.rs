@@ -86,6 +86,9 @@ impl Binary for f32 {
     }
 }
 
+/// Whether the core divides in an instruction: every one but a Cortex-M0, which has no compare-and-swap either.
+const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
+
 macro_rules! integer {
     // 16 digits of a range of 16 bits fit 32.
     ([$($generics:tt)*] $sample:ty, i16, $to_bits:path, $from_bits:path) => {
@@ -104,6 +107,9 @@ macro_rules! integer {
                 let [value, min, max] = [self.max(min), min, max].map(|x| i32::from($to_bits(x)));
                 let range = max.wrapping_sub(min).cast_unsigned();
                 let mut rest = value.wrapping_sub(min).cast_unsigned();
+                if HAS_DIVISION && (<$bits>::BITS == 16 || range.leading_zeros() >= count) {
+                    return (rest << (count & 31)).checked_div(range).unwrap_or(0);
+                }
                 let mut digits = 0;
                 for _ in 0..count {
                     // Twice the rest may exceed 32 bits, so that the rest is compared with `range - rest`.

@@ -10,8 +10,8 @@ use fixed::{
 };
 
 use super::{
-    Arithmetic, Binary, Field, Rated, Recursive, SampleKind, Spaced, Stored, Summed, Totalled,
-    Windowed, convert,
+    Arithmetic, Binary, Field, Quiet, Rated, Recursive, SampleKind, Spaced, Stored, Summed,
+    Totalled, Windowed, convert,
 };
 
 /// A number that comes from a sensor: `f32`, raw `i16` counts, or, with the feature `fixed`,
@@ -47,6 +47,7 @@ pub trait Sample:
     + Summed
     + Totalled
     + Field
+    + Quiet
     + Stored
 {
     /// The type, as a value.

@@ -68,6 +68,16 @@ pub trait Scheme: Sized {
         None
     }
 
+    /// Whether [`quiet_band`](Self::quiet_band) ever gives a band.
+    const HAS_QUIET_BAND: bool = false;
+
+    /// A baseline and a threshold, if a sample from `baseline - threshold` to `baseline + threshold` has a code without
+    /// spikes and leaves the state as it is. In `f32` each bound is rounded once. A [`Bank`](crate::Bank) compares all its
+    /// channels with their bands at once, and encodes only the samples outside.
+    fn quiet_band(&self, _state: &Self::EncoderState) -> Option<(Self::Sample, Self::Sample)> {
+        None
+    }
+
     /// How many samples were not finite, up to 2³¹-1.
     fn rejected(state: &Self::EncoderState) -> u32;
 
@@ -368,13 +378,29 @@ pub(super) fn decode_copied<P: Scheme<DecoderState: Copy>>(
     codes.len().min(values.len())
 }
 
-/// How far [`encode_each`] encodes.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Until {
-    /// Until the encoder has seen a first sample, which its keyframe shows.
-    Primed,
-    /// To the end of the slice.
-    End,
+/// Encodes up to the first sample that the encoder is primed by, which its keyframe shows. Returns how many samples that
+/// took, and as many samples and outputs after them as there are of both.
+#[inline]
+pub(super) fn encode_first<'s, 'o, P: Scheme, D: Destination<P::Output>>(
+    scheme: &P,
+    is_primed: bool,
+    state: &mut P::EncoderState,
+    samples: &'s [P::Sample],
+    outputs: &'o mut [D],
+) -> (usize, &'s [P::Sample], &'o mut [D]) {
+    let length = samples.len().min(outputs.len());
+    let mut first = 0;
+    if !is_primed {
+        for (output, &sample) in outputs.iter_mut().zip(samples) {
+            if scheme.keyframe(state).is_some() {
+                break;
+            }
+            output.write(encode_apart(scheme, state, sample));
+            first += 1;
+        }
+    }
+    let samples = samples.get(first..length).unwrap_or_default();
+    (first, samples, outputs.get_mut(first..length).unwrap_or_default())
 }
 
 /// Encodes sample by sample, and returns how many samples that took. Out of line, so that the usual path of a codec
@@ -385,17 +411,11 @@ pub(super) fn encode_each<P: Scheme>(
     state: &mut P::EncoderState,
     samples: &[P::Sample],
     outputs: &mut [impl Destination<P::Output>],
-    until: Until,
 ) -> usize {
-    let mut taken = 0;
     for (output, &sample) in outputs.iter_mut().zip(samples) {
-        if until == Until::Primed && scheme.keyframe(state).is_some() {
-            break;
-        }
         output.write(encode_apart(scheme, state, sample));
-        taken += 1;
     }
-    taken
+    samples.len().min(outputs.len())
 }
 
 #[cold]

@@ -2,6 +2,7 @@
 
 use crate::checks::package;
 use crate::common::{cargo, command, output, paths, run};
+use crate::products::{c_library, page};
 use crate::programs::published::{self, CRATES};
 use crate::programs::python;
 use anyhow::{Context, Result, bail, ensure};
@@ -29,6 +30,7 @@ pub fn release() -> Result<()> {
     let materials = bill_of_materials(&version)?;
     println!("\n{} tells what the crate is built of.", materials.display());
     python_package()?;
+    let attached = [c_library::bundle()?, page::build()?, materials];
 
     let mut left = Vec::new();
     if !heading.contains(" - ") {
@@ -44,6 +46,8 @@ pub fn release() -> Result<()> {
     );
     let uploads = CRATES.map(|own| format!("cargo publish --package {}", own.name)).join("; ");
     println!("Then, by hand: git tag v{version}; {uploads}; twine upload target/release/packed/*");
+    let attached = attached.map(|file| file.display().to_string()).join(", ");
+    println!("Attached to the tag's release: {attached}. The tag makes the wheels.");
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use crate::checks::{firmware, interface, network_flies, ros, simulated_drone, video};
 use crate::common::usage;
-use crate::figures::{bench, demo, faults, flash, jumps, schemes};
+use crate::figures::{bench, chips, demo, faults, flash, jumps, schemes};
 use crate::products::{c_library, page, python_package};
 use anyhow::{Context, Result};
 use std::collections::HashSet;
@@ -20,7 +20,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// The parts: those from the catalogue first, then those that are measured or drawn.
-const PARTS: [Part; 19] = [
+const PARTS: [Part; 20] = [
     part("interface", "interface.txt of each published crate", interface::write),
     part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),
     part("python", "bindings/python/spikewire/_schemes.pyi", python_package::write_stub),
@@ -38,6 +38,7 @@ const PARTS: [Part; 19] = [
         simulated_drone::write_tables,
     ),
     part("chip", "docs/loop.md: the chip's flights", simulated_drone::write_chip),
+    part("chips", "docs/chips.md: how well networks agree on the chips", chips::write),
     part("network-flies", "docs/loop.md: the network's flights", network_flies::write),
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),

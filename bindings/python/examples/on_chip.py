@@ -78,16 +78,21 @@ def run(weights, inputs):
     return layers
 
 
-def gradients(weights, inputs, labels):
-    """The gradient of the loss by each weight."""
-    (hidden, sent), (outs, told) = run(weights, inputs)
+def blame(told, labels):
+    """The gradient of the loss by each output's count of spikes, in each step: cross entropy of the counts, which fade."""
     steps, count = labels.shape
     counts = np.zeros_like(told)
     for t in range(steps):
         counts[t] = FORGET * counts[t - 1] * (t > 0) + told[t]
     p = np.exp(counts - counts.max(axis=2, keepdims=True))
     p /= p.sum(axis=2, keepdims=True)
-    wrong = (p - np.eye(OUTPUTS)[labels]) / count / steps
+    return (p - np.eye(OUTPUTS)[labels]) / count / steps
+
+
+def gradients(weights, inputs, labels):
+    """The gradient of the loss by each weight."""
+    (hidden, sent), (outs, told) = run(weights, inputs)
+    (steps, count), wrong = labels.shape, blame(told, labels)
     slope = [1 / (1 + 3 * abs(v / THRESHOLD - 1)) ** 2 for v in (hidden, outs)]
     grown = [np.zeros_like(own) for own in weights]
     dcount, dout, dhidden = np.zeros((count, OUTPUTS)), np.zeros((count, OUTPUTS)), np.zeros((count, HIDDEN))

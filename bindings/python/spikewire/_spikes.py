@@ -174,12 +174,12 @@ class Spikes(NDArrayOperatorsMixin):
 
     @property
     def ndim(self) -> int:
-        """How many axes ``array`` has."""
+        """The number of axes of ``array``."""
         return self.array.ndim
 
     @property
     def size(self) -> int:
-        """How many cells ``array`` has."""
+        """The number of cells of ``array``."""
         return self.array.size
 
     @property

@@ -219,7 +219,7 @@ fn first_bad<T>(samples: &[T], is_good: impl Fn(&T) -> bool) -> Option<usize> {
     Some(start + samples[start..].iter().position(|own| !is_good(own))?)
 }
 
-/// What a double must be for an encoder of this type.
+/// Returns the test for doubles that an encoder of this type takes: they are finite, in `f32` after rounding too.
 fn is_good(sample: SampleType) -> fn(&f64) -> bool {
     if sample == SampleType::F32 {
         |value| (*value as f32).is_finite()

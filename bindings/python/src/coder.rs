@@ -352,8 +352,8 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
 
-/// So many channels are coded one after the other by one thread, and gathered from memory together: where channels are
-/// neighbours, the numbers of a moment lie in one line of the cache.
+/// Number of channels that a thread codes in one go. Where neighbouring channels are neighbours in memory, they are copied
+/// together: 16 samples of `float32` at one time are a line of the cache.
 const RUN: usize = 16;
 
 /// Returns whether so many channels of so many numbers in all are worth more threads than one.

@@ -1,8 +1,8 @@
 """The nodes of ROS 2 against Eclipse Cyclone DDS, which has nothing of ours: messages, rates, faults.
 
-    ros2.py PREFIX TABLE DEMO DIRECTORY
+    ros2.py PREFIX TABLE DEMO DIRECTORY SPIKEWIRE
 
-PREFIX is where colcon has installed the package, TABLE the recorded flight, DEMO the firmware's program. It runs in a network
+PREFIX is where colcon has installed the package, TABLE the recorded flight, DEMO the firmware's program, SPIKEWIRE the laptop's. It runs in a network
 namespace of its own, whose only interface is loopback, and in one of processes, which end with it.
 """
 
@@ -248,6 +248,13 @@ class Tests(Installed):
                 print(f"{changed or arguments[1]}: exit status 2, {node.said().strip()[:120]}")
         with self.node("decode", {}, "-r", "event:=/number") as node:
             assert node.process.wait(20) == 2 and "the topic is of std_msgs/Float64" in node.said(), node.said()
+        for parameters, text in (
+            ({"topic": "/imu"}, "flight is missing"),
+            ({"topic": "/imu", "flight": "none.toml"}, "none.toml: No such file"),
+            ({"topic": "/imu", "flight": "none.toml", "threshold": 1.0}, "threshold: it stands in the flight's file"),
+        ):
+            with self.node("flight", parameters) as node:
+                assert node.process.wait(20) == 2 and text in node.said(), node.said()
         # RustDDS does not go on after this; its node says so, and ends.
         with self.node("encode", {**SF, "topic": "/number", "field": "data"}) as node:
             until(lambda: has_readers(writers[-1]), "discovery")
@@ -269,4 +276,4 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["--publish"]:
         publish()
     else:
-        main(Tests, "ros2_run", "refused", "faults", "quality", "comers", "latency", "flight")
+        main(Tests, "ros2_run", "refused", "faults", "quality", "comers", "latency", "flight", "imu")

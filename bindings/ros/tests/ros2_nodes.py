@@ -1,5 +1,6 @@
 """The nodes of ROS 2 as programs, and the network that their tests have: what both tests share."""
 
+import csv
 import os
 import signal
 import subprocess
@@ -100,10 +101,10 @@ class Installed:
     a quality of service that loses none.
     """
 
-    def __init__(self, prefix: Path, table: Path, demo: Path, directory: Path) -> None:
+    def __init__(self, prefix: Path, table: Path, demo: Path, directory: Path, spikewire: Path) -> None:
         self.prefix = prefix
         self.launch = prefix / "spikewire_ros" / "share" / "spikewire_ros" / "launch" / "encode.launch.xml"
-        self.table, self.demo, self.directory = table, demo, directory
+        self.table, self.demo, self.directory, self.spikewire = table, demo, directory, spikewire
 
     def peer(self) -> Any:
         """A participant of its own."""
@@ -188,6 +189,64 @@ class Installed:
             assert [nanoseconds(value.timestamp) for value in reader.messages] == stamps, name
             assert [expected.bits(value.value) for value in reader.messages] == wanted.values, name
         print(f"{name}: {len(rates)} messages at {RATE} Hz, every spike and every bit of every value the firmware's")
+
+    def imu(self) -> None:
+        """All six channels of a flight's file at 1 kHz: the spikes and values of the laptop program."""
+        own = Path(__file__).parents[3] / "examples/one-file/flight.toml"
+        ask = [self.spikewire, "encode", "--flight", own, self.table]
+        encoded = subprocess.run(ask, check=True, capture_output=True, text=True).stdout
+        decode = [self.spikewire, "decode"]
+        decoded = subprocess.run(decode, check=True, capture_output=True, text=True, input=encoded).stdout
+        slots = int(next(line for line in encoded.splitlines() if line.startswith("# spikes=")).split("=")[1])
+        text = own.read_text()
+        for kind, field in (("gyro", "angular_velocity"), ("accel", "linear_acceleration")):
+            for axis in "xyz":
+                text = text.replace(f'"{kind}_{axis}"\n', f'"{kind}_{axis}"\nsource = "{field}.{axis}"\n')
+        file = self.directory / "flight.toml"
+        file.write_text(text)
+
+        peer = self.peer()
+        samples = []
+        with open(self.table) as rows:
+            for number, row in enumerate(csv.DictReader(rows)):
+                sample = peer.imu(EPOCH * 10**9 + 10**6 * number, 0.0)
+                sample.header.frame_id = "imu_link"
+                for axis in "xyz":
+                    setattr(sample.angular_velocity, axis, float(row[f"gyro_{axis}"]))
+                    setattr(sample.linear_acceleration, axis, float(row[f"accel_{axis}"]))
+                samples.append(sample)
+        wanted: list[list[tuple[int, int, int]]] = [[] for _ in samples]
+        for row in csv.DictReader(line for line in encoded.splitlines() if not line.startswith("#")):
+            sample, slot = divmod(int(row["index"]), slots)
+            wanted[sample].append((int(row["address"]), slot, int(row["polarity"])))
+
+        writer = peer.writer("/imu", peer.types.Imu, peer.reliable)
+        spikes = peer.reader("/six/spikes", peer.types.Spikes)
+        values = [peer.reader(f"/six/{node}/decoded", peer.types.Values) for node in ("flight", "decode")]
+        every = [spikes, *values]
+        arguments = launched(self.launch.with_name("flight.launch.xml"), {"flight": str(file), "topic": "/imu"})
+        with (
+            self.node("flight", {}, *arguments, namespace="/six") as node,
+            self.node("decode", {"flight": str(file)}, namespace="/six") as decoder,
+        ):
+            until(lambda: peer.has_readers(writer) and all(one.is_matched() for one in every), "discovery")
+            # A node hears its publisher a little later than that hears the node.
+            time.sleep(2.0)
+            play(writer, samples)
+            until(lambda: all(len(one.messages) == len(samples) for one in every), "the flight")
+            told = [node.stop(), decoder.stop()]
+        assert told[0] == "nothing lost, nothing refused" and told[1] in (told[0], "1 publishers lost"), told
+        for one, sent in zip(spikes.messages, samples):
+            assert nanoseconds(one.header.stamp) == nanoseconds(sent.header.stamp), one.header
+            assert one.header.frame_id == "imu_link", one.header
+        fired = [[(one.address, one.slot, one.polarity) for one in message.spikes] for message in spikes.messages]
+        assert [sorted(one) for one in fired] == [sorted(one) for one in wanted]
+        for reader in values:
+            for message, row in zip(reader.messages, csv.reader(decoded.splitlines()[1:])):
+                shown = [expected.bits(float(value)) for value in row[1:7]]
+                assert [expected.bits(value) for value in message.values] == shown, row
+        print(f"six channels: {sum(map(len, fired))} spikes of {len(samples)} messages at {RATE} Hz, and their values, the laptop program's")
+
 
 def loopback(state: str) -> None:
     """Switches the interface on, with multicast, or off."""

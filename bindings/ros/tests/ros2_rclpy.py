@@ -1,6 +1,6 @@
 """The nodes of ROS 2 among those of a ROS 2: Python's rclpy on Fast DDS, and the messages that colcon has built.
 
-    ros2_rclpy.py PREFIX TABLE DEMO DIRECTORY
+    ros2_rclpy.py PREFIX TABLE DEMO DIRECTORY SPIKEWIRE
 
 As `ros2.py`.
 """
@@ -21,6 +21,7 @@ from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, qos_profile_sensor_data
 from ros2_nodes import EPOCH, SF, Installed, main, play, until
 from sensor_msgs.msg import Imu
+from spikewire_msgs.msg import Spikes, Values
 from spyke_msgs.msg import Spyke, SpykeArray, SpykeValue
 
 ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -47,7 +48,9 @@ class Peer:
     """A node of rclpy, served by a thread."""
 
     reliable = ALL
-    types = SimpleNamespace(Imu=Imu, Spyke=Spyke, SpykeArray=SpykeArray, SpykeValue=SpykeValue)
+    types = SimpleNamespace(
+        Imu=Imu, Spyke=Spyke, SpykeArray=SpykeArray, SpykeValue=SpykeValue, Spikes=Spikes, Values=Values
+    )
 
     numbers = itertools.count()
 
@@ -135,4 +138,4 @@ class Tests(Installed):
 
 if __name__ == "__main__":
     rclpy.init()
-    main(Tests, "ros2_run", "graph", "quality", "flight")
+    main(Tests, "ros2_run", "graph", "quality", "flight", "imu")

@@ -87,6 +87,27 @@ class SpykeValue(IdlStruct, typename="spyke_msgs::msg::dds_::SpykeValue_"):
 
 
 @dataclass
+class Spike(IdlStruct, typename="spikewire_msgs::msg::dds_::Spike_"):
+    address: types.uint16
+    slot: types.uint16
+    polarity: types.int8
+
+
+@dataclass
+class Spikes(IdlStruct, typename="spikewire_msgs::msg::dds_::Spikes_"):
+    header: Header
+    sample: types.uint64
+    spikes: types.sequence[Spike]
+    start: types.sequence[types.float32]
+
+
+@dataclass
+class Values(IdlStruct, typename="spikewire_msgs::msg::dds_::Values_"):
+    header: Header
+    values: types.sequence[types.float64]
+
+
+@dataclass
 class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
     key: str
     value: str

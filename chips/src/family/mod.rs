@@ -132,8 +132,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Sets the length of a time step to `step` µs. [`Running::feed`] and [`Running::advance`] then send a leak event
     /// for every `step` µs that pass. Without this setting they send no leak events.
     ///
-    /// Call [`Running::advance`] at least every 70 minutes. The driver takes a tick (a time stamp) more than 70 minutes
-    /// after the previous tick for a late one, and then sends no leak event.
+    /// Call [`Running::advance`] at least every 70 minutes. If a tick (a time stamp) is more than 70 minutes after the
+    /// previous tick, it seems to be earlier, and the driver sends no leak event.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }

@@ -13,9 +13,9 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// Then events on an extra row of weights raise the first layer. Each of these events raises the layer by one *rung*.
 /// After the last of these events the offset is gone, and the neurons above their thresholds have fired. Their spikes
 /// go to the next layer, which is raised in turn. Finally, events on a second extra row lower all neurons again. Leaks
-/// are sent between the lowering events. A leak moves the sum of a potential and its offset at that moment towards 0.
-/// Leaks at several offsets together reduce a potential by a share of its value, as in training. A neuron that fired
-/// may end above its reset value; leaks that only this neuron receives remove the excess.
+/// are sent between the lowering events. A leak moves the lowered potential towards 0, by a fixed amount. Leaks while
+/// the potentials are lowered by different amounts together reduce a potential by a share of its value, as in training.
+/// A neuron that fired may end above its reset value; leaks that only this neuron receives remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
@@ -30,7 +30,7 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// static STEPS: Steps = Steps {
 ///     inputs: 2,
 ///     has_bias: false,
-///     rows: 1,
+///     rows: &[1],
 ///     layers: &[StepsLayer { neurons: 3, loops: false }],
 ///     rungs: 2,
 ///     leaks: &[&[0]],
@@ -90,11 +90,11 @@ pub struct Steps<'a> {
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// Number of rows of synapses for each input, and also for each neuron whose spikes act on neurons. The weight of
-    /// an input or neuron is the sum of the weights in its rows.
-    pub rows: u16,
-    /// The layers, from the input to the output. The first layer has the chip's neurons from 0 on. Each other layer has
-    /// the neurons that follow those of the layer before.
+    /// The rows of synapses of each input, and of each neuron whose spikes act on neurons: for each row, the number of
+    /// events that a spike sends on it. The weight of an input or neuron is the sum of the weights in its rows, each
+    /// times this number. With `&[8, 1]`, two rows of 4 bits hold weights from -72 to 63.
+    pub rows: &'a [u16],
+    /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
     pub layers: &'a [StepsLayer],
     /// Number of events that raise the potentials of each layer in a step. Each event raises them by one rung. At the
     /// end of the step, the same number of events lowers the potentials of all neurons.
@@ -171,7 +171,7 @@ impl Steps<'_> {
             groups.saturating_mul(layer.neurons)
         });
         let sources = senders.fold(sources, u16::saturating_add);
-        sources.saturating_mul(self.rows)
+        sources.saturating_mul(self.rows.len() as u16)
     }
 
     /// Returns the number of rows of synapses that the network needs in the chip, including the rows that raise and
@@ -194,9 +194,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
     ///
     /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. Each input or spike
-    /// takes [`rows`](Steps::rows) events. Raising each layer takes [`rungs`](Steps::rungs) events, and lowering all
-    /// neurons takes `rungs` events once. Each leak takes one event. The chip still works on the last event when the
-    /// call returns.
+    /// takes as many events as [`rows`](Steps::rows) has in sum. Raising each layer takes [`rungs`](Steps::rungs)
+    /// events, and lowering all neurons takes `rungs` events once. Each leak takes one event. The chip still works on
+    /// the last event when the call returns.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). The step is then incomplete and the chip's potentials are useless:
@@ -209,6 +209,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
         on_output: impl FnMut(u8),
     ) -> Outcome<(), D, P> {
         let before = state.fired;
+        let rows = steps.rows.len() as u16;
         let mut step = Step { running: self, rows: steps.rows, fired: Fired::default(), on_output };
         for input in inputs {
             if input < steps.inputs {
@@ -221,11 +222,11 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
             step.source(0, steps.inputs)?;
         }
         let (mut row, mut first) =
-            (steps.inputs.saturating_add(steps.has_bias.into()).saturating_mul(steps.rows), 0_u16);
+            (steps.inputs.saturating_add(steps.has_bias.into()).saturating_mul(rows), 0_u16);
         let mut rise = steps.first_rise();
         let last = steps.layers.len().saturating_sub(1);
         for (at, layer) in (0..steps.layers.len()).zip(steps.layers) {
-            let group = layer.neurons.saturating_mul(steps.rows);
+            let group = layer.neurons.saturating_mul(rows);
             let onward = row;
             row = row.saturating_add(if at < last { group } else { 0 });
             if layer.loops {
@@ -284,7 +285,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
 /// A time step in progress, and the neurons that fired in it so far.
 struct Step<'r, 'c, I: Input, D, P, F> {
     running: &'r mut Running<'c, I, D, P>,
-    rows: u16,
+    rows: &'r [u16],
     fired: Fired,
     on_output: F,
 }
@@ -311,12 +312,15 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends one spike on each row of synapses of an input or a neuron. `first` is the first row of all inputs, or the
-    /// first row of all neurons of the layer. `number` is the index of this input or neuron among them.
+    /// Sends a spike of an input or a neuron, on each of its rows of synapses as many times as the network's `rows`
+    /// say. `first` is the first row of all inputs, or of all neurons of the layer. `number` is the index of this input
+    /// or neuron among them.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
-        let first = first.saturating_add(number.saturating_mul(self.rows));
-        for at in 0..self.rows {
-            self.row(first.saturating_add(at), 1)?;
+        let rows = self.rows;
+        let mut row = first.saturating_add(number.saturating_mul(rows.len() as u16));
+        for &times in rows {
+            self.row(row, times)?;
+            row = row.saturating_add(1);
         }
         Ok(())
     }

@@ -11,8 +11,8 @@ use spikewire::Tick;
 /// Maximum number of leak events that one call sends.
 const MAX_LEAKS: u32 = 255;
 
-/// Longest time by which a tick can be earlier than the last leak event, in µs (67 s). The 32-bit clock of ticks wraps.
-/// Therefore the driver takes a tick that seems to be earlier by more than this time for a future tick.
+/// Longest time by which a tick can be earlier than the last leak event, in µs (67 s). The 32-bit clock of ticks wraps:
+/// a tick that seems to be earlier by more than this is a future tick.
 const LATEST: u32 = 1 << 26;
 
 /// Returns the time from `last` to `now` in µs. Returns `None` if `now` is earlier than `last` by up to [`LATEST`].
@@ -34,7 +34,7 @@ impl Time {
         Self { step, last: None }
     }
 
-    /// Returns whether `tick` lies before the last leak event, which ended the time step of `tick`.
+    /// Returns whether `tick` is earlier than the last leak event, so that its time step has ended.
     pub(super) fn is_over(&self, tick: Tick) -> bool {
         self.last.is_some_and(|last| passed(last, tick).is_none())
     }

@@ -40,8 +40,8 @@ pub struct ReckOnBytes<'a> {
     outputs: &'a [u8],
 }
 
-/// Returns the lengths in bytes of the four tables: pairs of neurons, and weights from inputs, between neurons and to
-/// outputs.
+/// Returns the lengths in bytes of the four tables. In this order: decay and threshold, an entry for each pair of
+/// neurons; weights of inputs; weights of connections between neurons; weights of outputs.
 fn lengths([neurons, inputs, outputs]: [u16; 3], is_recurrent: bool) -> [usize; 4] {
     let [pairs, neurons, inputs, outputs] =
         [neurons.div_ceil(2), neurons, inputs, outputs].map(usize::from);

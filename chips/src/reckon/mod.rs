@@ -290,7 +290,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         Ok(())
     }
 
-    /// Returns the number of pin reads that take at least `clocks` clock cycles of the chip.
+    /// Returns how many pin reads together last at least `clocks` clock cycles of the chip.
     fn reads(&self, clocks: u32) -> u32 {
         self.polls.div_ceil(Self::MAX_CLOCKS).saturating_mul(clocks)
     }

@@ -24,8 +24,8 @@ impl ReckOnPair {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnShared {
-    /// Left shifts that the chip applies to weights, 0 to 7 each: to the weights from inputs, between neurons and to
-    /// outputs, in this order.
+    /// Left shifts of the weights, 0 to 7 each. In this order: weights of inputs, of connections between neurons, of
+    /// outputs.
     pub shifts: [u8; 3],
     /// Share of an output's potential that a time step keeps, in units of 1/128.
     pub keep: u8,

@@ -50,16 +50,15 @@ pub enum ReckOnTask {
 pub struct ReckOnLearning {
     /// Whether the weights from inputs, between neurons and to outputs learn, in this order.
     pub learns: [bool; 3],
-    /// Number of extra fractional bits of the traces, 0 to 7 each. (A trace is a measure of recent spikes.) The three
-    /// numbers are for the traces from which the weights from inputs, between neurons and to outputs learn, in this
-    /// order.
+    /// Number of extra fractional bits of the traces, 0 to 7 each. A trace is a measure of recent spikes, from which
+    /// weights learn. In this order: traces for the weights of inputs, of connections between neurons, of outputs.
     pub traces: [u8; 3],
     /// Left shift of the learning signal, 0 to 15. (After this shift, the chip divides the signal by 4096.)
     pub signal: u8,
     /// Four potentials, in ascending order. They divide the potentials of a neuron into five ranges. For each range,
     /// [`slopes`](Self::slopes) gives a slope of the surrogate gradient.
     pub thresholds: [i16; 4],
-    /// Slope of the surrogate gradient in each of the five ranges of a neuron's potential, -16 to 15.
+    /// Slopes of the surrogate gradient, -16 to 15: one for each of the five ranges of a neuron's potential.
     pub slopes: [i8; 5],
     /// Shifts that set how likely a weight is to change, as pairs of a right shift and a left shift, 0 to 31 each. The
     /// three pairs are for the weights from inputs, between neurons and to outputs, in this order.
@@ -68,7 +67,7 @@ pub struct ReckOnLearning {
     pub is_linear: bool,
 }
 
-/// The registers that set the chip's answers and its learning.
+/// The values of the registers that choose what the chip's outputs report, and how its weights learn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -84,8 +84,8 @@ const LOADED: u64 = 512 + 1 + 256 + 256;
 
 /// Compares all registers and memories, immediately after the access.
 const AT_ONCE: Comparison = (whole_content, |_| Ok(()));
-/// Calls `verify`, which returns an error if a fault turned a read into a write and changed the memory of the network.
-/// Then compares all registers, and the words of memory that `verify` checks.
+/// Compares all registers with those of a run without faults, and the words of memory that `verify` checks. `verify`
+/// comes first: it returns an error if a fault made a write of a read, and so changed the memory.
 const VERIFIED: Comparison = (network_content, |chip| chip.programmed()?.verify(&NETWORK));
 
 const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];

@@ -19,13 +19,19 @@ use fixed::{FixedI32, types::extra::U16};
 pub fn measure(out: &mut impl Write) -> fmt::Result {
     path::queues(out)?;
     framed::measure(out)?;
+    framed::measure_slow(out)?;
     formats::measure(out)?;
     chips::measure(out)?;
-    frames::measure(out)?;
+    frames::measure(out)
+}
+
+/// What sets of six samples cost: in a bank, and from there to frames.
+pub fn measure_sets(out: &mut impl Write) -> fmt::Result {
     banks::measure::<f32>(out, "f32")?;
     path::measure::<f32>(out, "f32")?;
     banks::measure::<FixedI32<U16>>(out, "q16.16")?;
-    path::measure::<FixedI32<U16>>(out, "q16.16")
+    path::measure::<FixedI32<U16>>(out, "q16.16")?;
+    path::measure::<i16>(out, "i16")
 }
 
 /// Ends the program with a reason if something is not as it must be.

@@ -1,7 +1,7 @@
 //! Counts the instructions of every codec, and of an event's way, exactly. `cargo bench-target` builds, runs and
 //! reads it.
 //!
-//! Two programs for each sample type, as one of all does not fit the flash of a Cortex-M0. It prints one line of JSON
+//! Two programs for each sample type, and two for events, as one of all does not fit the flash of a Cortex-M0. It prints one line of JSON
 //! for each signal, codec, direction and form. Counts come from the core's timer, which in QEMU's `-icount` advances
 //! with the instructions, and from a plugin of QEMU that adds up cycles; on the host, which has none, they are 0.
 
@@ -38,6 +38,12 @@ pub fn run_loops(out: &mut impl Write) -> fmt::Result {
     #[cfg(target_os = "none")]
     loops::measure(out)?;
     Ok(())
+}
+
+/// Measures what sets of six samples cost.
+pub fn run_sets(out: &mut impl Write) -> fmt::Result {
+    ensure_exact(out)?;
+    events::measure_sets(out)
 }
 
 fn ensure_exact(out: &mut impl Write) -> fmt::Result {

@@ -263,7 +263,7 @@ fn step<I: Input>(chip: &mut Running<'_, I, Bus, Bus>) -> bool {
     let steps = black_box(Steps {
         inputs: 2,
         has_bias: true,
-        rows: 2,
+        rows: &[2, 1],
         layers: &layers,
         rungs: 3,
         leaks: &leaks,

@@ -148,7 +148,7 @@ static STEPS: [(&[u16], [&[u16]; 2]); 10] = [
     (&[], [&[6], &[2, 3, 6]]),
 ];
 
-/// The outputs' potentials after these steps.
+/// The outputs' potentials after the last step of `STEPS`.
 #[rustfmt::skip]
 static POTENTIALS: [f32; 7] = [-3.0928638, -1.5910146, 0.19192338, 1.2528577, -8.738899, 0.8767543, 1.4429147];
 

@@ -1,7 +1,7 @@
 //! Decodes the numbers packed into the frames of a Betaflight blackbox log. See "Blackbox Internals" in Betaflight's
 //! documentation.
 
-/// The bytes of a frame, and the index of the next one to read.
+/// The bytes of a frame, and the index of the next byte to read.
 pub(crate) struct Input<'a> {
     pub bytes: &'a [u8],
     pub at: usize,
@@ -12,7 +12,7 @@ pub(crate) struct Input<'a> {
 pub(crate) enum Fault {
     /// The bytes end within the frame.
     End,
-    /// The bytes cannot be a frame.
+    /// The bytes violate the format of frames, or the frame does not fit the frames around it.
     Odd,
 }
 
@@ -25,16 +25,18 @@ pub(crate) enum Encoding {
     Unsigned,
     /// A 14-bit two's complement number of variable length, seven bits in each byte. The decoded number is negated.
     Negative14,
-    /// Up to eight numbers. The bits of the first byte tell which of the numbers are not 0. Only these numbers follow.
+    /// Up to eight numbers. The first byte has one bit for each number. The numbers whose bit is 1 follow; the others
+    /// are 0 and take no bytes. A single number is stored without the first byte.
     UpToEight,
-    /// Three numbers. Either all three have 2, 4 or 6 bits, or each has 1 to 4 bytes.
+    /// Three numbers, in one of four forms: of 2 bits each; of 4 bits each; of 6 bits each; or each with its own number
+    /// of bytes, 1 to 4.
     Three,
     /// Four numbers, each of 0, 4, 8 or 16 bits.
     Four,
-    /// A number that takes no bytes, and is 0.
+    /// The number 0, for which the frame has no bytes.
     Null,
-    /// Three numbers. Either their lengths are 2, 2 and 2 bits, or 5, 5 and 4 bits, or 8, 7 and 7 bits, or each has 1
-    /// to 4 bytes.
+    /// Three numbers, in one of four forms: of 2, 2 and 2 bits; of 5, 5 and 4 bits; of 8, 7 and 7 bits; or each with
+    /// its own number of bytes, 1 to 4.
     ThreeVariable,
 }
 
@@ -54,8 +56,8 @@ impl Encoding {
         })
     }
 
-    /// Returns the number of fields whose numbers are packed together in one group. `in_a_row` is the number of
-    /// successive fields with this encoding.
+    /// Returns the number of fields in one group: successive fields whose values this encoding packs together.
+    /// `in_a_row` is the number of successive fields with this encoding.
     pub(crate) fn group(self, in_a_row: usize) -> usize {
         match self {
             Self::UpToEight => in_a_row.min(8),
@@ -86,7 +88,7 @@ impl Input<'_> {
         Err(Fault::Odd)
     }
 
-    /// Reads a signed number of variable length, zigzag-encoded: codes 0, 1, 2, 3 are 0, -1, 1, -2.
+    /// Reads a signed number of variable length, zigzag-encoded: the codes 0, 1, 2, 3 stand for 0, -1, 1, -2.
     pub(crate) fn signed(&mut self) -> Result<i32, Fault> {
         let number = self.unsigned()?;
         Ok((number >> 1) as i32 ^ -((number & 1) as i32))
@@ -162,7 +164,8 @@ impl Input<'_> {
         })
     }
 
-    /// Reads four numbers as data version 1 packs them: 4-bit numbers come in pairs, in one byte.
+    /// Reads four numbers in the packing of data version 1. The first byte gives the length of each number: 0, 4, 8 or
+    /// 16 bits. A 4-bit number is the low half of a byte, and the number after it is the high half.
     fn four_bytes(&mut self) -> Result<[i32; 4], Fault> {
         let mut which = self.byte()?;
         let mut numbers = [0; 4];
@@ -191,8 +194,8 @@ impl Input<'_> {
         Ok(numbers)
     }
 
-    /// Reads four numbers as data version 2 packs them: each takes 0, 1, 2 or 4 half bytes, without gaps, the high half
-    /// of a byte first.
+    /// Reads four numbers in the packing of data version 2. The first byte gives the length of each number: 0, 1, 2 or
+    /// 4 half bytes. The numbers follow without gaps. The high half of a byte comes before the low half.
     fn four_nibbles(&mut self) -> Result<[i32; 4], Fault> {
         let which = self.byte()?;
         let mut half: Option<u8> = None;

@@ -15,7 +15,8 @@ pub(crate) struct Header {
     pub battery: i32,
     /// Fields of full frames.
     pub full: Fields,
-    /// Fields of frames that hold differences from the previous frame.
+    /// Fields of difference frames (P-frames), whose values are differences from earlier frames. Names and signs are
+    /// those of `full`.
     pub changes: Fields,
     pub slow: Fields,
     pub gps: Fields,
@@ -32,7 +33,8 @@ pub(crate) struct Fields {
     pub encodings: Vec<Encoding>,
 }
 
-/// Upper bound of three numbers in the header: the `I interval`, and the numerator and denominator of the `P interval`.
+/// Largest value that is used for an interval in the header. Larger values are reduced to this one. The bound applies
+/// to the `I interval`, and to the numerator and the denominator of the `P interval`.
 const MOST: i64 = 1 << 12;
 
 impl Header {
@@ -80,8 +82,8 @@ impl Header {
         })
     }
 
-    /// Returns the number of loop iterations without a frame between iteration `after` and the next logged iteration,
-    /// calculated from the header's intervals.
+    /// Returns the number of loop iterations that the log leaves out directly after iteration `after`, calculated from
+    /// the header's intervals.
     pub(crate) fn skipped(&self, after: i64) -> i64 {
         let (some, of) = self.logged;
         let is_logged =

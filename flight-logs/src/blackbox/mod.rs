@@ -1,4 +1,5 @@
-//! Reads blackbox logs of Betaflight and related firmware: full frames (I), and between them frames of differences (P).
+//! Reads blackbox logs of Betaflight and related firmware. A log contains full frames (I-frames), with difference
+//! frames (P-frames) between them.
 //!
 //! The frames of the main loop are on the topic `main`, frames of values that change rarely on `slow`, and frames of
 //! the GPS on `gps`. In a file with several logs, the topics of the second log are `main:1` and so on. Numbers have the
@@ -44,21 +45,22 @@ pub(crate) struct Blackbox {
 /// State of decoding one of the logs in a file.
 struct Session {
     header: Header,
-    /// Index in [`Blackbox::topics`] of this log's topic for the main loop.
+    /// Index in [`Blackbox::topics`] of the topic with the frames of the flight controller's main loop: full frames and
+    /// difference frames.
     main: usize,
     slow: Option<usize>,
     gps: Option<usize>,
     /// Values of the last two frames of the main loop, the latest first.
     previous: Option<[Vec<i32>; 2]>,
     home: Vec<i32>,
-    /// Iteration and time in µs of the last good frame.
+    /// Number of the loop iteration, and time in µs, of the last good frame.
     last: Option<(i64, i64)>,
-    /// Iteration and time in µs of a full frame that is too far from the last good frame. The next full frame confirms
-    /// or refutes these values.
+    /// Number of the loop iteration, and time in µs, of a full frame that is too far from the last good frame. The next
+    /// full frame confirms or refutes this iteration and time.
     doubted: Option<(i64, i64)>,
-    /// Index of the field `loopIteration`.
+    /// Index of the field `loopIteration` in a frame of the main loop, if the log has this field.
     iteration: Option<usize>,
-    /// Index of the field `time`.
+    /// Index of the field `time` in a frame of the main loop.
     time: usize,
 }
 
@@ -188,8 +190,8 @@ impl Blackbox {
     }
 }
 
-/// First byte of a frame of each kind: full (`I`), differences (`P`), slow values (`S`), GPS (`G`), GPS home position
-/// (`H`) and event (`E`).
+/// First bytes of frames, one for each kind of frame: full frame (`I`), difference frame (`P`), slowly changing values
+/// (`S`), GPS data (`G`), GPS home position (`H`) and event (`E`).
 const KINDS: &[u8] = b"IPSGHE";
 
 impl Session {
@@ -225,7 +227,11 @@ impl Session {
         }
     }
 
-    /// Accepts a frame of the main loop if its time and iteration plausibly continue those of the last good frame.
+    /// Turns a frame of the main loop into a message. Keeps the frame for the prediction of later frames.
+    ///
+    /// # Errors
+    /// Returns [`Fault::Odd`] if the time or the loop iteration is lower than in the last good frame, or higher by
+    /// [`LONGEST_JUMP`] or more. A full frame is valid all the same if it continues the full frame in `doubted`.
     fn main(&mut self, frame: Vec<i32>, is_full: bool) -> Result<Frame, Fault> {
         let mut numbers = self.header.full.widened(&frame);
         let mut time = numbers[self.time];
@@ -255,8 +261,8 @@ impl Session {
         Ok(Frame::Message { topic: self.main, time, numbers })
     }
 
-    /// Decodes the values of a frame. The frame holds for each field the difference between the value and its
-    /// prediction.
+    /// Decodes the values of a frame. Each field holds the difference between its value and a prediction. Set
+    /// `is_change` for a difference frame, whose predictions use earlier frames.
     fn numbers(
         &self,
         fields: &Fields,

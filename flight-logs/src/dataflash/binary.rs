@@ -29,7 +29,7 @@ pub(crate) struct Binary {
 
 /// Classification of the next bytes in the log.
 enum Ahead {
-    /// A message, with its type, and its length in bytes.
+    /// A message. The values are its type, and its length in bytes.
     Message(u8, usize),
     /// A message that the end of the file cuts off.
     Cut,

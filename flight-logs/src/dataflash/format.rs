@@ -27,7 +27,7 @@ pub(crate) struct Format {
     /// Index of the column that holds the instance number, such as the number of the sensor. Each instance has a topic
     /// of its own.
     pub instance: Option<usize>,
-    /// Index of the column with the time, and the time's unit in ns.
+    /// Index of the column with the time, and the length of the column's time unit in ns.
     pub time: Option<(usize, i64)>,
     /// Index in [`Formats::topics`] of each instance's topic.
     topics: HashMap<i64, usize>,
@@ -42,7 +42,7 @@ pub(crate) struct Column {
 /// Type of a column. `FMT` messages write the type as a letter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Letter {
-    /// A number, logged as it is.
+    /// A number, stored without a scale factor.
     Number(Number),
     /// A half-precision float, two bytes.
     Half,
@@ -97,8 +97,8 @@ impl Letter {
 }
 
 impl Format {
-    /// Creates a format from the values of an `FMT` message. `letters` has a letter for each column, and `columns` the
-    /// comma-separated names.
+    /// Creates a format from the values of an `FMT` message. `letters` has one letter for each column, which gives the
+    /// column's type. `columns` has the names of the columns, separated by commas.
     pub(crate) fn new(name: &str, length: usize, letters: &str, columns: &str) -> Self {
         let columns = self::columns(length, letters, columns);
         let time = columns.as_ref().ok().and_then(|columns| time(name, columns));
@@ -106,8 +106,8 @@ impl Format {
         Self { name, length, columns, instance: None, time, topics: HashMap::new() }
     }
 
-    /// Returns the definition of this format's messages after conversion. Set `is_text` for a text log, whose numbers
-    /// become `f64`.
+    /// Returns the definition of this format's messages, as the reader converts them. In a binary log, fixed-point
+    /// numbers and half-precision floats become `f64`. Set `is_text` for a text log, in which all numbers become `f64`.
     fn definition(&self, is_text: bool) -> Result<Definition, String> {
         let columns = self.columns.as_ref().map_err(Clone::clone)?;
         let field = |column: &Column| {
@@ -129,10 +129,11 @@ impl Format {
     }
 }
 
-/// Parses the columns of a format.
+/// Parses the columns of a message format. `letters` has a letter for the type of each column; `names` has the names,
+/// separated by commas.
 ///
 /// # Errors
-/// Returns the reason if a letter is unknown, or if header and columns do not add up to `length` bytes.
+/// Returns the reason if a letter is unknown, or if `length` is not the total size of header and columns in bytes.
 fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, String> {
     const HEAD: usize = 3;
     let mut names = names.split(',').map(str::trim);
@@ -151,8 +152,9 @@ fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, Str
     }
 }
 
-/// Returns the index of the column with the time since boot, and the unit of this time in ns. The first column has this
-/// time, except in messages of the GPS: there `TimeMS` is the satellites' time, and `T` the time since boot.
+/// Returns the index of the column with the time since boot, and the length of the column's time unit in ns. This
+/// column is the first one if its name is `TimeUS` or `TimeMS`. In other `GPS` and `GPS2` messages, it is the column
+/// `T`; a later column `TimeMS` has the satellites' time there. Returns `None` if there is no column with the time.
 fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
     const MICROSECOND: i64 = 1_000;
     const MILLISECOND: i64 = 1_000_000;
@@ -168,7 +170,7 @@ fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
 }
 
 impl Formats {
-    /// Returns the formats that every log has from the start: `FMT` itself.
+    /// Returns the formats that are known before any message is read: only that of `FMT` messages.
     pub(crate) fn new() -> Self {
         let mut formats = Self::default();
         let columns = "Type,Length,Name,Format,Columns";
@@ -180,7 +182,7 @@ impl Formats {
         self.of_type.get(&kind)
     }
 
-    /// Returns the type of messages called `name`, if one is defined.
+    /// Returns the number of the message type called `name`, if such a type is defined.
     pub(crate) fn named(&self, name: &str) -> Option<u8> {
         self.by_name.get(name).copied()
     }

@@ -1,8 +1,8 @@
 //! Reads `ArduPilot`'s `DataFlash` logs: the binary form `.bin`, and the text form `.log`.
 //!
-//! Every type of message is a topic; further instances of a sensor have topics such as `IMU:1`. Columns that are logged
-//! as fixed-point integers are divided by their factor, as pymavlink does. The multipliers of the message `MULT` refer
-//! to units, and are not applied to numbers.
+//! Every type of message is a topic. Further instances of a sensor have topics such as `IMU:1`. Columns that are logged
+//! as fixed-point integers are divided by their factor, as in the Python library pymavlink. Messages of type `MULT`
+//! define multipliers for units; the numbers of a log are not multiplied by them.
 
 mod binary;
 mod format;
@@ -18,7 +18,7 @@ pub(crate) const START: &[u8] = b"\xa3\x95\x80\x80\x59FMT\0BBnNZ";
 /// first.
 pub(crate) const LOOKED_AT: u64 = 8192;
 
-/// Returns whether these are the first bytes of a text log: one of the lines must define `FMT` itself.
+/// Returns whether `start` begins a text log. One of its lines must be the `FMT` message that defines `FMT` itself.
 pub(crate) fn is_text(start: &[u8]) -> bool {
     start.split(|&byte| byte == b'\n').any(|line| {
         let mut words = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);

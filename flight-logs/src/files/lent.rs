@@ -32,22 +32,22 @@ pub fn lend(name: impl Into<PathBuf>, bytes: impl Bytes + 'static) {
     LENT.with_borrow_mut(|lent| lent.insert(name.into(), Rc::new(bytes)));
 }
 
-/// Withdraws all provided files. Files that are already open stay readable.
+/// Withdraws all files provided by [`lend`]. Files that are already open stay readable.
 pub fn take_back() {
     LENT.take();
 }
 
-/// Returns false, because a page cannot provide directories.
+/// Returns false, because a web page cannot provide directories.
 pub fn is_dir(_: &Path) -> bool {
     false
 }
 
-/// Returns whether the page has provided a file under this name.
+/// Returns whether the web page has provided a file under this name.
 pub fn is_file(path: &Path) -> bool {
     LENT.with_borrow(|lent| lent.contains_key(path))
 }
 
-/// An open file, provided by the page or created by [`scratch`].
+/// An open file, either provided by the web page or created by [`scratch`].
 pub struct File {
     content: Content,
     offset: u64,
@@ -59,10 +59,10 @@ enum Content {
 }
 
 impl File {
-    /// Opens a file that the page has provided.
+    /// Opens a file that the web page has provided under the name `path`.
     ///
     /// # Errors
-    /// Returns an error if no file has this name.
+    /// Returns an error if no file has been provided under this name.
     pub fn open(path: &Path) -> io::Result<Self> {
         let found = LENT.with_borrow(|lent| lent.get(path).cloned());
         let content = found.ok_or(ErrorKind::NotFound)?;
@@ -98,7 +98,7 @@ impl Read for File {
     }
 }
 
-/// Appends to a file created by [`scratch`]. Files that the page provided cannot be written.
+/// Appends to a file created by [`scratch`]. Files that the web page has provided cannot be written.
 impl Write for File {
     fn write(&mut self, from: &[u8]) -> io::Result<usize> {
         let Content::Scratch(bytes) = &mut self.content else {

@@ -14,7 +14,7 @@ pub fn is_file(path: &Path) -> bool {
     path.is_file()
 }
 
-/// Creates a temporary file without a name, for decompressed bytes. The operating system deletes it when it is closed.
+/// Creates a temporary file without a name, for decompressed bytes. The operating system deletes a closed file.
 ///
 /// # Errors
 /// Returns an error if no temporary file can be created.

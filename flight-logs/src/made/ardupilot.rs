@@ -37,7 +37,7 @@ pub fn dataflash_message(kind: u8, columns: &[&[u8]]) -> Vec<u8> {
     [&[0xa3, 0x95, kind], &columns.concat()[..]].concat()
 }
 
-/// Returns the angular rate that sensor number `sensor` measures at sample number `sample`.
+/// Returns the angular rate, column `GyrX`, of sensor number `sensor` in sample number `sample`.
 pub fn dataflash_rate(sample: u32, sensor: u8) -> f32 {
     (wave(sample) * f64::from(sensor + 1)) as f32
 }
@@ -59,7 +59,8 @@ pub fn dataflash_sample(sample: u32) -> Vec<u8> {
     [of(0), of(1)].concat()
 }
 
-/// Returns a binary log with 100 samples of two sensors, a message with an array, and one with a text.
+/// Returns a binary log. Apart from definitions, the log has 100 samples of each of two sensors, a message with an
+/// array, and a message with a text.
 pub fn dataflash() -> Vec<u8> {
     let mut log = Vec::new();
     for (kind, name, letters, columns, _) in FORMATS {
@@ -77,7 +78,7 @@ pub fn dataflash() -> Vec<u8> {
     log
 }
 
-/// Returns the log of [`dataflash`] in text form, without the array, which text logs do not have.
+/// Returns the log of [`dataflash`] in text form. The message with the array is left out.
 pub fn dataflash_text() -> String {
     let mut log = "\nArduCopter V4.5\n".to_owned();
     let mut line = |line: String| log.extend([&line, "\n"]);

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 /// Layout of a `MAVLink` message.
 pub(crate) struct Message {
     pub name: &'static str,
-    /// The byte `CRC_EXTRA`. The checksum covers this byte after the bytes of the packet. The byte depends on the
-    /// layout, so that the checksum fails if the sender has a different layout.
+    /// The byte `CRC_EXTRA`, which is not sent. The checksum is computed over the bytes of the packet, then over this
+    /// byte. The byte is computed from the layout, so that the checksum fails if the sender uses a different layout.
     pub extra: u8,
     /// Length of all fields together, in bytes.
     pub length: usize,
@@ -86,7 +86,7 @@ impl Message {
     }
 }
 
-/// Parses `type name name; type name`; returns type and name of each field.
+/// Parses a list of fields, such as `float roll pitch; uint8_t mode`; returns the type and the name of each field.
 fn fields(text: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
     text.split(';').flat_map(|group| {
         let mut words = group.split_whitespace();

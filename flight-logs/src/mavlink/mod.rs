@@ -1,8 +1,8 @@
 //! Reads telemetry logs of a ground station, `.tlog`: packets of `MAVLink` 1 and 2, each preceded by its time of
 //! arrival.
 //!
-//! Every common message is a topic; the same message from a second sender is on a topic of its own, such as
-//! `ATTITUDE:1`. Packets of other messages are skipped.
+//! Every type of common message is a topic. Messages of the same type from a second sender are on a topic of their own,
+//! such as `ATTITUDE:1`. Packets of other types are skipped.
 
 mod messages;
 
@@ -36,11 +36,12 @@ pub(crate) struct Mavlink {
 /// A packet, and the time of its arrival.
 struct Packet<'a> {
     microseconds: u64,
-    /// System and component that sent the packet.
+    /// `MAVLink` ids of the system and of the component that sent the packet.
     sender: [u8; 2],
     number: u32,
     payload: &'a [u8],
-    /// Bytes that the checksum covers, without the byte `CRC_EXTRA`.
+    /// Bytes of the packet that the checksum covers. The checksum also covers a byte that is not in the packet,
+    /// [`Message::extra`].
     checked: &'a [u8],
     checksum: u16,
     /// Total length in bytes of the time stamp, the packet and the packet's signature.
@@ -87,8 +88,8 @@ fn look(left: &[u8]) -> Ahead<'_> {
 }
 
 impl Packet<'_> {
-    /// Returns whether the packet at the start of `left` is valid. The packet of a known message needs the right
-    /// checksum. The packet of an unknown message must be followed by another packet.
+    /// Returns whether the packet at the start of `left` is valid. If its message is known, the checksum must
+    /// be right. If not, another packet must follow.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
             Some(message) => {
@@ -102,7 +103,8 @@ impl Packet<'_> {
     }
 }
 
-/// Returns whether these bytes begin like a packet with its time stamp, or are too few to tell.
+/// Returns whether `next` can be a time stamp and then a packet: the byte after the time stamp is one with which packets
+/// start, or there is no such byte.
 fn is_followed(next: &[u8]) -> bool {
     next.get(TIME).is_none_or(|start| matches!(start, 0xfd | 0xfe))
 }

@@ -1,5 +1,5 @@
-//! Reads PX4's `ULog` files, each as a whole. Each registered message is a topic; further instances of a sensor have
-//! topics such as `sensor_accel:1`.
+//! Reads PX4's `ULog` files. The whole file is held in memory. Each message type that the log registers is a topic.
+//! Further instances of a sensor have topics such as `sensor_accel:1`.
 
 mod scan;
 
@@ -22,7 +22,7 @@ pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` a
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
     topics: Vec<Topic>,
-    /// Layout of the messages of each topic. The index is that of the topic in `topics`.
+    /// Layouts of the topics' messages, in the same order as `topics`.
     series: Vec<Series>,
     /// Valid data messages that are still to be read: index of the topic, and offset in the file.
     messages: std::vec::IntoIter<(usize, usize)>,

@@ -20,7 +20,7 @@ pub(crate) struct Findings {
     lengths: Found,
     damaged: Found,
     dropouts: Dropouts,
-    /// Offset of the last message if the file ends within it.
+    /// Offset in the file of the message that the end of the file cuts off, if there is one.
     pub(crate) cut: Option<usize>,
     /// Range of the first damage: from its first byte to the next valid message.
     pub(crate) damage: Option<Range<usize>>,
@@ -33,8 +33,7 @@ struct Found {
     first: usize,
 }
 
-/// Number, total duration and longest duration of the dropouts, in which the logger could not write. Durations are in
-/// ms.
+/// Statistics of the log's dropouts: periods in which the logger could not write. Durations are in ms.
 #[derive(Debug, Default)]
 struct Dropouts {
     count: u64,
@@ -93,7 +92,7 @@ pub(crate) struct Scan<'a> {
     registered: HashMap<u16, usize>,
     /// Topics in the order in which they were registered.
     pub topics: Vec<Topic>,
-    /// Layout of the messages of each topic. The index is that of the topic in `topics`.
+    /// Layouts of messages, one for each topic, in the order of `topics`.
     pub series: Vec<Series>,
     /// Valid data messages, in the order of the file: index of the topic, and offset in the file.
     pub messages: Vec<(usize, usize)>,
@@ -104,8 +103,8 @@ pub(crate) struct Scan<'a> {
 pub(crate) struct Series {
     /// Path to the field with the time at which a message was logged.
     pub time: Path,
-    /// Lengths of a message in bytes: first without the padding at its end, then with it. The logger usually leaves the
-    /// padding out.
+    /// Two lengths of a message in bytes: without the padding at its end, and with the padding. The logger usually
+    /// leaves the padding out.
     pub lengths: (usize, usize),
 }
 
@@ -182,7 +181,7 @@ impl<'a> Scan<'a> {
         (is_one && is_led).then_some(message)
     }
 
-    /// Returns whether the bytes from offset `at` on are three valid messages in a row.
+    /// Returns whether three valid messages follow each other, the first at offset `at`.
     fn goes_on(&self, at: usize, end: usize) -> bool {
         const ENOUGH: usize = 3;
         let mut next = at;
@@ -204,7 +203,8 @@ impl<'a> Scan<'a> {
         is_known(message) && (message.kind != b'D' || fits().is_some())
     }
 
-    /// Returns the topic id of a data message, and the number of bytes after the id.
+    /// Returns the topic id of a data message, and the number of bytes after the id; `None` if the message is too short
+    /// for an id.
     fn data_of(&self, message: &Message) -> Option<(u16, usize)> {
         let id = self.bytes[message.content.clone()].first_chunk()?;
         Some((u16::from_le_bytes(*id), message.content.len() - 2))
@@ -254,8 +254,8 @@ impl<'a> Scan<'a> {
     }
 
     fn register(&mut self, at: usize, content: &[u8]) {
-        /// Zeros that are decoded in place of a message, to find the length of the message by its definition. No
-        /// message is longer than 65 535 bytes.
+        /// A message of zeros. Decoding this message by a definition gives the length of messages with this definition.
+        /// No message is longer than 65 535 bytes.
         const NOTHING: &[u8] = &[0; 1 << 16];
         let registered = || {
             let (&[instance, low, high], name) = content.split_first_chunk()?;
@@ -286,7 +286,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// Returns whether `ULog` has messages of this kind with this length.
+/// Returns whether `ULog` defines the kind of a message, and allows the message's length for this kind.
 fn is_known(message: &Message) -> bool {
     let length = message.content.len();
     match message.kind {

@@ -294,7 +294,7 @@ fn stepped(script: &mut Script) {
     let steps = Steps {
         inputs: script.byte().into(),
         has_bias: script.below(2) == 0,
-        rows: (script.byte() & 15).into(),
+        rows: &few(script),
         layers: &layers,
         rungs: script.byte().into(),
         leaks: &leaks,

@@ -46,3 +46,16 @@ fn decoded_values_have_times() {
     assert!(furthest.unwrap() < 20_000, "{furthest:?}");
     assert!(decoded.is_sorted());
 }
+
+#[test]
+fn a_quoted_header_of_euroc_is_read_as_a_bare_one() {
+    let rows = (0..400).map(|row| format!("{},{}\n", row * 5_000_000, f64::from(row).sin()));
+    let rows = rows.collect::<String>();
+    let encoded = |header: &str| {
+        let ran = good("encode --scheme sf --threshold 0.5 -", &format!("{header}\n{rows}"));
+        assert!(ran.stderr.contains("in ns from column `timestamp [ns]`"), "{}", ran.stderr);
+        ran.output
+    };
+    let quoted = encoded("\"#timestamp [ns]\",\"w_RS_S_x [rad s^-1]\"");
+    assert_eq!(quoted, encoded("#timestamp [ns],w_RS_S_x [rad s^-1]"));
+}

@@ -4,6 +4,7 @@ mod bank;
 mod flown;
 
 pub use bank::BankAdvice;
+pub use flown::{Verdict as FlightVerdict, verdict};
 
 use crate::Result;
 use crate::brief::{brief, short};
@@ -58,8 +59,9 @@ pub struct AdviseRequest {
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
     /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
     pub loop_bandwidth: Option<f64>,
-    /// Share of frames that the link loses, in percent, 0 to 10. If `loop_bandwidth` is given, the advice excludes each
-    /// code with which a simulated drone crashed or strayed far at such a loss.
+    /// Percentage of frames that the link loses, 0 to 10. If `loop_bandwidth` is given, some codes are excluded from
+    /// the advice. These are the codes with which a simulated drone crashed or strayed far when as many frames were
+    /// lost.
     pub frame_loss: f64,
     /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
     /// on it.
@@ -113,7 +115,7 @@ pub struct Advice {
     unflown: Vec<String>,
     /// Whether a search stopped before it had scored all its settings.
     is_cut_short: bool,
-    /// Largest latency in samples that the control loop tolerates, if its bandwidth is known.
+    /// Largest latency that the control loop tolerates, in samples. `None` if the bandwidth of the loop is unknown.
     loop_latency: Option<f64>,
     /// Bytes a second that the raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,
@@ -357,7 +359,11 @@ impl Advice {
         let options = row.settings.to_asked(scheme.info());
         let trial = Trial::new(scheme, &options, problem.sample, recording)?;
         let link_bytes_per_second = match recording.rate {
-            Some(rate) => Some(link_bytes(&trial, rate)? * rate / recording.values.len() as f64),
+            Some(rate) => {
+                // One keyframe a second, as it suits a recorder: a loop's bank has more.
+                let bytes = link_bytes(&trial, rate, rate.round() as u64)?;
+                Some(bytes * rate / recording.values.len() as f64)
+            }
             None => None,
         };
         let scheme = Some(scheme);
@@ -503,17 +509,17 @@ impl Advice {
 }
 
 /// Returns the number of bytes that a trial's events take on the crate's link, if each frame is sent once it is full. A
-/// scheme whose decoder needs keyframes sends one keyframe a second.
+/// scheme whose decoder needs keyframes sends one after every `keyframe_every` samples.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.
-pub fn link_bytes(trial: &Trial, rate: f64) -> Result<f64> {
+pub fn link_bytes(trial: &Trial, rate: f64, keyframe_every: u64) -> Result<f64> {
     let period = (1e6 / rate).round().max(1.0);
     let format: Format = format!("link,period={period}").parse()?;
     let mut writer = format.writer(true);
     let mut bytes: Vec<u8> = Vec::new();
     let tick = |sample: u64| Tick::from_micros((sample as f64 * period) as u64);
-    let (mut next, every) = (0, rate.round().max(1.0) as u64);
+    let (mut next, every) = (0, keyframe_every.max(1));
     for event in &trial.events {
         while trial.scheme.info().has_first_value() && event.sample >= next {
             let value = trial.decoded.get(next as usize).copied().unwrap_or_default();

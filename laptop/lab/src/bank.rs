@@ -41,7 +41,7 @@ impl Bank {
         self.neurons.into()
     }
 
-    /// Returns the latency: the number of samples from a sample to its code.
+    /// Returns the latency of the code: the number of samples by which the encoder's output lags behind its input.
     pub fn latency(&self) -> usize {
         self.codecs.first().map_or(0, Codec::latency)
     }
@@ -85,7 +85,8 @@ impl Bank {
     /// Decodes the next samples of all channels from their events.
     ///
     /// # Errors
-    /// Returns the first event of a sample whose events no encoder could emit together.
+    /// Returns an error if a sample has a combination of events that no encoder can emit. The error is the sample's
+    /// first event.
     pub fn decode(
         &mut self,
         samples: usize,
@@ -112,7 +113,7 @@ mod tests {
     use super::{Bank, Scheme};
     use catalogue::run::{Asked, Known, SampleType};
 
-    /// Stochastic codes of channels that have the same values and settings do not fire together.
+    /// With a stochastic code, two channels fire at different times even if their values and settings are the same.
     #[test]
     fn channels_draw_apart() {
         for name in ["bernoulli", "grf-prob"] {

@@ -50,8 +50,9 @@ pub struct Codec {
     pub coding: Coding,
 }
 
-/// Writes a crate that builds a C library of these codecs, with their parameters in flash. The crate is written into
-/// the new directory `directory`. It depends on the checkout at `spikewire`, or on the published crates if `None`.
+/// Writes a crate into the new directory `directory`. The crate builds a C library of these codecs, with their
+/// parameters in flash. If `spikewire` is the path of a checkout, the crate depends on this checkout. If `spikewire` is
+/// `None`, the crate depends on the published crates.
 ///
 /// # Errors
 /// Returns an error if a parameter is missing or invalid, if the C library does not offer a scheme, if two codecs share
@@ -74,11 +75,13 @@ pub fn c_crate(codecs: &[Codec], directory: &Path, spikewire: Option<&Path>) -> 
 }
 
 /// Writes a crate into the new directory `directory`. The crate builds a C library with a sender and a receiver for
-/// each flight. `flights` pairs each flight with its name in C. If `spikewire` is the path of a checkout, the crate
-/// depends on this checkout; if it is `None`, the crate depends on the published crates.
+/// each flight (scheme and channels of a drone). `flights` pairs a name in C with each flight. If `spikewire` is the
+/// path of a checkout, the crate depends on this checkout. If `spikewire` is `None`, the crate depends on the published
+/// crates.
 ///
 /// # Errors
-/// Returns an error if a scheme has no constant, if two flights share a name, or if the directory exists.
+/// Returns an error if a scheme cannot be written as a constant in Rust, if two flights share a name, or if the
+/// directory exists.
 pub fn c_flights(
     flights: &[(String, Flight)],
     directory: &Path,
@@ -124,7 +127,8 @@ fn declared(Codec { name, coding }: &Codec) -> Result<String> {
     Ok(declaration(name, *scheme, &settings, &scheme.constant(&settings)?))
 }
 
-/// Returns the lines that declare a codec with the given name and constant in `spikewire_c::codecs!`.
+/// Returns the lines that declare a codec in the macro `spikewire_c::codecs!`. `name` is the codec's name, and
+/// `constant` gives its type and value.
 fn declaration(name: &str, scheme: Scheme, settings: &Settings, constant: &Constant) -> String {
     let Constant { scheme: kind, value } = constant;
     let text = Coding::of_settings(scheme, settings).to_toml(&[]);

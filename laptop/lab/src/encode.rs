@@ -63,7 +63,7 @@ pub(crate) struct Start<'a> {
     pub is_timed: bool,
     /// Number of samples at the start of the recording from which the usual time between samples was measured.
     pub first: usize,
-    /// Reads the whole recording, and returns the smallest and largest sample of each channel.
+    /// Function that reads the whole recording, and returns the smallest and largest sample of each channel.
     pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,
 }
 
@@ -122,7 +122,7 @@ pub(crate) fn encode_from(
         Some(needs) if input.is_stdin() => {
             return Err(RequestKind::ReadOnce { scheme: scheme.name(), needs }.into());
         }
-        Some(_) => Some(calibrate(open, sample)?),
+        Some(_) => Some(calibrate(open, sample, parameters)?),
     };
 
     let mut source = open()?;
@@ -159,7 +159,7 @@ pub(crate) fn encode_from(
         let ranges = |all: &[Calibrated]| all.iter().filter_map(Calibrated::range).collect();
         match &calibrated {
             Some(all) => Ok(ranges(all)),
-            None => Ok(ranges(&calibrate(open, sample)?)),
+            None => Ok(ranges(&calibrate(open, sample, parameters)?)),
         }
     };
     let mut writer = write(&Start {
@@ -224,11 +224,11 @@ fn first(source: &mut dyn Source, enough: usize) -> Result<Chunk> {
     Ok(all)
 }
 
-/// Calibrates each channel by reading the whole recording once.
+/// Calibrates each channel for these parameters, by reading the whole recording once.
 ///
 /// # Errors
 /// Returns an error if the input cannot be read.
-fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
+fn calibrate(open: &Open<'_>, sample: SampleType, parameters: &Asked) -> Result<Vec<Calibrated>> {
     let mut calibrated = Vec::new();
     let (mut source, mut chunk) = (open()?, Chunk::default());
     loop {
@@ -237,7 +237,7 @@ fn calibrate(open: &Open<'_>, sample: SampleType) -> Result<Vec<Calibrated>> {
             return Ok(calibrated);
         }
         let finite = chunk.kept(&chunk.finite_rows());
-        calibrated.resize_with(finite.len(), || Calibrated::new(sample));
+        calibrated.resize_with(finite.len(), || Calibrated::of(sample, parameters));
         for (calibrated, column) in calibrated.iter_mut().zip(&finite) {
             calibrated.observe(column);
         }

@@ -1,5 +1,5 @@
-//! The library's errors, as values. A program matches on an error's kind. Each front end (command line, Python, web
-//! page) formats errors with its own spelling of the settings.
+//! The library's errors, as values. A program matches on an error's kind. The text of an error names settings as the
+//! front end (command line, Python, web page) spells them.
 
 use crate::events::EventsKind;
 #[cfg(feature = "frames")]
@@ -78,10 +78,10 @@ pub enum ErrorKind {
     /// A video, or a picture of it, cannot be read or written.
     #[cfg(feature = "frames")]
     Frames(FramesKind),
-    /// A trained network is refused, or a setting or spikes for the network are refused.
+    /// A trained network cannot be used, or a setting or spikes do not fit the network.
     #[cfg(feature = "networks")]
     Network(NetworkKind),
-    /// A NIR file cannot be read, or its graph is not supported.
+    /// A NIR file (a network as a graph) cannot be read, or its graph is not supported.
     #[cfg(feature = "networks")]
     Nir(NirKind),
     /// The parameters of a layer of a network are invalid.
@@ -90,7 +90,7 @@ pub enum ErrorKind {
     /// A trained network does not fit a chip or the controller.
     #[cfg(feature = "networks")]
     Fit(FitKind),
-    /// A run on a chip's model fails.
+    /// The software model of a chip fails when it runs a network.
     #[cfg(feature = "networks")]
     Model(ModelKind),
     /// A serial port cannot be read.
@@ -263,7 +263,7 @@ impl Place {
         Self { file: Some(file.into()), spot: None }
     }
 
-    /// Returns the place of a fault at a spot in a file.
+    /// Returns the place of a fault: a file, and the line or other spot in the file.
     pub fn spot(file: impl Into<String>, spot: Spot) -> Self {
         Self { file: Some(file.into()), spot: Some(spot) }
     }

@@ -1,5 +1,5 @@
-//! The laptop's part in a flight. A `flight.toml` describes the scheme and the channels of the drone's sender. This
-//! module reads the channels from a recording, and decodes the sender's frames to values.
+//! Reads the channels of a flight from a recording, and decodes the sender's frames to values. A flight is the scheme
+//! and the channels of a drone's sender, as a file `flight.toml` describes them.
 
 use crate::Result;
 use crate::coding::Coding;
@@ -24,20 +24,20 @@ impl From<FlightError> for crate::Error {
 }
 
 impl Coding {
-    /// Makes the coding of a `flight.toml`, with the parameters of all its channels.
+    /// Returns the scheme and sample type of a `flight.toml`, with the parameters of all its channels.
     pub fn of_flight(flight: &Flight) -> Self {
         let scheme = Scheme::from(flight.run_time());
         Self { scheme, sample: flight.sample, asked: flight.asked_of_all() }
     }
 }
 
-/// Makes a [`Flight`] of tuned channels, each with its name, scheme and settings, for samples of the type `sample` at
-/// `rate` samples a second. The flight sends 20 keyframes a second.
+/// Makes a [`Flight`] of tuned channels. `rows` gives the name, the scheme and the settings of each channel. The
+/// samples have the type `sample`, and there are `rate` of them a second. The flight sends 20 keyframes a second.
 ///
 /// # Errors
-/// Returns an error if there are no channels, or if their schemes differ. Returns an error if a parameter that must be
-/// equal in all channels, such as a filter or a count, differs. Returns an error if the sample period cannot be
-/// expressed in whole µs.
+/// Returns an error if there are no channels, or if their schemes differ. Returns an error if the channels differ in a
+/// parameter that must be equal, such as a filter or the number of neurons. Returns an error if the sample period
+/// cannot be expressed in whole µs.
 pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
     let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
     if rows.iter().any(|(_, own, _)| own != scheme) {
@@ -49,12 +49,12 @@ pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> 
     of_settings(*scheme, sample, rate, rows.iter().map(asked))
 }
 
-/// Makes a [`Flight`] of channels, each with its name and the parameters that are set. The flight sends 20 keyframes a
-/// second.
+/// Makes a [`Flight`] that sends 20 keyframes a second. `channels` gives the name of each channel, and the parameters
+/// that are set for it.
 ///
 /// # Errors
-/// Returns an error if there are no channels, or if a parameter that must be equal in all channels, such as a filter or
-/// a count, differs. Returns an error if the sample period cannot be expressed in whole µs.
+/// Returns an error if there are no channels, or if the sample period cannot be expressed in whole µs. Returns an error
+/// if the channels differ in a parameter that must be equal, such as a filter or a count.
 pub fn of_settings(
     scheme: Scheme,
     sample: SampleType,

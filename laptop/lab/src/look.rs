@@ -33,13 +33,16 @@ pub struct ChannelSummary {
     pub noise: f64,
     /// Frequency in Hz below which 99 % of the power around the mean lies.
     pub bandwidth: Option<f64>,
-    /// Percentage of samples that have the lowest or the highest value and stand in runs of three or more.
+    /// Percentage of samples that are clipped. A sample is clipped if it has the lowest or the highest value and
+    /// belongs to a run of three or more equal samples.
     pub clipped: f64,
-    /// Lowest and highest sample while the channel is quiet. `None` if the channel is always or never quiet.
+    /// Lowest and highest sample in the quiet windows, which [`resting`](Self::resting) defines. `None` if all windows
+    /// are quiet, or if none is.
     pub rest: Option<[f64; 2]>,
-    /// Lowest and highest sample while the channel is not quiet. `None` if the channel is always or never quiet.
+    /// Lowest and highest sample in the windows that are not quiet. `None` if all windows are quiet, or if none is.
     pub flight: Option<[f64; 2]>,
-    /// Percentage of samples during which the channel is quiet.
+    /// Percentage of windows of 64 samples in which the channel is quiet. A window is quiet if its standard deviation
+    /// is at most four times the fifth percentile of all windows' standard deviations.
     pub resting: f64,
     /// Fitness for tuning.
     pub verdict: Verdict,
@@ -265,8 +268,8 @@ mod tests {
         (0..count).map(next).collect()
     }
 
-    /// The estimated standard deviation of uniform noise of width 1 is within 25 % of the true one, √(1/12). The
-    /// estimate is as good if the noise lies on a slow wave of amplitude 40.
+    /// The estimated standard deviation of uniform noise of width 1 is within 25 % of the true one, √(1/12). The same
+    /// holds if a slow wave of amplitude 40 is added to the noise.
     #[test]
     fn noise_is_found_under_a_wave() {
         let noisy = white(6400);

@@ -4,12 +4,13 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Maximum error of a sample type that is fine enough for a column's steps from sample to sample. The error is the mean
-/// error that rounding to the type causes in a step, as a share of the mean step. A sample type with a larger error is
-/// said to lose the steps.
+/// Limit on the rounding error of a sample type. The error is the mean change that rounding to the type causes in a
+/// step from sample to sample, as a share of the mean step. A sample type whose error exceeds the limit is said to lose
+/// the steps.
 const PART: f64 = 0.1;
 
-/// The steps of a column from sample to sample, and the errors that rounding to a sample type causes in them.
+/// Statistics of the steps from sample to sample in a column, and of the errors that rounding to a sample type causes
+/// in these steps.
 pub struct Resolution {
     sample: SampleType,
     previous: Option<f64>,
@@ -42,7 +43,8 @@ impl Resolution {
         }
     }
 
-    /// Examines the steps of a whole column, and the errors that rounding to the sample type `sample` causes in them.
+    /// Measures the steps from sample to sample in a whole column. Also measures how much rounding to the sample type
+    /// `sample` changes these steps.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
@@ -72,9 +74,9 @@ impl Resolution {
         self.off > 0.0
     }
 
-    /// Returns a sentence for the user if the sample type is too coarse for the column's steps from sample to sample.
-    /// The sentence also names the sample types that hold these steps. Returns `None` if the sample type is fine
-    /// enough.
+    /// Returns a sentence for the user if the sample type is too coarse for the differences between consecutive samples
+    /// of the column. The sentence also names the sample types that are fine enough. Returns `None` if this sample
+    /// type is fine enough.
     pub fn lost(&self) -> Option<String> {
         let Self { sample, steps, moved, off, .. } = self;
         (*off > PART * moved).then(|| {
@@ -88,7 +90,8 @@ impl Resolution {
         })
     }
 
-    /// Returns a text that names the sample types which hold the steps, or says that no sample type does.
+    /// Returns a text that names other sample types, in which rounding causes little error in the steps from sample to
+    /// sample. If there are no such types, the text says so.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()
@@ -132,9 +135,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether the column keeps its steps from sample to sample if its values are rounded to multiples of
-    /// `step`. Rounding changes each of these steps by a third of `step` on average. To be safe, half of `step` is
-    /// assumed.
+    /// Returns whether rounding to multiples of `step` leaves the column's changes from sample to sample nearly as they
+    /// are. On average, rounding alters a change by a third of `step`. To be safe, the check assumes half of `step`.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }
@@ -171,7 +173,8 @@ mod tests {
         assert!(lost("q8.8", |sample| 100.0 * fine(sample)).is_empty());
     }
 
-    /// For columns of all sizes and steps, the suggested sample types hold the steps that the given sample type loses.
+    /// If a sample type is too coarse for a column, `lost` suggests other types. Each of these types is fine enough,
+    /// whatever the size of the column's values and steps.
     #[test]
     fn a_type_that_is_named_holds_the_steps() {
         for offset in [0.0, 3.7, 250.0, 4e4, 1e6, 3e8, 2e9, 7e12] {

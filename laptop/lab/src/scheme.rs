@@ -1,4 +1,4 @@
-//! Schemes of the catalogue, by their names.
+//! Finds the schemes of the catalogue by name.
 
 use catalogue::run::RunTime;
 use std::fmt;

@@ -16,7 +16,8 @@ pub struct Figures {
     pub samples: usize,
     /// Number of spikes.
     pub spikes: usize,
-    /// Percentage of samples without a spike, for a code with at most one spike a sample; see [`Trial::efficiency`].
+    /// Spiking efficiency in percent, as [`Trial::efficiency`] defines it. If the code emits at most one spike a
+    /// sample, the efficiency is the percentage of samples without a spike.
     pub efficiency: f64,
     /// Root mean square error, in the signal's unit.
     pub rmse: f64,
@@ -37,7 +38,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Scores a trial on its recording.
+    /// Computes the figures of a trial. The trial's decoded values are compared with the samples of the recording.
     pub fn of(recording: &Recording, trial: &Trial) -> Self {
         let samples = recording.values.len();
         let mean = recording.values.iter().sum::<f64>() / samples as f64;

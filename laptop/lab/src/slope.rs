@@ -13,7 +13,7 @@ pub struct Slope {
     /// Name of the scheme.
     #[serde(skip)]
     scheme: &'static str,
-    /// Whether no change from one sample to the next exceeds the threshold.
+    /// Whether the code can follow the signal: no change from one sample to the next exceeds the threshold.
     follows: bool,
     /// Number of changes from one sample to the next that exceed the threshold.
     steps_above_threshold: usize,
@@ -22,14 +22,15 @@ pub struct Slope {
     /// Largest slope that the code can follow: the threshold times the sample rate, or the threshold if the rate is
     /// unknown.
     fastest: f64,
-    /// Largest slope of the signal, in the unit of `fastest`.
+    /// Largest slope of the signal, per second or, if the sample rate is unknown, per sample.
     steepest: f64,
     /// Unit of time of `fastest` and `steepest`: `second` or `sample`.
     per: &'static str,
 }
 
 impl Slope {
-    /// Measures the slopes. Returns `None` for a code whose decoded value can move by more than one step a sample.
+    /// Compares the largest slope of the recording with the largest slope that the code can follow. Returns `None` if
+    /// the decoded value of the code can move by more than one step from sample to sample.
     pub fn new(scheme: Scheme, recording: &Recording, settings: &Settings) -> Option<Self> {
         let threshold = settings.number(scheme.info().climbs_by?).ok()?;
         let segments = recording.segments.iter().map(|own| &recording.values[own.clone()]);
@@ -47,7 +48,8 @@ impl Slope {
         })
     }
 
-    /// Returns the share of samples at which the signal changes by more than the code can follow.
+    /// Returns the share of samples at which the signal changes by more than the threshold. The code cannot follow such
+    /// a change.
     pub fn part(&self) -> f64 {
         self.part
     }

@@ -24,8 +24,7 @@ impl Timeline {
         }
     }
 
-    /// Returns the number of known times that lie ahead. They belong to samples after the one that was last passed to
-    /// [`at`](Self::at).
+    /// Returns the number of known times that belong to samples after the one last passed to [`at`](Self::at).
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }

@@ -11,6 +11,7 @@ use catalogue::run::{Asked, Calibrated, Event, Known, SampleType, Settings, Shap
 use std::ops::Range;
 
 /// One channel of a recording, in memory.
+#[derive(Clone)]
 pub struct Recording {
     /// The finite samples.
     pub values: Vec<f64>,
@@ -33,8 +34,8 @@ pub struct Recording {
 impl Recording {
     /// Makes a recording of evenly spaced samples, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// Longest step in time that does not count as a gap, as a multiple of the usual step. The value has no effect,
-        /// because the samples have no times.
+        /// Longest time between two samples that does not count as a gap, as a multiple of the usual time.
+        /// [`Clock::new`] requires this limit. Here the limit has no effect, because the samples have no times.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -91,8 +92,8 @@ impl Recording {
             .collect()
     }
 
-    /// Returns the recording with each sample replaced by the filter's value for it. `start` makes a new filter for
-    /// each segment.
+    /// Returns the recording with each sample replaced by the output of a filter. `start` makes a new filter for each
+    /// segment.
     #[must_use]
     pub fn filtered<F: FnMut(f64) -> f64>(&self, mut start: impl FnMut() -> F) -> Self {
         let mut values = self.values.clone();
@@ -171,7 +172,7 @@ pub struct Trial {
     pub settings: Settings,
     /// Numbers of neurons and sub-timesteps.
     pub shape: Shape,
-    /// Latency of the code: how many samples after a sample the encoder emits its code.
+    /// Latency of the code: the number of samples by which the encoder's output lags behind its input.
     pub latency: usize,
     /// Notes for the user on whether the parameters suit the recording.
     pub notes: Vec<String>,
@@ -233,8 +234,8 @@ impl Trial {
     }
 }
 
-/// Returns a note if the decoded values are too low or too high, on average by more than the signal's standard
-/// deviation.
+/// Compares the mean of the decoded values with the mean of the signal. Returns a note if the two means differ by more
+/// than the signal's standard deviation.
 fn low(values: &[f64], decoded: &[f64]) -> Option<String> {
     let mean = |sum: f64| sum / values.len() as f64;
     let center = mean(values.iter().sum());

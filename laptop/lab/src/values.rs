@@ -1,4 +1,5 @@
-//! Decodes link frames to values in any sample type, with the receiver that also runs on boards.
+//! Decodes link frames (packets of events from a sender) to values in any sample type. The receiver is the one that
+//! also runs on boards.
 
 use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
@@ -31,8 +32,8 @@ pub struct Link {
     /// schemes. If the number of channels is not known, the receiver tries numbers of channels until one gives the
     /// fingerprint in the frames.
     pub fingerprint: Option<Fingerprint>,
-    /// Largest deviation of the sample period from its nominal length, in parts per million. `None` stands for the
-    /// receiver's default.
+    /// Largest deviation of the sample period from its nominal length, in parts per million. If `None`, the receiver
+    /// uses its default.
     pub clock_ppm: Option<u32>,
 }
 
@@ -237,24 +238,26 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of decoded values that were dropped because their channel does not exist. Events beyond the receiver's
-    /// `N` channels are not included; the receiver counts these itself.
+    /// Number of decoded values that were dropped because their channel does not exist. This number does not include
+    /// events beyond the receiver's `N` channels, which the receiver counts itself.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if there are none.
     slot_ticks: u32,
-    /// Fingerprint of the sender, if the caller gave it.
+    /// Fingerprint (hash of the parameters) of the sender, if the caller gave it.
     known: Option<Fingerprint>,
-    /// Fingerprint of each channel's scheme, or a single fingerprint if one scheme stands for any number of channels.
+    /// Fingerprint (hash of the parameters) of each channel's scheme. The list has a single fingerprint if all channels
+    /// have the same scheme and the number of channels is unknown.
     schemes: Vec<Fingerprint>,
-    /// Whether any value so far was exact.
+    /// Whether any decoded value so far was known to equal the encoder's value.
     has_exact: bool,
     decoded: Vec<(u16, Tick, P::Sample)>,
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels the keyframes of the sender's sample type as keyframes of the decoders' type, because the decoders have
-    /// one type for all fixed-point types of a width. If the two types differ, keyframes that already have the
-    /// decoders' type are relabelled as the sender's, so that the receiver counts them as misfits.
+    /// Returns the frame with its keyframes in the decoders' sample type. The decoders use one type for all fixed-point
+    /// types of a width, so this type may differ from the sender's. If it does, keyframes of the sender's type get the
+    /// decoders' type. A keyframe that arrives in the decoders' type is then wrong: it gets the sender's type, so that
+    /// the receiver counts it as a misfit (a thing that does not fit the scheme).
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -267,13 +270,14 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         Received { frame, ..*received }
     }
 
-    /// Returns whether each channel's value is exact.
+    /// Returns for each channel whether its decoded value is exact: known to equal the encoder's value.
     fn exact(&self) -> [bool; N] {
         let is_exact = |channel| self.receiver.exact(channel as u16).is_some();
         std::array::from_fn(|channel| channel < self.channels && is_exact(channel))
     }
 
-    /// Records which channels fire in a frame, and the tick at which the frame's last sample is over.
+    /// Records the channels that have an event in the frame. Also records the tick, in µs, at which the sample of the
+    /// frame's last event ends.
     fn observe(&mut self, received: &Received<'_>) {
         for event in received.frame.events() {
             if let Some(has_fired) =
@@ -315,10 +319,11 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         }
     }
 
-    /// Returns the fingerprint that a sender has if it uses the schemes of this receiver, in the sender's sample type.
-    /// If one scheme stands for all channels, the number of channels is unknown. The numbers from 1 to `N` are then
-    /// tried until the result equals `sender`. If no number gives `sender`, the result is the fingerprint for one
-    /// channel.
+    /// Returns the fingerprint (hash of the parameters) that the sender must have if its schemes equal those of this
+    /// receiver. The fingerprint is computed for the sender's sample type.
+    ///
+    /// If one scheme stands for all channels, the number of channels is unknown. In this case, all numbers from 1 to
+    /// `N` are tried, until a fingerprint equals `sender`. If none does, the result is the fingerprint for one channel.
     fn fingerprint(&self, sender: Fingerprint) -> Fingerprint {
         let of = |schemes: &[_]| Fingerprint::of_bank(self.kind, 0, self.slot_ticks, schemes);
         match *self.schemes {

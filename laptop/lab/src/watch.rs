@@ -9,7 +9,7 @@ pub struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    /// A watch that follows nothing and lets the work run to its end.
+    /// A watch that ignores the progress and never stops the work.
     pub const NONE: Watch<'static> = Watch { is_stopped: &|| false, tell: &|_| () };
 }
 

@@ -1,21 +1,24 @@
 // The other axes of the sensor: each with its spikes by the settings that are open, below the channel that is looked at.
 
-import { at, css, element, fine, fixed } from "./dom.js";
+import { css, element, fine, fixed } from "./dom.js";
 import { siblings } from "./channels.js";
 import { Library } from "./library.js";
-import { Times } from "./plots.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
-import { loadRequest, openRequest, state } from "./state.js";
+import { choiceOf, loadRequest, openRequest, state } from "./state.js";
+import { Times } from "./times.js";
 
 /** Longer recordings show one channel alone: each axis takes 24 bytes a sample. */
 const MOST_SAMPLES = 3_000_000;
 const HEIGHT = 56, RASTER = 12;
 
+/** How axes are read: another rate is another recording. */
+const keyOf = ({ topic, rate, skip }) => JSON.stringify([topic, rate, skip]);
+
 export class Axes {
   #all = [];
   #of;
   #setting;
-  #isRunning = false;
+  #running;
 
   constructor(host, plots) {
     [this.host, this.plots] = [host, plots];
@@ -23,53 +26,56 @@ export class Axes {
 
   /** What was open is gone. */
   forget() {
-    const { opened } = state, topic = at("topic").value;
-    if (this.#of && this.#of.opened === opened && this.#of.topic === topic) return;
+    if (this.#of && this.#of.opened === state.opened && this.#of.key === keyOf(state.channel)) return;
     for (const { library } of this.#all) library.stop();
     this.#all = [];
     this.#of = undefined;
     this.host.textContent = "";
   }
 
-  /** Runs a setting on the other axes of the topic that is open, and draws them. */
-  async show(setting) {
-    const { opened, recording } = state, topic = at("topic").value, shown = at("field").value;
+  /** Runs a setting on the axes of the topic that is open, and draws them. */
+  show(setting) {
+    const { opened, recording } = state, { topic, field: shown, asked } = recording;
     this.#setting = structuredClone(setting);
     if (!opened || recording.samples > MOST_SAMPLES) return;
     if (!this.#of) {
       const fields = siblings(opened.topics, topic);
-      this.#of = { opened, topic };
+      this.#of = { opened, key: keyOf(asked), asked };
       this.#all = fields.length < 2 ? [] : fields.map((field) => ({ field, library: new Library() }));
       this.host.replaceChildren(...this.#all.map((axis) => this.#strip(axis)));
     }
     for (const { field, button } of this.#all) button.setAttribute("aria-pressed", field === shown);
-    if (this.#isRunning) return;
-    this.#isRunning = true;
-    let done;
+    this.#running ??= this.#runAll().finally(() => (this.#running = undefined));
+  }
+
+  async #runAll() {
+    let done, all;
     do {
-      done = JSON.stringify(this.#setting);
-      await Promise.all(this.#all.map((axis) => this.#run(axis, JSON.parse(done))));
-    } while (done !== JSON.stringify(this.#setting));
-    this.#isRunning = false;
+      [done, all] = [JSON.stringify(this.#setting), this.#all];
+      await Promise.all(all.map((axis) => this.#run(axis, JSON.parse(done))));
+    } while (done !== JSON.stringify(this.#setting) || all !== this.#all);
   }
 
   async #run(axis, setting) {
     try {
       if (!axis.recording) {
-        const { opened } = state, acceptCut = at("accept-cut").checked;
-        await axis.library.ask(openRequest(opened, acceptCut), { files: opened.files });
-        const channel = { topic: at("topic").value, field: axis.field, rate: at("rate").value, skip: at("skip").checked };
-        axis.recording = await axis.library.ask(loadRequest(channel, acceptCut));
+        const { opened, asked: channel } = this.#of;
+        await axis.library.ask(openRequest(opened), { files: opened.files });
+        axis.recording = await axis.library.ask(loadRequest({ ...channel, field: axis.field }));
         axis.times = new Times(axis.recording.samples, axis.recording.rate, axis.recording.arrays.times);
         axis.signal = new Pyramid(axis.recording.arrays.values);
       }
-      axis.answer = await axis.library.ask({ ask: "run", choice: setting });
+      const choice = choiceOf(setting, axis.field), key = JSON.stringify(choice);
+      if (axis.key === key) return this.#draw(axis);
+      axis.answer = await axis.library.ask({ ask: "run", choice });
+      axis.key = key;
       axis.decoded = new Pyramid(axis.answer.arrays.decoded);
       const { spikes, spikes_per_second: rate, rmse } = axis.answer.figures;
       axis.words.textContent = `${axis.field}: ${rate === null ? `${fixed(spikes, 0)} spikes` : `${fixed(rate, 1)} spikes a second`}, RMSE ${fine(rmse)}`;
     } catch (error) {
       if (error.isStopped) return;
-      axis.answer = undefined;
+      axis.answer = axis.key = undefined;
+      axis.error = error;
       axis.words.textContent = `${axis.field}: ${error.message}`;
     }
     this.#draw(axis);
@@ -81,10 +87,7 @@ export class Axes {
     axis.canvas = element("canvas");
     axis.button = element("button", { type: "button", className: "axis" });
     axis.button.append(axis.words, axis.canvas);
-    axis.button.addEventListener("click", () => {
-      at("field").value = axis.field;
-      at("field").dispatchEvent(new Event("change"));
-    });
+    axis.button.addEventListener("click", () => this.onChoice(axis.field));
     return axis.button;
   }
 
@@ -125,9 +128,21 @@ export class Axes {
     }
   }
 
-  /** Each axis with what was asked of its parameters, for a flight's file; none where one has no answer. */
-  get channels() {
-    if (this.#all.some(({ answer }) => !answer)) return [];
-    return this.#all.map(({ recording: { name }, answer: { asked } }) => ({ name, parameters: asked }));
+  /** The least and greatest value of each axis that was read, by its field. */
+  get ranges() {
+    return Object.fromEntries(this.#all.filter(({ signal }) => signal).map(({ field, signal, recording }) => [field, signal.range(0, recording.samples)]));
+  }
+
+  /** When all have run: each axis with what was asked of its parameters, for a flight's file, and in words those that are left out. */
+  async outcome() {
+    await this.#running;
+    const { samples, opened, topic, field } = state.recording;
+    if (samples > MOST_SAMPLES && siblings(opened.topics, topic).length > 1) return { channels: [], left: [`${field} alone: the other axes of a recording this long are not read`] };
+    const isFlat = ({ signal, recording }) => signal && new Set(signal.range(0, recording.samples)).size === 1;
+    const good = this.#all.filter((axis) => axis.answer && !isFlat(axis)), bad = this.#all.filter((axis) => !good.includes(axis));
+    return {
+      channels: good.map(({ recording: { name }, answer: { asked } }) => ({ name, parameters: asked })),
+      left: bad.map((axis) => `${axis.field} ${isFlat(axis) ? "is flat" : `(${axis.error?.message ?? "not read"})`}: left out`),
+    };
   }
 }

@@ -7,11 +7,20 @@ const WINDOW = 10e6; // µs that the picture shows
 const COLOURS = ["--signal", "--decoded", "--b", "--c", "--ink", "--down"];
 const [WIDTH, HEIGHT, SIGNAL, LEFT] = [960, 360, 240, 70];
 
-/** Why this browser listens to no board; nothing if it does. */
-export function whyNot() {
-  if (!navigator.serial) return "this browser reads no serial port; Chromium, Chrome and Edge on a computer do, and “spikewire listen”";
+/** Why this browser listens to no board, or does not play a file; nothing if it does. */
+export function whyNot(isFile = false) {
+  if (!isFile && !navigator.serial) return "this browser reads no serial port; Chromium, Chrome and Edge on a computer do, and “spikewire listen”";
   if (!canWait) return "this browser's WebAssembly cannot wait for bytes; Chromium does from version 137 on";
   return "";
+}
+
+/** Lets the user choose a port, and opens it. */
+export async function serialPort(baudRate) {
+  const port = await navigator.serial.requestPort().catch((error) => {
+    throw error.name === "NotFoundError" ? new Error("no port was chosen") : error;
+  });
+  await port.open({ baudRate });
+  return port;
 }
 
 export class Board {
@@ -30,12 +39,9 @@ export class Board {
     this.#stop();
   }
 
-  /** Lets the user choose a port, and listens until it ends or is stopped; returns what should be known, in words. */
-  async listen(baudRate, options, onStart) {
-    const port = await navigator.serial.requestPort().catch((error) => {
-      throw error.name === "NotFoundError" ? new Error("no port was chosen") : error;
-    });
-    await port.open({ baudRate });
+  /** Listens to what `open` opens, a port or a file with `readable`, until it ends or is stopped; returns what should be known, in words. */
+  async listen(open, options, onStart) {
+    const port = await open();
     const library = new Library(), parts = { spikes: [], values: [] };
     this.#values.clear();
     [this.#spikes, this.#now] = [[], undefined];
@@ -74,7 +80,7 @@ export class Board {
     library.feed(new Uint8Array());
     const answer = await answered;
     library.stop();
-    await port.close().catch(() => {});
+    await port.close?.().catch(() => {});
     if (failed) throw failed;
     this.files = Object.fromEntries(Object.entries(parts).map(([name, own]) => [name, new Blob(own)]));
     if (answer.wrong) throw new Error(answer.wrong);

@@ -1,6 +1,8 @@
-// Error against efficiency: every dot is a setting to click.
+// Error against efficiency: every dot is a setting to click. Its labels are text beside the drawing.
 
-const [WIDTH, HEIGHT, LEFT, BOTTOM] = [720, 340, 76, 46];
+import { element } from "./dom.js";
+
+const [WIDTH, HEIGHT, AIR] = [640, 300, 8];
 const make = (name, attributes, parent) => {
   const own = document.createElementNS("http://www.w3.org/2000/svg", name);
   for (const [key, value] of Object.entries(attributes)) own.setAttribute(key, value);
@@ -19,22 +21,23 @@ export function draw(host, fronts, unit, onChoice) {
   const low = Math.max(-100, Math.min(90, Math.floor(Math.min(...all.map((own) => own.efficiency)) / 10) * 10));
   const errors = all.map((own) => Math.log10(own.rmse));
   const [least, most] = [Math.min(...errors) - 0.05, Math.max(...errors) + 0.05];
-  const x = (efficiency) => LEFT + ((efficiency - low) / (100 - low || 1)) * (WIDTH - LEFT - 12);
-  const y = (rmse) => 10 + ((most - Math.log10(rmse)) / (most - least || 1)) * (HEIGHT - BOTTOM - 10);
-  const svg = make("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "group", "aria-label": "Error against efficiency: each dot is a setting. Arrow keys go from dot to dot, Enter takes one." }, host);
+  const x = (efficiency) => AIR + ((efficiency - low) / (100 - low || 1)) * (WIDTH - 2 * AIR);
+  const y = (rmse) => AIR + ((most - Math.log10(rmse)) / (most - least || 1)) * (HEIGHT - 2 * AIR);
+  const svg = make("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "group", "aria-label": "Error against efficiency: each dot is a setting. Arrow keys go from dot to dot, Enter takes one." });
   const line = (x1, y1, x2, y2) => make("line", { x1, y1, x2, y2, stroke: "var(--grid)" }, svg);
-  const text = (words, at, more) => (make("text", { x: at[0], y: at[1], ...more }, svg).textContent = words);
-  for (let percent = low; percent <= 100; percent += (100 - low) / 5) {
-    line(x(percent), 10, x(percent), HEIGHT - BOTTOM);
-    text(short(percent), [x(percent), HEIGHT - BOTTOM + 16], { "text-anchor": "middle" });
-  }
-  for (let step = 0; step <= 4; step++) {
-    const rmse = 10 ** (least + ((most - least) * step) / 4);
-    line(LEFT, y(rmse), WIDTH - 12, y(rmse));
-    text(short(rmse), [LEFT - 6, y(rmse) + 4], { "text-anchor": "end" });
-  }
-  text("samples without a spike, %", [(LEFT + WIDTH) / 2, HEIGHT - 8], { "text-anchor": "middle" });
-  text(unit ? `RMSE, ${unit}` : "RMSE", [14, HEIGHT / 2 - 18], { transform: `rotate(-90 14 ${HEIGHT / 2 - 18})`, "text-anchor": "middle" });
+  const labels = (className, all) => {
+    const own = element("div", { className });
+    own.append(...all.map((textContent) => element("span", { textContent })));
+    return own;
+  };
+  const steps = (count) => Array.from({ length: count + 1 }, (_, step) => step / count);
+  const percents = steps(5).map((part) => low + part * (100 - low)), rmses = steps(4).map((part) => 10 ** (most - part * (most - least)));
+  for (const percent of percents) line(x(percent), AIR, x(percent), HEIGHT - AIR);
+  for (const rmse of rmses) line(AIR, y(rmse), WIDTH - AIR, y(rmse));
+  host.append(
+    element("p", { className: "of-rows", textContent: unit ? `RMSE, ${unit}` : "RMSE" }), labels("rows", rmses.map(short)), svg,
+    labels("columns", percents.map(short)), element("p", { className: "of-columns", textContent: "samples without a spike, %" }),
+  );
   let best = Infinity;
   const dots = all.map((own, place) => {
     const isBest = own.rmse < best;

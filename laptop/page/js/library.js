@@ -1,18 +1,19 @@
 // The library in threads of its own, so that the page never waits.
 
+import { decompress } from "fzstd";
+
 /** The library's module, unpacked and compiled once for all threads. */
-const compiled = (async () => {
-  const packed = Uint8Array.from(atob(WASM), (letter) => letter.charCodeAt(0));
-  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
-})();
+const compiled = WebAssembly.compile(decompress(Uint8Array.from(atob(WASM), (letter) => letter.charCodeAt(0))));
 
 const source = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
+
+const stopped = () => Object.assign(new Error("stopped"), { isStopped: true });
 
 export class Library {
   #worker = new Worker(source);
   #waiting = new Map();
   #next = 0;
+  #isStopped = false;
   #ready = compiled.then((wasm) => this.#worker.postMessage({ wasm }));
 
   constructor() {
@@ -38,6 +39,7 @@ export class Library {
   /** Asks; `onProgress` is told how far long work is. */
   async ask(request, { files, onProgress } = {}) {
     await this.#ready;
+    if (this.#isStopped) throw stopped();
     return new Promise((resolve, reject) => {
       const id = this.#next++;
       this.#waiting.set(id, { resolve, reject, onProgress });
@@ -47,8 +49,9 @@ export class Library {
 
   /** Ends the thread; what it was asked fails as stopped. */
   stop() {
+    this.#isStopped = true;
     this.#worker.terminate();
-    for (const own of this.#waiting.values()) own.reject(Object.assign(new Error("stopped"), { isStopped: true }));
+    for (const own of this.#waiting.values()) own.reject(stopped());
     this.#waiting.clear();
   }
 }

@@ -6,9 +6,11 @@ export function write({ example, channel, settings }) {
   if (example) link.set("example", example);
   for (const name of ["topic", "field", "rate"]) if (channel?.[name]) link.set(name, channel[name]);
   if (channel?.skip) link.set("skip", "1");
-  for (const { scheme, sample, parameters } of settings) {
+  settings.forEach(({ scheme, sample, parameters, own = {}, forces, isFlown, filter, keyframe_ms: keyframes }, place) => {
     link.append("s", new URLSearchParams({ "": `${scheme} ${sample}`, ...parameters }));
-  }
+    for (const [field, given] of Object.entries(own)) link.append("own", new URLSearchParams({ "": `${place} ${field}`, ...given }));
+    if (filter || keyframes || forces || isFlown) link.append("bank", `${place} ${JSON.stringify({ filter, keyframe_ms: keyframes, forces, isFlown })}`);
+  });
   return link.toString();
 }
 
@@ -20,6 +22,14 @@ export function read(hash) {
     const [scheme, sample = "f32"] = first.split(" ");
     return { scheme, sample, parameters };
   });
+  for (const text of link.getAll("own")) {
+    const { "": first = "", ...given } = Object.fromEntries(new URLSearchParams(text)), [, place, field] = /^(\d) (.*)$/.exec(first) ?? [];
+    if (settings[place]) settings[place].own = { ...settings[place].own, [field]: given };
+  }
+  for (const text of link.getAll("bank")) {
+    const { filter, keyframe_ms: keyframes, forces, isFlown } = JSON.parse(text.slice(2));
+    if (settings[text[0]]) Object.assign(settings[text[0]], { filter, keyframe_ms: keyframes, forces, isFlown });
+  }
   const channel = Object.fromEntries(["topic", "field", "rate"].map((name) => [name, link.get(name) ?? undefined]));
   return { example: link.get("example") ?? undefined, channel: { ...channel, skip: link.has("skip") }, settings };
 }

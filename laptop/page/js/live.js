@@ -1,8 +1,8 @@
 // What comes live: a clip or a camera as events, and a board on a serial port.
 
-import { Board, whyNot } from "./board.js";
+import { Board, serialPort, whyNot } from "./board.js";
 import { at, fail } from "./dom.js";
-import { state } from "./state.js";
+import { choiceOf, current, outcome, state } from "./state.js";
 import { save } from "./takeaway.js";
 import { Video } from "./video.js";
 
@@ -25,16 +25,19 @@ function endVideo() {
   at("end").hidden = true;
 }
 
-async function connect() {
-  fail("board-error", whyNot() && new Error(whyNot()));
-  if (whyNot() || at("connect").disabled) return;
+/** Listens to a board, or plays a file of what one sent. */
+export async function connect(file) {
+  const why = whyNot(Boolean(file));
+  fail("board-error", why && new Error(why));
+  if (file) at("board").scrollIntoView({ block: "nearest" });
+  if (why || at("connect").disabled) return;
   at("connect").disabled = true;
   try {
     let choice = null;
     if (at("meaning").value === "values") {
-      const { answer, error } = state.runs[state.current] ?? {};
+      const { answer, error } = outcome();
       if (!answer) throw error ?? new Error("there are no settings to decode by");
-      choice = { ...state.settings[state.current], parameters: answer.asked };
+      choice = { ...choiceOf(current(), state.recording.field), parameters: answer.asked };
     }
     const thresholds = at("thresholds").value.split(",").filter((text) => text.trim()).map(Number);
     if (thresholds.some(Number.isNaN)) throw new Error(`thresholds ${at("thresholds").value}: not numbers with commas between`);
@@ -43,7 +46,7 @@ async function connect() {
       at("heard").hidden = at("hang-up").hidden = false;
       at("board-files").hidden = true;
     };
-    at("board-words").textContent = (await board.listen(at("baud").valueAsNumber, options, onStart)).join("; ");
+    at("board-words").textContent = (await board.listen(() => (file ? { readable: file.stream() } : serialPort(at("baud").valueAsNumber)), options, onStart)).join("; ");
     at("board-files").hidden = false;
   } catch (error) {
     fail("board-error", error);
@@ -57,7 +60,7 @@ export function listenToLive() {
   at("camera").addEventListener("click", () => watch());
   at("end").addEventListener("click", endVideo);
   at("levels").addEventListener("input", ({ target }) => { video.threshold = target.valueAsNumber; at("level").textContent = target.value; });
-  at("connect").addEventListener("click", connect);
+  at("connect").addEventListener("click", () => connect());
   at("hang-up").addEventListener("click", () => board.stop());
   for (const button of document.querySelectorAll("[data-heard]")) button.addEventListener("click", () => save(`${button.dataset.heard}.csv`, board.files[button.dataset.heard], "text/csv"));
   if (whyNot()) at("board-words").textContent = `Not here: ${whyNot()}.`;

@@ -3,38 +3,27 @@
 import uPlot from "uplot";
 import { listen } from "./gestures.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
+import { Times } from "./times.js";
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const AXIS = 64;
+/** A series that is hidden. */
+const NOTHING = { at: () => null, range: () => [null, null] };
 const line = uPlot.paths.linear();
-
-/** When samples are: in seconds where that is known, else their numbers. */
-export class Times {
-  constructor(count, rate, times) {
-    [this.count, this.rate, this.times] = [count, rate, times];
-    this.unit = times || rate ? "s" : "sample";
-    this.step = 1 / (rate ?? 1);
-  }
-  at(sample) {
-    if (sample >= this.count) return this.at(this.count - 1) + (sample - this.count + 1) * this.step;
-    return this.times ? this.times[sample] : sample * this.step;
-  }
-  /** The first sample at a time or later. */
-  first(time) {
-    const sample = this.times ? lowerBound(this.times, time) : Math.ceil(time / this.step - 1e-9);
-    return Math.max(0, Math.min(this.count, sample));
-  }
-}
 
 export class Plots {
   /** `onRange` is told the samples in view, `onCursor` the one under the pointer, and the one with the mark. */
   constructor(host, { onRange, onCursor }) {
     Object.assign(this, { host, onRange, onCursor });
     this.runs = [];
+    /** The colours of the series that the user hides. */
+    this.hidden = new Set();
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
-  setRecording(recording) {
+  /** Shows a recording, unless it is shown already. */
+  look(recording) {
+    if (recording === this.recording || !recording) return;
     this.recording = recording;
     this.times = new Times(recording.samples, recording.rate, recording.arrays.times);
     this.signal = new Pyramid(recording.arrays.values);
@@ -47,7 +36,11 @@ export class Plots {
   }
 
   /** Shows these runs, each with `decoded`, spikes, colour and name. */
-  setRuns(runs) {
+  setRuns(runs, hidden) {
+    this.hidden = hidden;
+    const isShown = hidden.size === this.shownHidden && runs.length === this.runs.length && runs.every((own, place) => own === this.runs[place]);
+    if (isShown && this.upper) return;
+    this.shownHidden = hidden.size;
     const shape = (all) => all.map((own) => `${own.name}${own.colour}${own.neurons}`).join();
     const isSame = shape(runs) === shape(this.runs);
     for (const own of runs) own.pyramid ??= new Pyramid(own.arrays.decoded);
@@ -132,6 +125,11 @@ export class Plots {
     this.draw();
   }
 
+  /** Columns of pixels that the signal has. */
+  columns() {
+    return Math.max(100, this.width() - AXIS);
+  }
+
   /** The samples in view. */
   samples() {
     return [this.times.first(this.view[0]), this.times.first(this.view[1] + this.times.step / 2)];
@@ -139,16 +137,16 @@ export class Plots {
 
   /** Lowest and highest value of each column of pixels, or the samples where there are few. */
   data() {
-    const columns = Math.max(100, this.width() - AXIS);
+    const columns = this.columns();
     const start = Math.max(0, this.times.first(this.view[0]) - 1);
     const end = Math.min(this.times.count, this.times.first(this.view[1]) + 1);
-    const all = [this.signal, ...this.runs.map((own) => own.pyramid)];
+    const all = [this.hidden.has("--signal") ? NOTHING : this.signal, ...this.runs.map((own) => (this.hidden.has(own.variable) ? NOTHING : own.pyramid))];
     const xs = [], series = all.map(() => []);
     this.isThinned = end - start > 4 * columns;
     if (!this.isThinned) {
       for (let sample = start; sample < end; sample++) {
         xs.push(this.times.at(sample));
-        all.forEach((own, place) => series[place].push(own.values[sample]));
+        all.forEach((own, place) => series[place].push(own.at(sample)));
       }
       return [xs, ...series];
     }
@@ -180,6 +178,7 @@ export class Plots {
       for (let at = 0; at < xs.length; at += 2) {
         const x = Math.round(plot.valToPos(xs[at], "x", true));
         const end = at + 2 < xs.length ? Math.round(plot.valToPos(xs[at + 2], "x", true)) : x + 1;
+        if (own[at] === null) continue;
         // Up to the bar before it, so that a line stays one.
         const top = plot.valToPos(Math.max(own[at + 1], before), "y", true);
         const bottom = plot.valToPos(Math.min(own[at], after), "y", true);

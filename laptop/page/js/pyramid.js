@@ -21,6 +21,10 @@ export class Pyramid {
     }
   }
 
+  at(sample) {
+    return this.values[sample];
+  }
+
   /** The lowest and highest of the samples from `start` to before `end`. */
   range(start, end) {
     let low = Infinity, high = -Infinity;
@@ -39,6 +43,35 @@ export class Pyramid {
       see(this.values, this.values, last * BLOCK, end);
     }
     return [low, high];
+  }
+}
+
+/** What a preview decoded: pieces of `length` samples, each `stride` behind the last; nothing is known between them. */
+export class Pieces {
+  constructor(values, { from, stride, length }) {
+    Object.assign(this, { values, from, stride, length });
+    this.count = values.length / Math.max(1, length);
+  }
+
+  at(sample) {
+    const piece = Math.floor((sample - this.from) / this.stride), place = sample - this.from - piece * this.stride;
+    return piece >= 0 && piece < this.count && place < this.length ? this.values[piece * this.length + place] : null;
+  }
+
+  /** The lowest and highest of what is known from `start` to before `end`, or of the piece before. */
+  range(start, end) {
+    let low = Infinity, high = -Infinity;
+    const first = Math.max(0, Math.floor((start - this.from) / this.stride)), last = Math.min(this.count - 1, Math.floor((end - 1 - this.from) / this.stride));
+    for (let piece = first; piece <= last; piece++) {
+      const begin = this.from + piece * this.stride;
+      const stop = Math.min(this.length, end - begin);
+      for (let at = Math.min(Math.max(0, start - begin), stop - 1); at < stop; at++) {
+        const value = this.values[piece * this.length + at];
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+    return low <= high ? [low, high] : [null, null];
   }
 }
 

@@ -1,91 +1,42 @@
-// The settings that are compared: their tabs, boxes and figures, and the runs behind them.
+// What a user does to the settings that are compared, and the runs that follow.
 
-import { Axes } from "./axes.js";
-import { at, css, element, fail, fine, fixed, whileBusy } from "./dom.js";
+import { listenToBank } from "./bank.js";
+import { at, whileBusy } from "./dom.js";
+import { axes, plots, spectrum } from "./drawings.js";
 import { History } from "./history.js";
 import * as link from "./link.js";
-import { parameters } from "./parameters.js";
-import { Plots } from "./plots.js";
-import { channel, reopened } from "./recording.js";
-import { Spectrum } from "./spectrum.js";
-import { schemeOf, state } from "./state.js";
+import { isPreviewed, preview } from "./preview.js";
+import { reopened } from "./recording.js";
+import { whenActed } from "./render-settings.js";
+import { fitted, give as giveTo, suited } from "./shares.js";
+import { changed, choiceOf, current, state } from "./state.js";
+import { asFlown } from "./verdict.js";
 
-const MOST = 4;
-const COLOURS = ["--decoded", "--b", "--c", "--ink"];
-
-export const plots = new Plots(at("plots"), { onRange: showRange, onCursor: showCursor });
-export const axes = new Axes(at("axes"), plots);
-const spectrum = new Spectrum(at("spectrum"), plots);
 const history = new History();
-let showParameters = () => {};
 
-export const letter = (place) => String.fromCharCode(65 + place);
-
-export function showRecording() {
-  plots.setRecording(state.recording);
-  showPanel();
-  return update();
+/** Takes a change, of which `what` names the box, and runs the settings that changed. */
+export function update(what) {
+  suit();
+  history.note(what, { settings: state.settings, current: state.current });
+  return follow(what);
 }
 
-function showTabs() {
-  const { settings, current } = state;
-  const tabs = settings.map((setting, place) => {
-    const tab = element("button", { type: "button", id: `tab-${place}`, textContent: `${letter(place)}: ${schemeOf(setting).title}`, tabIndex: place === current ? 0 : -1 });
-    tab.setAttribute("role", "tab");
-    tab.setAttribute("aria-selected", place === current);
-    tab.setAttribute("aria-controls", "panel");
-    tab.style.borderBottomColor = `var(${COLOURS[place]})`;
-    tab.addEventListener("click", () => choose(place));
-    tab.addEventListener("keydown", (event) => {
-      const to = { ArrowRight: place + 1, ArrowLeft: place - 1, Home: 0, End: settings.length - 1 }[event.key];
-      if (settings[to]) choose(to);
-    });
-    return tab;
-  });
-  at("tabs").replaceChildren(...tabs);
-  at("panel").setAttribute("aria-labelledby", `tab-${current}`);
-  at("remove").hidden = settings.length === 1;
-  at("add").hidden = settings.length === MOST;
+function suit() {
+  if (state.recording) state.settings = state.settings.map(suited);
 }
 
-function choose(place) {
-  state.current = place;
-  showPanel();
-  at(`tab-${place}`).focus();
-}
-
-function showPanel() {
-  showTabs();
-  const setting = state.settings[state.current], scheme = schemeOf(setting);
-  at("scheme").value = setting.scheme;
-  if (![...at("sample").options].some(({ value }) => value === setting.sample)) at("sample").append(new Option(setting.sample));
-  at("sample").value = setting.sample;
-  at("words").textContent = `${scheme.words}: ${scheme.goodFor}`.replaceAll("`", "");
-  showParameters = parameters(at("parameters"), scheme, state.recording, (name, text) => {
-    if (text === undefined) delete setting.parameters[name];
-    else setting.parameters[name] = text;
-    update(`${state.current} ${name}`);
-  });
-  showOutcome();
-}
-
-/** What came of the current setting, beside its boxes. */
-function showOutcome() {
-  const { answer, error } = state.runs[state.current] ?? {};
-  fail("error", error);
-  at("notes").replaceChildren(...(answer?.notes ?? []).map((text) => element("li", { textContent: text })));
-  if (answer) showParameters({ given: state.settings[state.current].parameters, settings: answer.settings });
+/** Shows the settings as they are now, in the page and in its link, and runs them. */
+function follow(what) {
+  [state.canUndo, state.canRedo] = [history.canUndo, history.canRedo];
+  globalThis.history.replaceState(null, "", `#${link.write({ example: state.opened?.example, channel: state.channel, settings: state.settings })}`);
+  changed();
+  return isPreviewed(what) ? preview(plots, () => whileBusy(run)) : whileBusy(run);
 }
 
 let isRunning = false, isStale = false;
 
-/** Runs the settings that changed, of which `what` names the box; while it does, more changes wait for one more run. */
-export const update = (what) => whileBusy(() => updateNow(what));
-
-async function updateNow(what) {
-  history.note(what, { settings: state.settings, current: state.current });
-  showSteps();
-  globalThis.history.replaceState(null, "", `#${link.write({ example: state.opened?.example, channel: channel(), settings: state.settings })}`);
+/** Runs the settings that have no outcome yet; while it does, more changes wait for one more run. */
+async function run() {
   if (isRunning) {
     isStale = true;
     return;
@@ -96,143 +47,114 @@ async function updateNow(what) {
     const { recording } = state;
     if (!recording) break;
     for (const [place, setting] of [...state.settings].entries()) {
-      const key = JSON.stringify(setting);
-      const last = state.runs[place];
-      if (last?.key === key && last.recording === recording) continue;
+      const choice = choiceOf(setting, recording.field), key = JSON.stringify(choice);
+      if (recording.runs[place]?.key === key) continue;
       let outcome;
       try {
-        outcome = { answer: await state.library.ask({ ask: "run", choice: setting }) };
+        outcome = { answer: await state.library.ask({ ask: "run", choice }) };
       } catch (error) {
         outcome = { error };
         if (error.isFatal) await reopened();
       }
+      recording.runs[place] = { key, ...outcome };
       if (recording !== state.recording) break;
-      state.runs[place] = { key, recording, ...outcome };
     }
     if (recording !== state.recording) isStale = true;
-    else show();
+    else recording.runs.length = state.settings.length;
+    changed();
   } while (isStale);
   isRunning = false;
 }
 
-/** Shows what came of the settings. */
-export function show() {
-  const { runs, settings, recording } = state;
-  runs.length = settings.length;
-  const good = [];
-  settings.forEach((setting, place) => {
-    const { answer } = runs[place] ?? {};
-    if (!answer) return;
-    const name = settings.length > 1 ? `${letter(place)} ${schemeOf(setting).title}` : schemeOf(setting).title;
-    good.push(Object.assign(answer, { name, colour: css(COLOURS[place]), variable: COLOURS[place], isSigned: schemeOf(setting).isSigned }));
-  });
-  plots.setRuns(good);
-  const entry = (text, colour) => {
-    const shown = element("span", { textContent: text });
-    shown.style.setProperty("--own", `var(${colour})`);
-    return shown;
-  };
-  at("legend").replaceChildren(entry("signal", "--signal"), ...good.map(({ name, variable }) => entry(`${name}, decoded`, variable)));
-  showFigures(good, recording);
-  showOutcome();
-  spectrum.draw();
-  axes.show(settings[state.current]);
+/** Takes a setting in the place of the current one. */
+export function replace(setting) {
+  state.settings[state.current] = setting;
+  return update();
 }
 
-function showFigures(good, { unit: given }) {
-  const unit = given ? `, ${given}` : "";
-  const rows = [
-    ["Samples without a spike, %", ({ figures }) => fixed(figures.efficiency, 2)],
-    [`RMSE${unit}`, ({ figures }) => fine(figures.rmse)],
-    ["Signal to noise, dB", ({ figures }) => fixed(figures.snr, 2)],
-    ["Spikes", ({ figures }) => fixed(figures.spikes, 0)],
-    ["Spikes a second", ({ figures }) => fixed(figures.spikes_per_second, 1)],
-    ["Bytes a second on the link", ({ linkBytesPerSecond }) => fixed(linkBytesPerSecond, 1)],
-    ["Bytes of RAM a channel", ({ costs }) => fixed(costs.ram, 0)],
-    ["Instructions a sample, Cortex-M4F", ({ costs }) => (costs.instructions === null ? "not measured" : `${costs.is_bound ? "at most " : ""}${fixed(costs.instructions, 1)}`)],
-    ["Latency, samples", ({ latency }) => fixed(latency, 0)],
-  ];
-  const table = at("figures"), { caption } = table;
-  const head = element("thead"), body = element("tbody");
-  head.insertRow().append(element("th", { textContent: "Figure", scope: "col" }), ...good.map(({ name }) => element("th", { textContent: name, scope: "col" })));
-  for (const [name, value] of rows) {
-    const row = body.insertRow();
-    row.append(element("th", { textContent: name, scope: "row" }));
-    for (const run of good) row.insertCell().textContent = value(run);
-  }
-  table.replaceChildren(caption, head, body);
-}
-
-function showRange([start, end]) {
-  const seconds = (sample) => `${Number(plots.times.at(sample).toPrecision(5))} ${plots.times.unit}`;
-  at("in-view").textContent = `samples ${start} to ${end}` + (plots.times.unit === "s" ? `, ${seconds(start)} to ${seconds(Math.max(start, end - 1))}` : "");
-  axes.draw();
-  spectrum.drawSoon();
-}
-
-/** The values under the cursor, and how far they are from the marker. */
-function showCursor(sample, marker) {
-  const { recording, runs } = plots;
-  const unit = recording.unit ? ` ${recording.unit}` : "";
-  const time = (value) => `${fine(value)} ${plots.times.unit}`;
-  const valueAt = (place) => recording.arrays.values[place];
-  const of = (place) => [`${recording.name} ${fine(valueAt(place))}${unit}`, ...runs.map(({ name, arrays }) => `${name} ${fine(arrays.decoded[place])}${unit} (off by ${fine(arrays.decoded[place] - valueAt(place))})`)].join(" · ");
-  const words = sample === undefined ? "" : `${time(plots.times.at(sample))}: ${of(sample)}`;
-  const apart = sample === undefined || marker === undefined ? ""
-    : ` · from the mark ${time(plots.times.at(sample) - plots.times.at(marker))}, ${fine(valueAt(sample) - valueAt(marker))}${unit}`;
-  at("under").textContent = words + apart || "Point at the picture for values; click to set a mark.";
-}
-
-// --- What a user does to settings ---
-
+/** Takes a scheme with the parameters that a search found on the channel that is open, for all axes, or with none. */
 export function take(scheme, given) {
-  state.settings[state.current] = { scheme, sample: state.settings[state.current].sample, parameters: { ...given } };
-  showPanel();
-  update();
+  const { sample, filter, keyframe_ms: keyframes } = current(), setting = { scheme, sample, parameters: {}, filter, keyframe_ms: keyframes };
+  return replace(given ? fitted(setting, given, axes.ranges) : setting);
 }
 
-/** Takes the settings that a flight's file has for the channel that is looked at, or for its first. */
-export const takeFlight = (file) => whileBusy(() => takeFlightNow(file));
-
-async function takeFlightNow(file) {
-  fail("file-error");
+/** Takes a flight's file: each channel has its parameters there, other turn rates those of the first. */
+export const takeFlight = (file) => whileBusy(async () => {
+  state.fileError = undefined;
   try {
-    const { scheme, sample, channels, filter } = await state.library.ask({ ask: "read-flight", text: await file.text() });
-    const { parameters } = channels.find(({ source }) => source === state.recording?.name) ?? channels[0];
-    state.settings[state.current] = { scheme, sample, parameters };
-    showPanel();
-    await update();
-    if (filter) at("notes").append(element("li", { textContent: `${file.name} filters the samples before they are coded; this page does not.` }));
+    const { channels, scheme, sample, filter, keyframeMs } = await state.library.ask({ ask: "read-flight", text: await file.text() });
+    // The program names a log's channels with their topic.
+    const { topic } = state.channel, field = (source) => (topic && source.startsWith(`${topic}.`) ? source.slice(topic.length + 1) : source);
+    const own = Object.fromEntries(channels.map(({ source, parameters }) => [field(source), parameters]));
+    await replace({ scheme, sample, parameters: channels[0].parameters, own, filter, keyframe_ms: keyframeMs });
   } catch (error) {
-    fail("file-error", Object.assign(error, { message: `${file.name}: ${error.message}` }));
+    state.fileError = Object.assign(error, { message: `${file.name}: ${error.message}` });
+    changed();
   }
+});
+
+function choose(place) {
+  state.current = place;
+  changed();
+  at(`tab-${place}`).focus();
 }
 
-function showSteps() {
-  [at("undo").disabled, at("redo").disabled] = [!history.canUndo, !history.canRedo];
+/** A parameter as a user gives it, or undefined where it is taken back. */
+function give(name, text) {
+  giveTo(current(), state.recording.field, name, text);
+  update(`${state.current} ${name}`);
+}
+
+function hide(colour) {
+  if (!state.hidden.delete(colour)) state.hidden.add(colour);
+  changed();
 }
 
 function step(by) {
   const before = history.step(by);
   if (!before) return;
   Object.assign(state, before);
-  state.runs = [];
-  showPanel();
-  update();
+  suit();
+  if (state.recording) state.recording.runs = [];
+  follow();
+}
+
+function listenToView() {
+  const views = { in: () => plots.zoom(0.5), out: () => plots.zoom(2), left: () => plots.pan(-0.25), right: () => plots.pan(0.25), all: () => plots.show(...plots.full) };
+  for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", views[button.dataset.view]);
+  at("plots").addEventListener("keydown", (event) => {
+    const view = { "+": "in", "=": "in", "-": "out", ArrowLeft: "left", ArrowRight: "right", 0: "all" }[event.key];
+    if (!view) return;
+    event.preventDefault();
+    views[view]();
+  });
+  at("spectrum-box").addEventListener("toggle", () => spectrum.draw());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
 }
 
 export function listenToSettings() {
-  at("scheme").addEventListener("change", ({ target }) => take(target.value, {}));
-  at("sample").addEventListener("change", ({ target }) => { state.settings[state.current].sample = target.value; update(); });
-  at("reset").addEventListener("click", () => take(state.settings[state.current].scheme, {}));
+  whenActed({ choose, give, hide });
+  at("scheme").addEventListener("change", ({ target }) => take(target.value));
+  at("sample").addEventListener("change", ({ target }) => replace({ ...current(), sample: target.value }));
+  at("reset").addEventListener("click", () => take(current().scheme));
+  at("as-flown").addEventListener("click", () => replace(asFlown(current())));
+  listenToBank((what, part) => {
+    Object.assign(current(), part);
+    delete current().isFlown;
+    update(`${state.current} ${what}`);
+  });
+  at("bandwidth").addEventListener("input", ({ target }) => {
+    state.bandwidth = target.valueAsNumber || 4;
+    changed();
+  });
   at("add").addEventListener("click", () => {
-    state.settings.push(structuredClone(state.settings[state.current]));
+    state.settings.push(structuredClone(current()));
     choose(state.settings.length - 1);
     update();
   });
   at("remove").addEventListener("click", () => {
     state.settings.splice(state.current, 1);
-    state.runs.splice(state.current, 1);
+    state.recording?.runs.splice(state.current, 1);
     choose(Math.min(state.current, state.settings.length - 1));
     update();
   });
@@ -244,19 +166,5 @@ export function listenToSettings() {
     event.preventDefault();
     step(event.key === "z" ? -1 : 1);
   });
-  const views = { in: () => plots.zoom(0.5), out: () => plots.zoom(2), left: () => plots.pan(-0.25), right: () => plots.pan(0.25), all: () => plots.show(...plots.full) };
-  for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", views[button.dataset.view]);
-  at("plots").addEventListener("keydown", (event) => {
-    const view = { "+": "in", "=": "in", "-": "out", ArrowLeft: "left", ArrowRight: "right", 0: "all" }[event.key];
-    if (!view) return;
-    event.preventDefault();
-    views[view]();
-  });
-  at("spectrum-box").addEventListener("toggle", () => spectrum.draw());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => state.recording && show());
-}
-
-/** Puts away the drawings of the last recording. */
-export function forgetDrawings() {
-  axes.forget();
+  listenToView();
 }

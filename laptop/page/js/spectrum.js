@@ -49,7 +49,7 @@ export class Spectrum {
     if (!at("spectrum-box").open || !this.plots.recording) return;
     const { recording, runs } = this.plots, [start, end] = this.plots.samples(), { values } = recording.arrays;
     const series = [{ name: "signal", colour: css("--signal"), values },
-      ...runs.map(({ name, colour, arrays: { decoded } }) => ({ name: `error of ${name}`, colour, values: decoded.map((value, place) => value - values[place]) }))];
+      ...runs.filter(({ isPreview }) => !isPreview).map(({ name, colour, arrays: { decoded, coded = values } }) => ({ name: `error of ${name}`, colour, values: decoded.map((value, place) => value - coded[place]) }))];
     const width = Math.max(240, this.host.clientWidth / 2 - 12);
     const chart = (title, label, unit, data, scales) => {
       const axis = (text) => ({ stroke: css("--ink"), grid: { stroke: css("--grid") }, ticks: { stroke: css("--grid") }, label: text, labelSize: 18, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" });

@@ -1,30 +1,69 @@
-// What the page shows: one place, read by all of its parts.
+// What the page shows: one state. Parts change it and call `changed`, upon which all of it is rendered.
 
+import { groupOf } from "./channels.js";
 import { Library } from "./library.js";
 
+/**
+ * The setting that the page opens with. Its parameters are those of all channels but accelerations, which have `forces`:
+ * they are of another unit and size. Channels that differ have their parameters in `own`, by name.
+ */
 export const FIRST = { scheme: "sf", sample: "f32", parameters: {} };
 
 export const state = {
   library: new Library(),
   /** The catalogue's schemes. */
   schemes: [],
-  /** What is open: { file, example, topics, files, notes }. */
+  /** What is open: { file, example, topics, files, notes }; files that came together, of which one is open. */
   opened: undefined,
-  /** The channel that was read. */
+  dropped: [],
+  /** The channel that is asked for: { topic, field, rate, skip }. */
+  channel: {},
+  /** Whether the whole messages of a damaged log are taken, and whether that log is damaged. */
+  acceptsCut: false, isDamaged: false,
+  /** How far reading is, and why it failed. */
+  reading: undefined, fileError: undefined,
+  /** The channel that was read. All that was made of it hangs on it, and goes with it: `runs`, `preview`, `found`, `text`. */
   recording: undefined,
   /** The settings that are compared, and the one whose tab is open. */
   settings: [structuredClone(FIRST)],
   current: 0,
-  /** What came of each setting: { key, answer } or { key, error }. */
-  runs: [],
+  canUndo: false, canRedo: false,
+  /** The loop's bandwidth in Hz, at which the phase is told. */
+  bandwidth: 4,
+  /** The colours of the series that are hidden. */
+  hidden: new Set(),
+  /** How far a search is: { share, words }. */
+  searching: undefined,
 };
 
+let render = () => {};
+export const whenChanged = (then) => (render = then);
+export const changed = () => render();
+
 export const schemeOf = (setting) => state.schemes.find(({ name }) => name === setting.scheme) ?? state.schemes[0];
+export const current = () => state.settings[state.current];
+/** What came of the current setting: { key, answer } or { key, error }. */
+export const outcome = () => state.recording?.runs[state.current] ?? {};
+
+/** Which parameters of a setting are for a channel that has none of its own. */
+export const shareOf = (field) => (state.recording && groupOf(state.recording, field) > 0 ? "forces" : "parameters");
+
+/** The parameters of a channel: its own, or those of all of its quantity. */
+export const parametersOf = (setting, field) => setting.own?.[field] ?? setting[shareOf(field)] ?? {};
+
+/** What the settings are now: what was made of others is stale. */
+export const settingsKey = () => JSON.stringify([state.settings, state.current]);
+
+/** A setting on a channel, as the library takes it. */
+export const choiceOf = (setting, field) => ({
+  scheme: setting.scheme, sample: setting.sample, parameters: parametersOf(setting, field),
+  filter: setting.filter ?? null, keyframe_ms: setting.keyframe_ms ?? null,
+});
 
 /** The request that opens a file or an example. */
-export const openRequest = ({ example, files }, acceptCut) =>
-  example ? { ask: "example", name: example } : { ask: "open", names: files.map(({ name }) => name), accept_cut: acceptCut };
+export const openRequest = ({ example, files }) =>
+  example ? { ask: "example", name: example } : { ask: "open", names: files.map(({ name }) => name), accept_cut: state.acceptsCut };
 
 /** The request that reads a channel. */
-export const loadRequest = ({ topic, field, rate, skip }, acceptCut) =>
-  ({ ask: "load", topic: topic || null, field, rate: Number(rate) || null, skip_non_finite: skip, accept_cut: acceptCut });
+export const loadRequest = ({ topic, field, rate, skip }) =>
+  ({ ask: "load", topic: topic || null, field, rate: Number(rate) || null, skip_non_finite: skip ?? false, accept_cut: state.acceptsCut });

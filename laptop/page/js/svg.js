@@ -19,7 +19,7 @@ export function picture(plots, colours) {
   const { recording, runs, view, times } = plots;
   const [xs, ...series] = plots.data();
   let [low, high] = [Infinity, -Infinity];
-  for (const own of series) for (const value of own) [low, high] = [Math.min(low, value), Math.max(high, value)];
+  for (const own of series) for (const value of own) if (value !== null) [low, high] = [Math.min(low, value), Math.max(high, value)];
   const air = 0.06 * (high - low) || 1;
   [low, high] = [low - air, high + air];
   const x = (time) => LEFT + ((time - view[0]) / (view[1] - view[0])) * (WIDTH - LEFT - RIGHT);
@@ -36,6 +36,7 @@ export function picture(plots, colours) {
   }
   out.push(text(recording.unit ? `${recording.name}, ${recording.unit}` : recording.name, [LEFT, 18]));
   series.forEach((own, place) => {
+    if (own[0] === null) return; // hidden
     const points = xs.map((time, at) => `${x(time).toFixed(1)} ${y(own[at]).toFixed(1)}`);
     const colour = place === 0 ? colours.signal : runs[place - 1].colour;
     out.push(`<path clip-path="url(#inside)" d="M${points.join("L")}" fill="none" stroke="${colour}" stroke-width="1.5"/>`);

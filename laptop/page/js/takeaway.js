@@ -1,8 +1,8 @@
 // What is taken away: constants, tables, pictures, a flight's file.
 
-import { at, css, element, fail } from "./dom.js";
-import { axes, plots } from "./settings.js";
-import { state } from "./state.js";
+import { at, css, element } from "./dom.js";
+import { axes, plots } from "./drawings.js";
+import { changed, choiceOf, current, outcome, settingsKey, state } from "./state.js";
 import { picture } from "./svg.js";
 
 export function save(name, content, type) {
@@ -11,8 +11,8 @@ export function save(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-const current = () => state.settings[state.current];
-const ask = (kind) => state.library.ask({ ask: "export", kind, choice: current() });
+const choice = () => choiceOf(current(), state.recording.field);
+const ask = (kind) => state.library.ask({ ask: "export", kind, choice: choice() });
 
 const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
 
@@ -24,12 +24,13 @@ const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
 /* sw_roll_codec is the constant; bindings/c/README.md in the repository has the loop around it. */
 `;
 
-/** The settings of all axes that are drawn, or of the one channel, in one file for both ends. */
+/** The settings of all axes that are drawn, or of the one channel, in one file for both ends, which says what is left out. */
 async function flight() {
-  const { scheme, sample } = current(), { recording, runs } = state;
-  const shown = { name: recording.name, parameters: runs[state.current]?.answer?.asked ?? current().parameters };
-  const channels = axes.channels.length ? axes.channels : [shown];
-  return (await state.library.ask({ ask: "flight", scheme, sample, rate: recording.rate, channels })).text;
+  const { recording } = state, own = choice(), { key, answer } = outcome();
+  const shown = { name: recording.name, parameters: key === JSON.stringify(own) && answer ? answer.asked : own.parameters };
+  const { channels, left } = await axes.outcome();
+  const { text } = await state.library.ask({ ask: "flight", choice: own, rate: recording.rate, channels: channels.length ? channels : [shown] });
+  return { words: left.map((words) => `# ${words}\n`).join("") + text, left: left.join("; ") };
 }
 
 const texts = {
@@ -50,30 +51,36 @@ const files = {
   png: async () => ["spikes.png", await new Promise((done) => plots.canvas().toBlob(done)), "image/png"],
 };
 
+/** What is taken away hangs on the recording that it is of. */
 async function takeAway({ text, save: kind }) {
-  fail("error");
+  const { recording } = state, key = settingsKey();
+  recording.takeError = undefined;
   try {
-    if (kind) return save(...(await files[kind]()));
-    at("out").value = await texts[text].make();
-    at("text").hidden = false;
-    at("save").dataset.name = texts[text].file;
-    at("copied").textContent = "";
+    if (kind) save(...(await files[kind]()));
+    else {
+      const made = await texts[text].make();
+      recording.text = { file: texts[text].file, key, ...(made.words ? made : { words: made }) };
+    }
   } catch (error) {
-    fail("error", error);
-    at("error").scrollIntoView({ block: "nearest" });
+    recording.takeError = error;
   }
+  changed();
+}
+
+async function copy() {
+  at("out").select();
+  const { text } = state.recording;
+  try {
+    await navigator.clipboard.writeText(text.words);
+    text.copied = "copied";
+  } catch {
+    text.copied = "selected: your browser copies it with Ctrl-C";
+  }
+  changed();
 }
 
 export function listenToTakeaway() {
   for (const button of at("exports").children) button.addEventListener("click", () => takeAway(button.dataset));
-  at("save").addEventListener("click", ({ target }) => save(target.dataset.name, at("out").value, "text/plain"));
-  at("copy").addEventListener("click", async () => {
-    at("out").select();
-    try {
-      await navigator.clipboard.writeText(at("out").value);
-      at("copied").textContent = "copied";
-    } catch {
-      at("copied").textContent = "selected: your browser copies it with Ctrl-C";
-    }
-  });
+  at("save").addEventListener("click", () => save(state.recording.text.file, state.recording.text.words, "text/plain"));
+  at("copy").addEventListener("click", copy);
 }

@@ -22,6 +22,8 @@ enum Ask {
     Take { name: String, rate: Option<f64>, file: u32 },
     /// Encodes and decodes the recording.
     Run { choice: Choice },
+    /// The same of parts of the recording, while a knob moves.
+    Preview(run::Preview),
     /// Settings as text, or a file of spikes.
     Export { kind: String, choice: Choice },
     /// A flight's file of these channels.
@@ -53,6 +55,7 @@ fn answer(request: &[u8]) -> Result<Value> {
         Ask::Load(channel) => recording::load(channel),
         Ask::Take { name, rate, file } => recording::take(name, rate, file),
         Ask::Run { choice } => run::run(&choice),
+        Ask::Preview(preview) => run::preview(&preview),
         Ask::Export { kind, choice } => export::export(&kind, &choice),
         Ask::Flight(channels) => flight::write(&channels),
         Ask::ReadFlight { text } => flight::read(&text),

@@ -1,6 +1,7 @@
 //! The catalogue for a page: names, words, and what a field and a slider of each parameter are like.
 
 use catalogue::{Kind, Parameter, Search, Unit};
+use lab::advise::verdict;
 use lab::scheme::Scheme;
 use serde_json::{Value, json};
 
@@ -15,6 +16,7 @@ pub(crate) fn all() -> Value {
             "words": info.words,
             "goodFor": info.good_for,
             "isSigned": info.is_signed,
+            "flown": verdict(info.name),
             "parameters": parameters,
         })
     });

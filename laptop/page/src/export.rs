@@ -1,12 +1,13 @@
 //! What a user takes away: constants, files of parameters and spikes.
 
+use crate::flight;
 use crate::host::send;
 use crate::recording::{self, Open};
 use crate::run::Choice;
 use anyhow::{Context, Result, bail};
 use catalogue::run::{SET, Value as Parameter};
 use lab::coding::Coding;
-use lab::encode::encode;
+use lab::encode::{encode, encode_flight};
 use lab::events::{Format, Stream};
 use lab::output::Output;
 use lab::trial::Trial;
@@ -16,9 +17,9 @@ use serde_json::{Value, json};
 /// Makes what is asked for: `text`, or the array `file`.
 pub(crate) fn export(kind: &str, choice: &Choice) -> Result<Value> {
     recording::with(|open| {
-        let trial = choice.trial(open)?;
+        let (_, trial) = choice.trial(&open.recording)?;
         if kind == "csv" || kind == "es" {
-            let table = spikes(open, &trial)?;
+            let table = spikes(open, &trial, choice)?;
             send("file", &if kind == "es" { event_stream(&table)? } else { table });
             return Ok(json!({}));
         }
@@ -55,11 +56,17 @@ fn python(coding: &Coding) -> String {
     )
 }
 
-/// The file that `spikewire encode` writes with these settings.
-fn spikes(open: &Open, trial: &Trial) -> Result<Vec<u8>> {
+/// The file that `spikewire encode` writes with these settings; behind a filter with a flight of this one channel.
+fn spikes(open: &Open, trial: &Trial, choice: &Choice) -> Result<Vec<u8>> {
     let input = open.input.as_ref().context("these samples come from no file")?;
-    let Coding { scheme, sample, asked } = Coding::of_settings(trial.scheme, &trial.settings);
-    let (output, _) = encode(input, scheme, sample, &asked, None, || Ok(Output::memory()))?;
+    let (output, _) = if choice.filter.is_some() {
+        let channel = (open.recording.name.clone(), trial.settings.to_asked(trial.scheme.info()));
+        let flight = flight::of(choice, open.recording.rate, vec![channel])?;
+        encode_flight(&flight, input, None, || Ok(Output::memory()))?
+    } else {
+        let Coding { scheme, sample, asked } = Coding::of_settings(trial.scheme, &trial.settings);
+        encode(input, scheme, sample, &asked, None, || Ok(Output::memory()))?
+    };
     Ok(output.into_bytes())
 }
 

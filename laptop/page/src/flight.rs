@@ -2,16 +2,16 @@
 
 use crate::run::{Choice, texts};
 use anyhow::{Context, Result};
-use lab::flight::{Flight, of_settings};
+use catalogue::run::Asked;
+use lab::flight::{Flight, Parts, of_settings};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Channels that share a scheme and a rate in samples a second.
+/// Channels that share a scheme, a filter and a rate in samples a second.
 #[derive(Deserialize)]
 pub(crate) struct Flown {
-    scheme: String,
-    sample: String,
+    choice: Choice,
     rate: Option<f64>,
     channels: Vec<Channel>,
 }
@@ -27,23 +27,31 @@ struct Channel {
 /// # Errors
 /// The recording has no rate, or the channels cannot share a bank.
 pub(crate) fn write(all: &Flown) -> Result<Value> {
-    let rate = all.rate.context("a flight needs samples at a known rate: say how many a second")?;
     let mut channels = Vec::new();
-    let mut shared = None;
     for Channel { name, parameters } in &all.channels {
-        let choice = Choice {
-            scheme: all.scheme.clone(),
-            sample: all.sample.clone(),
-            parameters: parameters.clone(),
-        };
-        let (scheme, sample, mut asked) = choice.read()?;
+        let choice = Choice { parameters: parameters.clone(), ..all.choice.clone() };
+        let (_, _, mut asked) = choice.read()?;
         asked.paper = false;
-        shared = Some((scheme, sample));
         channels.push((name.clone(), asked));
     }
-    let (scheme, sample) = shared.context("no channel is drawn")?;
+    Ok(json!({ "text": of(&all.choice, all.rate, channels)?.to_toml(&[]) }))
+}
+
+/// A flight of channels, each with its name and its parameters.
+pub(crate) fn of(
+    choice: &Choice,
+    rate: Option<f64>,
+    channels: Vec<(String, Asked)>,
+) -> Result<Flight> {
+    let rate = rate.context("a flight needs samples at a known rate: say how many a second")?;
+    let (scheme, sample, _) = choice.read()?;
     let flight = of_settings(scheme, sample, rate, channels.into_iter())?;
-    Ok(json!({ "text": flight.to_toml(&[]) }))
+    let mut parts = Parts::clone(&flight);
+    parts.filter = choice.filter;
+    if choice.keyframe_ms.is_some() {
+        parts.keyframe_every = choice.keyframe_every(rate) as u32;
+    }
+    Ok(Flight::new(parts)?)
 }
 
 /// Scheme, sample type and the parameters of each channel, as a choice has them.
@@ -59,6 +67,7 @@ pub(crate) fn read(text: &str) -> Result<Value> {
         "scheme": flight.scheme.name,
         "sample": flight.sample.to_string(),
         "channels": channels.collect::<Vec<_>>(),
-        "filter": flight.filter.is_some(),
+        "filter": flight.filter,
+        "keyframeMs": f64::from(flight.keyframe_every) * f64::from(flight.period.get()) * 1e-3,
     }))
 }

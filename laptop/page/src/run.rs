@@ -2,16 +2,18 @@
 
 use crate::host::send;
 use crate::recording;
-use anyhow::Result;
-use catalogue::run::{Asked, Error, SampleType};
+use anyhow::{Context, Result};
+use catalogue::run::{Asked, Error, Event, SampleType};
 use lab::advise::link_bytes;
+use lab::flight::Filter;
 use lab::scheme::Scheme;
 use lab::score::Figures;
-use lab::trial::Trial;
+use lab::trial::{Recording, Trial};
 use lab::tune::Costs;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use spikewire::Polarity;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The core whose instructions are told.
@@ -23,6 +25,10 @@ pub(crate) struct Choice {
     pub scheme: String,
     pub sample: String,
     pub parameters: BTreeMap<String, String>,
+    /// The filter before the code.
+    pub filter: Option<Filter>,
+    /// Milliseconds between keyframes.
+    pub keyframe_ms: Option<f64>,
 }
 
 impl Choice {
@@ -42,13 +48,33 @@ impl Choice {
         Ok((scheme, self.sample.parse()?, asked))
     }
 
-    /// Encodes and decodes the recording.
+    /// Filters a recording, if that is chosen, and encodes and decodes it.
     ///
     /// # Errors
     /// The choice makes no sense on it.
-    pub(crate) fn trial(&self, open: &recording::Open) -> Result<Trial> {
+    pub(crate) fn trial<'a>(
+        &self,
+        recording: &'a Recording,
+    ) -> Result<(Cow<'a, Recording>, Trial)> {
         let (scheme, sample, asked) = self.read()?;
-        Ok(Trial::new(scheme, &asked, sample, &open.recording)?)
+        let recording = match self.filter {
+            Some(filter) => {
+                let rate = recording.rate.context("a filter needs samples at a known rate")? as f32;
+                drop(filter.start(sample, rate)?);
+                Cow::Owned(recording.filtered(|| {
+                    // It started a line above.
+                    filter.start(sample, rate).unwrap_or_else(|_| Box::new(|value| value))
+                }))
+            }
+            None => Cow::Borrowed(recording),
+        };
+        let trial = Trial::new(scheme, &asked, sample, &recording)?;
+        Ok((recording, trial))
+    }
+
+    /// Samples from one keyframe to the next: one a second if nothing is chosen.
+    pub(crate) fn keyframe_every(&self, rate: f64) -> u64 {
+        (rate * self.keyframe_ms.unwrap_or(1000.0) * 1e-3).round().max(1.0) as u64
     }
 }
 
@@ -57,21 +83,21 @@ pub(crate) fn texts(asked: &Asked) -> BTreeMap<&'static str, String> {
     asked.iter().map(|(name, value)| (name, value.to_string())).collect()
 }
 
-/// Encodes and decodes the recording: events and decoded values go to the page.
+/// Encodes and decodes the recording: events and decoded values go to the page, and what a filter made of the samples.
 pub(crate) fn run(choice: &Choice) -> Result<Value> {
     recording::with(|open| {
-        let recording = &open.recording;
-        let trial = choice.trial(open)?;
+        let (recording, trial) = choice.trial(&open.recording)?;
+        if let Cow::Owned(filtered) = &recording {
+            send("coded", &filtered.values);
+        }
         send("decoded", &trial.decoded);
-        let each = trial.events.iter();
-        send("sample", &each.clone().map(|event| event.sample as u32).collect::<Vec<_>>());
-        send("neuron", &each.clone().map(|event| event.neuron).collect::<Vec<_>>());
-        send("slot", &each.clone().map(|event| event.slot).collect::<Vec<_>>());
-        send("up", &each.map(|event| u8::from(event.polarity == Polarity::Up)).collect::<Vec<_>>());
-        let per_second = |bytes: f64, rate: f64| bytes * rate / recording.values.len() as f64;
-        let link =
-            recording.rate.and_then(|rate| Some(per_second(link_bytes(&trial, rate).ok()?, rate)));
-        let costs = Costs::new(trial.scheme, &trial.settings, trial.latency, CORE);
+        send_events(&trial.events);
+        let bytes = |rate: f64| link_bytes(&trial, rate, choice.keyframe_every(rate)).ok();
+        let link = recording
+            .rate
+            .and_then(|rate| Some(bytes(rate)? * rate / recording.values.len() as f64));
+        let costs = |core| Costs::new(trial.scheme, &trial.settings, trial.latency, core);
+        let delay = |filter: Filter| filter.delay(recording.rate? as f32).ok();
         let asked = texts(&trial.settings.to_asked(trial.scheme.info()));
         let texts = trial.settings.entries().iter().map(|(name, value)| (*name, value.to_string()));
         Ok(json!({
@@ -80,10 +106,64 @@ pub(crate) fn run(choice: &Choice) -> Result<Value> {
             "neurons": trial.shape.neurons,
             "slots": trial.shape.slots,
             "latency": trial.latency,
+            "filterDelay": choice.filter.and_then(delay),
             "notes": trial.notes,
-            "figures": Figures::of(recording, &trial),
-            "costs": costs,
+            "figures": Figures::of(&recording, &trial),
+            "costs": costs(CORE),
+            "costsWithoutFpu": costs("M0"),
             "linkBytesPerSecond": link,
+        }))
+    })
+}
+
+fn send_events(events: &[Event]) {
+    let each = events.iter();
+    send("sample", &each.clone().map(|event| event.sample as u32).collect::<Vec<_>>());
+    send("neuron", &each.clone().map(|event| event.neuron).collect::<Vec<_>>());
+    send("slot", &each.clone().map(|event| event.slot).collect::<Vec<_>>());
+    send("up", &each.map(|event| u8::from(event.polarity == Polarity::Up)).collect::<Vec<_>>());
+}
+
+/// What is coded while a knob moves: the samples from `from` to before `to`, or `pieces` of them, evenly spread, that
+/// have `most` samples together.
+#[derive(Deserialize)]
+pub(crate) struct Preview {
+    choice: Choice,
+    from: usize,
+    to: usize,
+    pieces: usize,
+    most: usize,
+}
+
+/// Encodes and decodes parts of the recording, each from its own first sample on. The choice holds all parameters, so
+/// that none is taken from the part.
+pub(crate) fn preview(asked: &Preview) -> Result<Value> {
+    recording::with(|open| {
+        let all = &open.recording;
+        let to = asked.to.min(all.values.len());
+        let span = to.saturating_sub(asked.from);
+        let pieces = if span <= asked.most { 1 } else { asked.pieces.max(1) };
+        let length = if pieces == 1 { span } else { (asked.most / pieces).max(1) };
+        let (mut decoded, mut events, mut shape) = (Vec::new(), Vec::new(), None);
+        for piece in 0..pieces {
+            let start = asked.from + piece * (span / pieces);
+            let Some(values) = all.values.get(start..to.min(start + length)) else { continue };
+            let part = Recording::of(String::new(), values.to_vec(), all.rate);
+            let (_, mut trial) = asked.choice.trial(&part)?;
+            decoded.append(&mut trial.decoded);
+            let own = trial.events.into_iter();
+            events.extend(own.map(|own| Event { sample: own.sample + start as u64, ..own }));
+            shape = Some(trial.shape);
+        }
+        let shape = shape.context("nothing is in view")?;
+        send("decoded", &decoded);
+        send_events(&events);
+        Ok(json!({
+            "from": asked.from,
+            "stride": span / pieces,
+            "length": length,
+            "neurons": shape.neurons,
+            "slots": shape.slots,
         }))
     })
 }

@@ -4,7 +4,7 @@ use super::band::Band;
 use super::doublings::{self, hold_with_history};
 use crate::error::{tri, unwrap, within};
 use crate::num::{HAS_VECTORS, Tally};
-use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::codec::encode_first;
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive step forward: the baseline follows the signal by one step a spike, and the step grows while the signal
@@ -116,11 +116,11 @@ impl<S: Sample> AdaptiveStepForward<S> {
         } else if !sample.is_finite() {
             pace.take(Spike::None, self.run, self.doublings);
             return None;
-        } else if sample > band.upper {
-            *base = band.upper;
+        } else if band.is_below(sample) {
+            *base = band.upper();
             Spike::Up
         } else {
-            *base = band.lower;
+            *base = band.lower();
             Spike::Down
         };
         pace.take(spike, self.run, self.doublings);
@@ -221,13 +221,8 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
         samples: &[S],
         spikes: &mut [impl Destination<Spike>],
     ) -> usize {
-        let first = if state.tally.is_primed() {
-            0
-        } else {
-            encode_each(self, state, samples, spikes, Until::Primed)
-        };
-        let samples = samples.get(first..).unwrap_or_default();
-        let spikes = spikes.get_mut(first..).unwrap_or_default();
+        let (first, samples, spikes) =
+            encode_first(self, state.tally.is_primed(), state, samples, spikes);
 
         let AdaptiveState { mut base, mut pace, .. } = *state;
         let mut band = Band::around(base, self.threshold);
@@ -244,7 +239,7 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
             band = Band::around(base, self.threshold);
         }
         (state.base, state.pace) = (base, pace);
-        first + samples.len().min(spikes.len())
+        first + samples.len()
     }
 
     /// The last sample of the past becomes the baseline, and the step the smallest. Give the decoder that value by
@@ -268,11 +263,11 @@ impl<S: Sample> Scheme for AdaptiveStepForward<S> {
     /// Adds the step, and adapts it as the encoder did.
     #[inline]
     fn decode(&self, state: &mut AdaptiveStepState<S>, spike: Spike) -> S {
-        let band = self.band(state.value, state.pace);
+        let step = self.threshold.doubled(state.pace.exponent);
         state.value = match spike {
-            Spike::Up => band.upper,
-            Spike::None => band.base,
-            Spike::Down => band.lower,
+            Spike::Up => state.value.plus(step),
+            Spike::None => state.value,
+            Spike::Down => state.value.minus(step),
         };
         state.pace.take(spike, self.run, self.doublings);
         state.value

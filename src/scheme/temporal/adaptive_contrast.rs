@@ -3,7 +3,7 @@
 use super::doublings::{self, hold_with_history};
 use crate::error::{tri, unwrap};
 use crate::num::Tally;
-use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::codec::{encode_each, encode_first};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Adaptive temporal contrast: the threshold follows how much the signal changes, between two bounds.
@@ -170,13 +170,8 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         samples: &[S],
         spikes: &mut [impl Destination<Spike>],
     ) -> usize {
-        let first = if state.tally.is_primed() {
-            0
-        } else {
-            encode_each(self, state, samples, spikes, Until::Primed)
-        };
-        let samples = samples.get(first..).unwrap_or_default();
-        let spikes = spikes.get_mut(first..).unwrap_or_default();
+        let (first, samples, spikes) =
+            encode_first(self, state.tally.is_primed(), state, samples, spikes);
 
         let (mut previous, mut recent) = (state.previous, state.recent);
         let mut threshold = self.after(recent);
@@ -195,9 +190,9 @@ impl<S: Sample> Scheme for AdaptiveContrast<S> {
         if check.is_finite() {
             (state.previous, state.recent) = (previous, recent);
         } else {
-            encode_each(self, state, samples, spikes, Until::End);
+            encode_each(self, state, samples, spikes);
         }
-        first + samples.len().min(spikes.len())
+        first + samples.len()
     }
 
     /// The last sample of the past becomes the predecessor of the next one, and the count of spikes starts at 0.

@@ -4,7 +4,7 @@ use super::StepState;
 use super::steps::decode_steps;
 use crate::error::{positive, tri, unwrap};
 use crate::num::{Tally, to_f64};
-use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::codec::{encode_each, encode_first};
 use crate::{
     Calibration, ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start,
 };
@@ -157,13 +157,8 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         samples: &[S],
         spikes: &mut [impl Destination<Spike>],
     ) -> usize {
-        let first = if state.tally.is_primed() {
-            0
-        } else {
-            encode_each(self, state, samples, spikes, Until::Primed)
-        };
-        let samples = samples.get(first..).unwrap_or_default();
-        let spikes = spikes.get_mut(first..).unwrap_or_default();
+        let (first, samples, spikes) =
+            encode_first(self, state.tally.is_primed(), state, samples, spikes);
 
         let mut previous = state.previous;
         let mut check = S::ZERO;
@@ -175,9 +170,9 @@ impl<S: Sample> Scheme for TemporalContrast<S> {
         if check.is_finite() {
             state.previous = previous;
         } else {
-            encode_each(self, state, samples, spikes, Until::End);
+            encode_each(self, state, samples, spikes);
         }
-        first + samples.len().min(spikes.len())
+        first + samples.len()
     }
 
     /// The last sample of the past becomes the predecessor of the next one.

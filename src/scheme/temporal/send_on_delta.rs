@@ -3,10 +3,10 @@
 use core::hint::black_box;
 
 use super::StepState;
-use super::band::Band;
+use super::band::{Band, follow_baseline};
 use crate::error::{step, tri, unwrap};
 use crate::num::{Tally, to_f64};
-use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::codec::{encode_each, encode_first};
 use crate::{
     Code, ConfigError, Destination, Fingerprint, NeuronSpike, Polarity, Recovery, Sample, Scheme,
     Spike, Start,
@@ -240,26 +240,21 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
         samples: &[S],
         outputs: &mut [impl Destination<Steps<K>>],
     ) -> usize {
-        let first = if state.tally.is_primed() {
-            0
-        } else {
-            encode_each(self, state, samples, outputs, Until::Primed)
-        };
-        let samples = samples.get(first..).unwrap_or_default();
-        let outputs = outputs.get_mut(first..).unwrap_or_default();
+        let (first, samples, outputs) =
+            encode_first(self, state.tally.is_primed(), state, samples, outputs);
 
         let (threshold, most) = (self.threshold, i32::from(self.most));
         let mut band = Band::around(state.base, threshold);
         let mut check = S::ZERO;
         for (output, &sample) in outputs.iter_mut().zip(samples) {
             let mut steps = 0_i32;
-            if sample > band.upper {
+            if band.is_below(sample) {
                 check = check.including(sample);
                 loop {
                     black_box(()); // keeps the compiler from unrolling the loop
-                    band = Band::around(band.upper, threshold);
+                    band = band.raised(threshold);
                     steps = steps.wrapping_add(1);
-                    if steps >= most || sample <= band.upper {
+                    if steps >= most || !band.is_below(sample) {
                         break;
                     }
                 }
@@ -267,9 +262,9 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
                 check = check.including(sample);
                 loop {
                     black_box(());
-                    band = Band::around(band.lower, threshold);
+                    band = band.lowered(threshold);
                     steps = steps.wrapping_sub(1);
-                    if steps <= most.wrapping_neg() || sample >= band.lower {
+                    if steps <= most.wrapping_neg() || !band.is_above(sample) {
                         break;
                     }
                 }
@@ -277,28 +272,14 @@ impl<S: Sample, const K: usize> Scheme for SendOnDelta<S, K> {
             output.write(Steps(steps as i8));
         }
         if check.is_finite() {
-            state.base = band.base;
+            state.base = band.base();
         } else {
-            encode_each(self, state, samples, outputs, Until::End);
+            encode_each(self, state, samples, outputs);
         }
-        first + samples.len().min(outputs.len())
+        first + samples.len()
     }
 
-    /// The last sample of the past becomes the baseline. Give the decoder that value by `resync`.
-    fn prime(&self, state: &mut SendOnDeltaState<S>, past: &[S]) {
-        if let Some(base) = state.tally.last_of(past) {
-            state.base = base;
-        }
-    }
-
-    /// The baseline.
-    fn keyframe(&self, state: &SendOnDeltaState<S>) -> Option<S> {
-        state.tally.is_primed().then_some(state.base)
-    }
-
-    fn rejected(state: &SendOnDeltaState<S>) -> u32 {
-        state.tally.rejected()
-    }
+    follow_baseline!(SendOnDeltaState);
 
     fn decoder_state(&self) -> StepState<S> {
         StepState::ZERO

@@ -1,11 +1,11 @@
 //! Step forward (SF): a spike when the signal leaves the band around a baseline that follows the signal.
 
 use super::StepState;
-use super::band::Band;
+use super::band::{Band, follow_baseline};
 use super::steps::decode_steps;
 use crate::error::{step, tri, unwrap};
 use crate::num::{HAS_VECTORS, Tally, groups, groups_mut, to_f64};
-use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::codec::{encode_each, encode_first};
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Spike, Start};
 
 /// Step forward: the baseline starts at the first sample and follows the signal by one threshold with each
@@ -115,10 +115,10 @@ impl<S: Sample> Scheme for StepForward<S> {
     #[inline]
     fn encode(&self, state: &mut StepForwardState<S>, sample: S) -> Spike {
         let band = Band::around(state.base, self.threshold);
-        let (spike, base) = if sample > band.upper {
-            (Spike::Up, band.upper)
+        let (spike, base) = if band.is_below(sample) {
+            (Spike::Up, band.upper())
         } else if band.is_above(sample) {
-            (Spike::Down, band.lower)
+            (Spike::Down, band.lower())
         } else if state.base != S::NO_BASELINE {
             return Spike::None;
         } else {
@@ -146,14 +146,8 @@ impl<S: Sample> Scheme for StepForward<S> {
         samples: &[S],
         spikes: &mut [impl Destination<Spike>],
     ) -> usize {
-        let first = if state.tally.is_primed() {
-            0
-        } else {
-            encode_each(self, state, samples, spikes, Until::Primed)
-        };
-        let length = samples.len().min(spikes.len());
-        let samples = samples.get(first..length).unwrap_or_default();
-        let spikes = spikes.get_mut(first..length).unwrap_or_default();
+        let (first, samples, spikes) =
+            encode_first(self, state.tally.is_primed(), state, samples, spikes);
 
         let threshold = self.threshold;
         let mut band = Band::around(state.base, threshold);
@@ -164,13 +158,13 @@ impl<S: Sample> Scheme for StepForward<S> {
             // `enumerate` would check its count for overflow.
             for ((spike, &sample), index) in free.iter_mut().zip(ahead).zip(0..ahead.len()) {
                 spike.write(Spike::None);
-                if sample > band.upper {
-                    band = Band::around(band.upper, threshold);
+                if band.is_below(sample) {
+                    band = band.raised(threshold);
                     check = check.including(sample);
                     spike.write(Spike::Up);
                     last = index;
                 } else if band.is_above(sample) {
-                    band = Band::around(band.lower, threshold);
+                    band = band.lowered(threshold);
                     check = check.including(sample);
                     spike.write(Spike::Down);
                     last = index;
@@ -186,28 +180,14 @@ impl<S: Sample> Scheme for StepForward<S> {
             free = free.get_mut(taken..).unwrap_or_default();
         }
         if check.is_finite() {
-            state.base = band.base;
+            state.base = band.base();
         } else {
-            encode_each(self, state, samples, spikes, Until::End);
+            encode_each(self, state, samples, spikes);
         }
-        length
+        first + samples.len()
     }
 
-    /// The last sample of the past becomes the baseline. Give the decoder that value by `resync`.
-    fn prime(&self, state: &mut StepForwardState<S>, past: &[S]) {
-        if let Some(base) = state.tally.last_of(past) {
-            state.base = base;
-        }
-    }
-
-    /// The baseline.
-    fn keyframe(&self, state: &StepForwardState<S>) -> Option<S> {
-        state.tally.is_primed().then_some(state.base)
-    }
-
-    fn rejected(state: &StepForwardState<S>) -> u32 {
-        state.tally.rejected()
-    }
+    follow_baseline!(StepForwardState);
 
     decode_steps!(threshold);
 }

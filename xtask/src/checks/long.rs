@@ -62,7 +62,7 @@ pub fn loom() -> Result<()> {
 /// Compares the speed of slices with another crate's, which compiles with an older Rust than it asks for.
 pub fn beside() -> Result<()> {
     let program =
-        "run --release --quiet --ignore-rust-version --manifest-path host-tests/beside/Cargo.toml";
+        "run --release --quiet --ignore-rust-version --manifest-path laptop/beside/Cargo.toml";
     run(cargo(program).arg("--target-dir").arg(paths::target().join("beside")))
 }
 

@@ -94,7 +94,7 @@ impl Workspace {
     /// Builds as the README says, in the tests' profile. A package that colcon should not find in a clone fails.
     fn build(&self) -> Result<()> {
         let found = output(self.command("colcon")?.args(["list", "--names-only"]))?;
-        if found != "spikewire_ros\nspyke_msgs\n" {
+        if found != "spikewire_msgs\nspikewire_ros\nspyke_msgs\n" {
             bail!("in a clone colcon finds\n{found}");
         }
         let mut colcon = self.command("colcon")?;
@@ -139,6 +139,7 @@ impl Workspace {
             .args([&installed, &self.python, &tests().join(name), &installed])
             .arg(paths::root().join("data/hexarotor.csv"))
             .args([&host::example("demo")?, &room])
+            .arg(host::spikewire("")?.get_program())
             .env("MORE", sources())
             .env("PYTHONDONTWRITEBYTECODE", "1");
         Ok(test)

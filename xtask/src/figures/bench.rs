@@ -26,20 +26,22 @@ use stack::Stack;
 use std::{path::Path, thread};
 
 const USAGE: &str = "\
-cargo bench-target [events] [CORE]... [--json | --markdown | --baseline]
+cargo bench-target [events | sets] [CORE]... [--json | --markdown | --baseline]
 cargo bench-target loops [CORE]...
 
-  events        not the codecs: only what an event costs in queue, links, formats and chips' words
+  events        not the codecs: only what an event costs in queue, links, formats and chips' words, and what sets of samples do
+  sets          only what sets of six samples cost, in a bank and from there to frames
   loops         checks the cycles of small loops against those that were worked out by hand
   CORE          M0, M3, M4F, M7 or M33; all, if none is named
   --json        every figure, as an array of objects; those of an event have the kind `event`
   --markdown    the tables of docs/costs.md
   --baseline    makes these counts the ones that `cargo verify` compares with, and puts the tables into the docs";
 
-/// Programs that count codecs, two for each sample type, and the one that counts events.
+/// Programs that count codecs, two for each sample type, and those that count events and sets of samples.
 const CODECS: [&str; 8] =
     ["f32_1", "f32_2", "q16_16_1", "q16_16_2", "q8_8_1", "q8_8_2", "i16_1", "i16_2"];
 const EVENTS: &str = "events";
+const SETS: &str = "sets";
 const LOOPS: &str = "loops";
 
 /// A line that the firmware prints.
@@ -72,7 +74,8 @@ pub fn bench(args: &[String]) -> Result<()> {
         return boards(cores)?.into_iter().try_for_each(loops::verify);
     }
     let (programs, cores): (&[&str], _) = match named {
-        [EVENTS, cores @ ..] => (&[EVENTS], cores),
+        [EVENTS, cores @ ..] => (&[EVENTS, SETS], cores),
+        [SETS, cores @ ..] => (&[SETS], cores),
         cores => (&[], cores),
     };
     needs::ensure_met()?;
@@ -130,7 +133,7 @@ pub fn verify_stack() -> Result<()> {
 pub fn verify(core: &str) -> Result<()> {
     loops::verify(Board::with(core)?)?;
     let measured = measure(&[], &[core])?;
-    if core == events::PROMISED.0 {
+    if core == events::PROMISED {
         events::ensure_six_channels_fit(&measured.events)?;
     }
     baseline::compare(core, &measured)
@@ -153,7 +156,7 @@ fn json(Measured { rows, events, .. }: &Measured) -> Result<String> {
 fn measure(programs: &[&str], cores: &[&str]) -> Result<Measured> {
     let boards = boards(cores)?;
     let wanted = |program: &&str| programs.is_empty() || programs.contains(program);
-    let programs: Vec<&str> = CODECS.into_iter().chain([EVENTS]).filter(wanted).collect();
+    let programs: Vec<&str> = CODECS.into_iter().chain([EVENTS, SETS]).filter(wanted).collect();
     thread::scope(|scope| {
         let mut runs = Vec::new();
         for board in boards {
@@ -192,7 +195,7 @@ fn boards(cores: &[&str]) -> Result<Vec<&'static Board>> {
 
 fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Measured> {
     let rustc = code::compiler(image)?;
-    if program == EVENTS {
+    if [EVENTS, SETS].contains(&program) {
         let events = printed.lines().map(|line| Event::read(board, line));
         return Ok(Measured { events: events.collect::<Result<_>>()?, rustc, rows: Vec::new() });
     }

@@ -88,6 +88,6 @@ mod tests {
         let programs: Vec<&str> = DEMO.tools.iter().map(|tool| tool.program).collect();
         assert_eq!(programs, ["qemu-system-arm"]);
         assert!(DEMO.targets.iter().all(|target| CHECKS.targets.contains(target)));
-        assert_eq!(CHECKS.targets.len(), 5);
+        assert_eq!(CHECKS.targets.len(), 6);
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod bench;
 pub mod bits;
+pub mod chips;
 pub mod demo;
 pub mod drawing;
 pub mod faults;

@@ -17,7 +17,9 @@ use std::{
 const TARGET: &str = "wasm32-unknown-unknown";
 /// Port on which the page is served, if it is free.
 const PORT: u16 = 8000;
-const BROWSERS: [&str; 2] = ["chromium", "chromium-browser"];
+/// Browsers that drive the page: the package, and the names that the program may have.
+const BROWSERS: [(&str, [&str; 2]); 2] =
+    [("chromium", ["chromium", "chromium-browser"]), ("firefox-esr", ["firefox-esr", "firefox"])];
 
 /// Builds the page, and serves it on request.
 pub fn page(args: &[String]) -> Result<()> {
@@ -36,7 +38,7 @@ pub fn page(args: &[String]) -> Result<()> {
 }
 
 /// Builds the page; returns its path.
-fn build() -> Result<PathBuf> {
+pub fn build() -> Result<PathBuf> {
     let site = installed()?;
     run(&mut library()?)?;
     let module = target().join(TARGET).join("release/page.wasm");
@@ -52,8 +54,8 @@ fn target() -> PathBuf {
 /// Copies the page's sources beside the packages that they import, and installs these.
 fn installed() -> Result<PathBuf> {
     let (from, site) = (paths::root().join("laptop/page"), target().join("site"));
-    fs::create_dir_all(site.join("js"))?;
-    for part in ["", "js"] {
+    for part in ["", "js", "test"] {
+        fs::create_dir_all(site.join(part))?;
         for file in fs::read_dir(from.join(part))? {
             let file = file?;
             if file.file_type()?.is_file() {
@@ -139,19 +141,23 @@ pub fn write() -> Result<()> {
 /// Runs all checks, or the one of this name; keeps pictures of the page in a directory if one is given.
 fn drive(only: Option<&str>, pictures: Option<PathBuf>) -> Result<()> {
     let page = build()?;
-    if !BROWSERS.iter().any(|program| shell::has(program)) {
-        setup::packages("a browser, without a window", &["chromium"])?;
+    let mut browsers = Vec::new();
+    for (package, names) in BROWSERS {
+        let found = || names.into_iter().find(|name| shell::has(name));
+        if found().is_none() {
+            setup::packages("a browser, without a window", &[package])?;
+        }
+        browsers.push(found().with_context(|| format!("no {package} on the path"))?);
     }
-    let browser = BROWSERS.iter().find(|program| shell::has(program));
     let logs = target().join("logs");
     fs::create_dir_all(&logs)?;
     run(&mut cargo("build --package spikewire-cli --bins --examples"))?;
     let built = paths::target().join("debug");
     run(command(built.join("examples/made-logs")).arg(&logs))?;
     let mut test = command("node");
-    test.current_dir(target().join("site")).arg("test.mjs").args(only);
+    test.current_dir(target().join("site")).arg("test/run.mjs").args(only);
     test.env("PAGE", page).env("LOGS", logs).env("SPIKEWIRE", built.join("spikewire"));
-    test.env("BROWSER", browser.context("no chromium on the path")?);
+    test.env("CHROMIUM", browsers[0]).env("FIREFOX", browsers[1]);
     test.env("DATA", paths::root().join("data"));
     if let Some(pictures) = pictures {
         test.env("PICTURES", pictures);

@@ -1,4 +1,4 @@
-//! The emulated boards: one for each Cortex-M core that the crate supports, and a RISC-V machine.
+//! The emulated boards: one for each Cortex-M core that the crate supports, and a RISC-V machine with two cores.
 
 use crate::common::paths;
 use anyhow::{Context, Result};
@@ -63,27 +63,38 @@ pub const BOARDS: [Board; 5] = [
     },
 ];
 
-/// QEMU's RISC-V machine with the core of an ESP32-C3: no floating point, no atomic instructions. It runs the recorded
-/// flight only, as the other programs use a Cortex-M's peripherals.
-pub const RISC_V: Board = Board {
-    core: "RV32",
-    machine: "virt",
-    target: "riscv32imc-unknown-none-elf",
-    cpu: "generic-rv32",
-    clock: 10_000_000,
-    icount: 8,
-};
+/// QEMU's RISC-V machine: with the core of an ESP32-C3, which has no floating point and no atomic instructions, and
+/// with a core that has both. It runs the recorded flight only, as the other programs use a Cortex-M's peripherals.
+pub const RISC_V: [Board; 2] = [
+    Board {
+        core: "RV32",
+        machine: "virt",
+        target: "riscv32imc-unknown-none-elf",
+        cpu: "generic-rv32",
+        clock: 10_000_000,
+        icount: 8,
+    },
+    Board {
+        core: "RV32F",
+        machine: "virt",
+        target: "riscv32imafc-unknown-none-elf",
+        cpu: "generic-rv32",
+        clock: 10_000_000,
+        icount: 8,
+    },
+];
 
 impl Board {
     /// Returns the boards of all cores.
     pub fn all() -> impl Iterator<Item = &'static Self> {
-        BOARDS.iter().chain([&RISC_V])
+        BOARDS.iter().chain(&RISC_V)
     }
 
     /// Returns QEMU's program and the options that choose the board.
     pub fn emulator(&self) -> (&'static str, &'static [&'static str]) {
-        match self.machine {
-            "virt" => ("qemu-system-riscv32", &["-cpu", "rv32,a=off,f=off,d=off", "-bios", "none"]),
+        match self.core {
+            "RV32" => ("qemu-system-riscv32", &["-cpu", "rv32,a=off,f=off,d=off", "-bios", "none"]),
+            "RV32F" => ("qemu-system-riscv32", &["-cpu", "rv32,d=off", "-bios", "none"]),
             _ => ("qemu-system-arm", &[]),
         }
     }

@@ -30,6 +30,7 @@ pub fn build_with(
 /// Builds the package's programs for the board; returns the directory with the images.
 pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
     let mut cargo = building("build", &format!("--package {package}"), board)?;
+    cargo.args(programs.iter().flat_map(|program| ["--bin", program]));
     kept(&mut cargo, package, programs, board)
 }
 
@@ -37,7 +38,7 @@ fn kept(cargo: &mut Command, package: &str, programs: &[&str], board: &Board) ->
     let built = paths::thumb_target().join(board.target).join("release");
     shell::run(cargo).with_context(|| format!("{package} for {}", board.machine))?;
 
-    let images = paths::thumb_target().join(board.machine);
+    let images = paths::thumb_target().join("images").join(board.core);
     fs::create_dir_all(&images)?;
     for program in programs {
         fs::copy(built.join(program), images.join(program)).context(program.to_string())?;
@@ -62,8 +63,8 @@ pub fn link_checked(program: &str, board: &Board) -> Result<()> {
 }
 
 /// Prepares a build. All boards and checks share one directory and one profile, so that each crate is compiled once for
-/// a core. Boards differ in the compiler's flags, by which cargo tells them apart. Each board has a directory for
-/// images, as two boards share a target.
+/// a core. Boards differ in the compiler's flags, by which cargo tells them apart. Each core has a directory for
+/// images, as two share a target.
 fn building(command: &str, packages: &str, board: &Board) -> Result<Command> {
     let build = format!("{command} --release {packages} --manifest-path examples/Cargo.toml");
     let mut cargo = toolchain::cargo_for(board.target, &build)?;

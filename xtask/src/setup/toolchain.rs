@@ -6,12 +6,13 @@ use anyhow::{Result, ensure};
 use std::{fs, path::PathBuf, process::Command};
 
 /// The microcontrollers' targets for which the crate is built.
-pub const TARGETS: [&str; 5] = [
+pub const TARGETS: [&str; 6] = [
     "thumbv6m-none-eabi",
     "thumbv7m-none-eabi",
     "thumbv7em-none-eabihf",
     "thumbv8m.main-none-eabihf",
     "riscv32imc-unknown-none-elf",
+    "riscv32imafc-unknown-none-elf",
 ];
 
 /// Prepares cargo for a microcontroller's target: `cargo …` if the current toolchain has its core library, or else `cargo +thumb

@@ -9,7 +9,7 @@ use crate::checks::{
     templates, tuned, video,
 };
 use crate::common::{cpu, usage};
-use crate::figures::{bench, demo, faults, flash};
+use crate::figures::{bench, chips, demo, faults, flash};
 use crate::mutants;
 use crate::products::{c_library, new_scheme, page, python_package};
 use crate::release;
@@ -266,7 +266,13 @@ const LONG: &[Step] = &[
     step("flown", "the same, on an emulated board: bit for bit", simulated_drone::board),
     step("chip-flies", "the same, on a network on tinyODIN's model", simulated_drone::chip),
     step("net-flies", "the same, on a network in place of the cascade", network_flies::verify),
+    step("agrees", "networks on the chips agree as docs/chips.md says", chips::verify),
     step("reckon", "the model of ReckOn against the chip's own code", reckon::reckon),
+    step(
+        "tinyodin",
+        "steps of networks on tinyODIN's own code, against its model",
+        reckon::tiny_odin,
+    ),
     step("cores", "instruction counts on all five cores, and the log of the smallest", long::cores),
     step(
         "tuner",

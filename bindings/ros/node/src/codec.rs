@@ -6,6 +6,7 @@ use catalogue::run::{
     Asked, Calibrated, Codec as Running, Known, RunTime, SampleType, Samples, Settings as Complete,
     Value, Values, Worded,
 };
+use spikewire_flight::Flight;
 
 /// Schemes whose messages have a number for each neuron.
 const NEURON_BY_NEURON: [&str; 4] = ["position", "grf", "grf-prob", "grf-nonlinear"];
@@ -19,6 +20,8 @@ pub(crate) struct Request {
     sample: SampleType,
     asked: Asked,
     calibrate: usize,
+    /// Number of its stream of random numbers.
+    stream: u64,
 }
 
 impl Request {
@@ -34,7 +37,18 @@ impl Request {
         })?;
         let asked = settings.asked(own.info())?;
         let Settings { sample, calibrate, .. } = *settings;
-        Ok(Self { scheme: *own, sample, asked, calibrate })
+        Ok(Self { scheme: *own, sample, asked, calibrate, stream: 0 })
+    }
+
+    /// Takes the parameters of a flight's channel.
+    pub(crate) fn of_flight(flight: &Flight, channel: usize) -> Self {
+        Self {
+            scheme: flight.run_time(),
+            sample: flight.sample,
+            asked: flight.asked(&flight.channels[channel]),
+            calibrate: 0,
+            stream: channel as u64,
+        }
     }
 
     /// How many samples it takes to start: to calibrate on, or to fill a window.
@@ -77,7 +91,7 @@ impl Request {
             }
         };
         let known = Known { calibrated: calibrated.as_ref(), first: samples, can_calibrate: false };
-        Codec::new(self.scheme, self.sample, &self.asked, &known)
+        Codec::new(self.scheme, self.sample, &self.asked, &known, self.stream)
     }
 
     /// Returns the codec that decodes messages of so many numbers which tell these parameters, from a first value on.
@@ -100,7 +114,7 @@ impl Request {
         }
         let past = vec![first; self.scheme.looks_back(&asked)];
         let known = Known { calibrated: None, first: &past, can_calibrate: false };
-        Codec::new(self.scheme, self.sample, &asked, &known)
+        Codec::new(self.scheme, self.sample, &asked, &known, self.stream)
     }
 }
 
@@ -118,8 +132,9 @@ impl Codec {
         sample: SampleType,
         asked: &Asked,
         known: &Known,
+        stream: u64,
     ) -> Result<Self> {
-        let settings = scheme.resolve(sample, asked, known).map_err(plain)?;
+        let settings = scheme.resolve(sample, asked, known).map_err(plain)?.with_stream(stream);
         let running = scheme.codec(&settings).map_err(plain)?;
         Ok(Self { scheme, sample, settings, running })
     }
@@ -128,7 +143,8 @@ impl Codec {
         self.scheme.info().name
     }
 
-    fn width(&self) -> usize {
+    /// Number of cells of a sample.
+    pub(crate) fn width(&self) -> usize {
         let shape = self.running.shape();
         shape.neurons * shape.slots
     }

@@ -86,6 +86,7 @@ fn start(settings: &Settings, length: usize, said: &Said) -> Result<Codec> {
 #[cfg(test)]
 mod tests {
     use super::Decoding;
+    use crate::codec::Request;
     use crate::counters::Counters;
     use crate::encoding::{Coded, Encoding};
     use crate::settings::{Parameters, Settings};
@@ -119,7 +120,7 @@ mod tests {
         samples: &[f64],
         counters: &mut Counters,
     ) -> anyhow::Result<Vec<Coded>> {
-        let mut encoding = Encoding::new(scheme, &settings(scheme, yaml)?)?;
+        let mut encoding = Encoding::new(Request::new(scheme, &settings(scheme, yaml)?)?)?;
         let mut coded = Vec::new();
         for (stamp, sample) in (0..).step_by(10_000_000).zip(samples) {
             coded.extend(encoding.take(*sample, stamp, counters)?);

@@ -1,10 +1,8 @@
 //! Samples to the messages of their spikes.
 
-use crate::clock::Clock;
 use crate::codec::{Codec, Request};
 use crate::counters::Counters;
 use crate::names::published;
-use crate::settings::Settings;
 use crate::wire::Said;
 use anyhow::Result;
 use ros2_client::builtin_interfaces::Time;
@@ -25,7 +23,6 @@ pub(crate) struct Coded {
 /// are encoded as soon as it can. A rate code's spikes come later than their sample by its latency.
 pub(crate) struct Encoding {
     request: Request,
-    clock: Clock,
     codec: Option<Codec>,
     /// The samples before the start, and then those whose spikes are still to come; each with its stamp in nanoseconds.
     waiting: VecDeque<(f64, i64)>,
@@ -36,12 +33,10 @@ pub(crate) struct Encoding {
 impl Encoding {
     /// # Errors
     /// A parameter is missing or not good.
-    pub(crate) fn new(scheme: &str, settings: &Settings) -> Result<Self> {
-        let request = Request::new(scheme, settings)?;
+    pub(crate) fn new(request: Request) -> Result<Self> {
         let is_array = request.is_array()?;
         Ok(Self {
             request,
-            clock: Clock::new(settings.gap),
             codec: None,
             waiting: VecDeque::new(),
             range: (f64::INFINITY, f64::NEG_INFINITY),
@@ -64,7 +59,6 @@ impl Encoding {
         stamp: i64,
         counters: &mut Counters,
     ) -> Result<Vec<Coded>> {
-        self.clock.observe(stamp, counters);
         if !(value as f32).is_finite() {
             counters.add("samples not finite", 1, &value.to_string());
             return Ok(Vec::new());

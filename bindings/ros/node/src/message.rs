@@ -1,10 +1,10 @@
 //! Numbers out of messages of any type, by the definitions that ROS 2 has of them.
 
-use anyhow::{Result, anyhow};
+use anyhow::{Context as _, Result, anyhow};
 use flight_logs::definition::{self, Definition, Kind, NoNumber, Number, Shape, Step, Struct};
 use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::rc::Rc;
 use std::{env, fmt, fs};
@@ -12,44 +12,71 @@ use std::{env, fmt, fs};
 /// What is wanted of a message.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Taken {
-    /// The number; `None` if it is beyond the end of an array.
-    pub value: Option<f64>,
+    /// The numbers; `None` for one that is beyond the end of an array.
+    pub values: Vec<Option<f64>>,
     /// The stamp of the message's header, in nanoseconds, if it has one.
     pub stamp: Option<i64>,
+    /// The frame of that header; empty without one.
+    pub frame: String,
 }
 
-/// Where in messages of a type a number is. Deserializes a message to what is wanted of it.
+impl Taken {
+    /// Returns the numbers of these fields.
+    ///
+    /// # Errors
+    /// One is beyond the end of an array.
+    pub(crate) fn all(&self, fields: &[&str]) -> Result<Vec<f64>> {
+        let both = self.values.iter().zip(fields);
+        both.map(|(value, field)| {
+            value.with_context(|| format!("field {field}: the array is shorter"))
+        })
+        .collect()
+    }
+}
+
+/// Paths to the wanted numbers and texts in messages of one type, by which a message is deserialized.
 #[derive(Clone)]
-pub(crate) struct Field {
+pub(crate) struct Fields {
     message: Rc<Definition>,
-    /// The paths to the number, and to the seconds and nanoseconds of the stamp.
+    /// The paths to the numbers, then to the seconds and nanoseconds of the stamp.
     paths: Rc<[Vec<Step>]>,
+    /// Number of the paths that lead to numbers.
+    count: usize,
+    /// The path to the header's frame.
+    frame: Rc<[Step]>,
 }
 
-impl Field {
-    /// Finds a number, such as `angular_velocity.x` or `ranges[3]`, in messages of a type, such as `sensor_msgs/Imu`.
+impl Fields {
+    /// Finds numbers, such as `angular_velocity.x` or `ranges[3]`, in messages of a type, such as `sensor_msgs/Imu`.
     ///
     /// # Errors
     /// There is no definition of the type, or no such number in it; the text lists those that there are.
-    pub(crate) fn find(expression: &str, kind: &str) -> Result<Self> {
+    pub(crate) fn find(expressions: &[&str], kind: &str) -> Result<Self> {
         let message = Definition::of_ros2(kind, &installed).map_err(|error| {
 anyhow!("{kind}: {error}; those of share/PACKAGE/msg in AMENT_PREFIX_PATH are known, and a few more")
         })?;
-        let number = message.number(&expression.replace('/', ".")).map_err(|why| {
-            let (numbers, _) = message.names();
-            let names = if numbers.is_empty() { "none".to_owned() } else { numbers.join(", ") };
-            let why = match why {
-                NoNumber::Missing => "it has no such number",
-                NoNumber::Text => "it is no number, but text",
-                NoNumber::Several => "it is no number, but several",
-            };
-            anyhow!("field {expression}: {why}; numbers of {kind}: {names}")
-        })?;
-        let mut paths = vec![number.0];
+        let path = |expression: &&str| {
+            let number = message.number(&expression.replace('/', "."));
+            number.map(|number| number.0).map_err(|why| {
+                let (numbers, _) = message.names();
+                let names = if numbers.is_empty() { "none".to_owned() } else { numbers.join(", ") };
+                let why = match why {
+                    NoNumber::Missing => "it has no such number",
+                    NoNumber::Text => "it is no number, but text",
+                    NoNumber::Several => "it is no number, but several",
+                };
+                anyhow!("field {expression}: {why}; numbers of {kind}: {names}")
+            })
+        };
+        let mut paths = expressions.iter().map(path).collect::<Result<Vec<_>>>()?;
+        let mut frame = Vec::new();
         if let Some(stamp) = message.stamp("header.stamp") {
+            // A header is a stamp and a frame.
+            frame.extend([stamp.seconds.0[0], Step::Field(1)]);
             paths.extend([stamp.seconds.0, stamp.nanoseconds.0]);
         }
-        Ok(Self { message: Rc::new(message), paths: paths.into() })
+        let count = expressions.len();
+        Ok(Self { message: Rc::new(message), paths: paths.into(), count, frame: frame.into() })
     }
 }
 
@@ -75,28 +102,39 @@ fn installed(name: &str) -> Option<String> {
     })
 }
 
-impl<'de> DeserializeSeed<'de> for Field {
+impl<'de> DeserializeSeed<'de> for Fields {
     type Value = Taken;
 
     fn deserialize<D: Deserializer<'de>>(self, input: D) -> Result<Taken, D::Error> {
-        let found = [const { Cell::new(None) }; 3];
+        let found = vec![Found::default(); self.paths.len() + 1];
+        let paths = self.paths.iter().map(Vec::as_slice).chain([&*self.frame]);
         let wanted: Vec<Wanted> =
-            self.paths.iter().zip(&found).map(|(path, found)| Wanted { path, found }).collect();
+            paths.zip(&found).map(|(path, found)| Wanted { path, found }).collect();
         let (message, place) = (&*self.message, Place::Message(self.message.root()));
         Walk { message, place, wanted: &wanted }.deserialize(input)?;
-        let [value, seconds, nanoseconds] = found.map(Cell::into_inner);
-        let stamp = seconds.zip(nanoseconds);
-        let stamp = stamp.map(|(sec, nano): (f64, f64)| sec as i64 * 1_000_000_000 + nano as i64);
-        Ok(Taken { value, stamp })
+        let (numbers, frame) = found.split_at(self.paths.len());
+        let mut values: Vec<_> = numbers.iter().map(|found| found.number.get()).collect();
+        let stamp = match values.split_off(self.count)[..] {
+            [Some(seconds), Some(nanos)] => Some(seconds as i64 * 1_000_000_000 + nanos as i64),
+            _ => None,
+        };
+        Ok(Taken { values, stamp, frame: frame[0].text.take() })
     }
 }
 
-/// A number that is wanted.
+/// The number or text that was found for a path.
+#[derive(Clone, Default)]
+struct Found {
+    number: Cell<Option<f64>>,
+    text: RefCell<String>,
+}
+
+/// A number or a text that is wanted.
 #[derive(Clone, Copy)]
 struct Wanted<'a> {
     /// The rest of the way to it.
     path: &'a [Step],
-    found: &'a Cell<Option<f64>>,
+    found: &'a Found,
 }
 
 /// What is read next of a message.
@@ -135,7 +173,13 @@ impl<'de> DeserializeSeed<'de> for Walk<'_> {
             Place::Message(own) => return input.deserialize_tuple(own.fields.len(), self),
             Place::Array(_, Some(count)) => return input.deserialize_tuple(count, self),
             Place::Array(_, None) => return input.deserialize_seq(self),
-            Place::One(Kind::Text) => return String::deserialize(input).map(drop),
+            Place::One(Kind::Text) => {
+                let text = String::deserialize(input)?;
+                for wanted in self.wanted {
+                    wanted.found.text.replace(text.clone());
+                }
+                return Ok(());
+            }
             Place::One(Kind::Number(number) | Kind::Hidden(number)) => match number {
                 Number::I8 => i8::deserialize(input)?.into(),
                 Number::Bool | Number::U8 => u8::deserialize(input)?.into(),
@@ -150,7 +194,7 @@ impl<'de> DeserializeSeed<'de> for Walk<'_> {
             },
             Place::One(_) => return Err(D::Error::custom("wide text stands before the field")),
         };
-        self.wanted.iter().for_each(|wanted| wanted.found.set(Some(number)));
+        self.wanted.iter().for_each(|wanted| wanted.found.number.set(Some(number)));
         Ok(())
     }
 }
@@ -193,13 +237,13 @@ fn placed<'a>(field: &definition::Field) -> Place<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Field, Taken};
+    use super::{Fields, Taken};
     use ros2_client::dds::rustdds::serialization::CdrDeserializeSeedDecoder;
     use ros2_client::dds::rustdds::{RepresentationIdentifier, no_key::Decode};
     use std::marker::PhantomData;
 
-    fn taken(field: &str, kind: &str, bytes: &[u8]) -> Option<Taken> {
-        let seed = Field::find(field, kind).unwrap();
+    fn taken(fields: &[&str], kind: &str, bytes: &[u8]) -> Option<Taken> {
+        let seed = Fields::find(fields, kind).unwrap();
         let decoder = CdrDeserializeSeedDecoder::new(seed, PhantomData::<()>);
         decoder.decode_bytes(bytes, RepresentationIdentifier::CDR_LE).ok()
     }
@@ -219,24 +263,29 @@ mod tests {
             ("timestamp.sec", Some(7.0)),
             ("timestamp/nanosec", Some(9.0)),
         ] {
-            let taken = taken(field, "spyke_msgs/SpykeArray", &bytes).unwrap();
-            assert_eq!((taken.value, taken.stamp), (value, None), "{field}");
+            let taken = taken(&[field], "spyke_msgs/SpykeArray", &bytes).unwrap();
+            assert_eq!((&taken.values[..], taken.stamp), (&[value][..], None), "{field}");
         }
         for length in 0..bytes.len() {
             assert!(
-                taken("input", "spyke_msgs/SpykeArray", &bytes[..length]).is_none(),
+                taken(&["input"], "spyke_msgs/SpykeArray", &bytes[..length]).is_none(),
                 "{length}"
             );
         }
     }
 
     #[test]
-    fn a_stamp() {
+    fn two_numbers_a_stamp_and_a_frame() {
         let mut bytes = [7_i32.to_le_bytes(), 9_i32.to_le_bytes(), 2_i32.to_le_bytes()].concat();
         bytes.extend(*b"x\0\0\0");
         bytes.extend((0..37).flat_map(|number: i32| f64::from(number).to_le_bytes()));
-        let taken = taken("angular_velocity.z", "sensor_msgs/Imu", &bytes).unwrap();
-        assert_eq!((taken.value, taken.stamp), (Some(15.0), Some(7_000_000_009)));
+        let fields = ["angular_velocity.z", "orientation.x"];
+        let taken = taken(&fields, "sensor_msgs/Imu", &bytes).unwrap();
+        assert_eq!(
+            (&taken.values[..], taken.stamp),
+            (&[Some(15.0), Some(0.0)][..], Some(7_000_000_009))
+        );
+        assert_eq!(taken.frame, "x");
     }
 
     #[test]
@@ -250,10 +299,10 @@ mod tests {
             ("data", "std_msgs/String", "numbers of std_msgs/String: none"),
             ("data", "own_msgs/Own", "there is no definition of own_msgs/Own"),
         ] {
-            let told = format!("{:#}", Field::find(field, kind).err().unwrap());
+            let told = format!("{:#}", Fields::find(&[field], kind).err().unwrap());
             assert!(told.contains(why), "{field}: {told}");
         }
-        let told = format!("{:#}", Field::find("w", "sensor_msgs/Imu").err().unwrap());
+        let told = format!("{:#}", Fields::find(&["w"], "sensor_msgs/Imu").err().unwrap());
         assert!(
             told.contains(
                 "numbers of sensor_msgs/Imu: header.stamp.sec, header.stamp.nanosec, orientation.x,"

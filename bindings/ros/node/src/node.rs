@@ -1,13 +1,19 @@
 //! The nodes on DDS.
 
 use crate::arguments::Arguments;
+use crate::bank::{Bank, Unbank};
+use crate::clock::Clock;
+use crate::codec::Request;
 use crate::counters::Counters;
 use crate::decoding::Decoding;
 use crate::encoding::{Coded, Encoding};
 use crate::failures;
-use crate::message::{Field, Taken};
+use crate::message::Fields;
 use crate::settings::{Parameters, Settings};
-use crate::wire::{DiagnosticArray, DiagnosticStatus, Said, Spikes, Spyke, SpykeValue};
+use crate::wire::{
+    DiagnosticArray, DiagnosticStatus, FlightSpikes, FlightValues, Header, Said, Spikes, Spyke,
+    SpykeValue,
+};
 use anyhow::{Context as _, Result, anyhow, bail};
 use ros2_client::builtin_interfaces::Time;
 use ros2_client::dds::rustdds::discovery::DiscoveredWriterData;
@@ -20,8 +26,11 @@ use ros2_client::{
 };
 use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer};
 use serde::{Deserialize, Serialize};
+use spikewire_flight::Flight;
 use std::collections::{BTreeMap, BTreeSet};
 use std::env;
+use std::fs;
+use std::marker::PhantomData;
 use std::net::Ipv4Addr;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -37,6 +46,8 @@ pub enum Kind {
     Encode,
     /// Spikes to values.
     Decode,
+    /// All channels of a `flight.toml` to spikes.
+    Flight,
 }
 
 /// As for wrong options.
@@ -63,10 +74,12 @@ pub fn run(kind: Kind) -> ExitCode {
     let name = match kind {
         Kind::Encode => "encode",
         Kind::Decode => "decode",
+        Kind::Flight => "flight",
     };
     let ran = Arguments::read(name, env::args().skip(1)).and_then(|own| match kind {
         Kind::Encode => encode(&own),
         Kind::Decode => decode(&own),
+        Kind::Flight => fly(&own),
     });
     if let Err(error) = ran {
         eprintln!("[FATAL] [{name}]: {error:#}");
@@ -78,7 +91,8 @@ pub fn run(kind: Kind) -> ExitCode {
 fn encode(arguments: &Arguments) -> Result<()> {
     let settings = Settings::read(&arguments.parameters)?;
     let (scheme, topic) = settings.to_encode()?;
-    let mut encoding = Encoding::new(scheme, &settings)?;
+    let mut encoding = Encoding::new(Request::new(scheme, &settings)?)?;
+    let mut clock = Clock::new(settings.gap);
     let kind = if encoding.is_array { "SpykeArray" } else { "Spyke" };
 
     let mut ros = Ros::new(arguments)?;
@@ -90,11 +104,11 @@ fn encode(arguments: &Arguments) -> Result<()> {
     let topic = arguments.topic(topic);
     ros.listen(
         &topic,
-        |kind| Field::find(&settings.field, kind),
-        |ros, Taken { value, stamp }| {
-            let value =
-                value.with_context(|| format!("field {}: the array is shorter", settings.field))?;
-            let stamp = stamp.filter(|stamp| *stamp != 0).unwrap_or_else(|| ros.now().to_nanos());
+        |kind| Fields::find(&[&settings.field], kind),
+        |ros, taken| {
+            let value = taken.all(&[&settings.field])?[0];
+            let stamp = ros.stamp(taken.stamp);
+            clock.observe(stamp, &mut ros.counters);
             let coded = encoding.take(value, stamp, &mut ros.counters)?;
             sender.send(ros, coded, &encoding);
             Ok(())
@@ -130,8 +144,51 @@ impl Sender {
     }
 }
 
+fn fly(arguments: &Arguments) -> Result<()> {
+    let settings = Settings::read(&arguments.parameters)?;
+    let (path, topic) = settings.to_fly()?;
+    let text = fs::read_to_string(path).with_context(|| path.to_owned())?;
+    let mut bank = Bank::new(Flight::read(path)?, settings.gap)?;
+
+    let mut ros = Ros::new(arguments)?;
+    let spikes = ros.publisher("spikes", "spikewire_msgs", "Spikes", ALL)?;
+    let decoded = ros.publisher("~/decoded", "spikewire_msgs", "Values", ALL)?;
+    let file = ros.publisher("flight", "std_msgs", "String", LATCHED)?;
+    ros.sent(file.publish(text).is_ok());
+    ros.latched = Some(file);
+    let send = |ros: &mut Ros, coded: Vec<(FlightSpikes, FlightValues)>| {
+        for (own, values) in coded {
+            ros.sent(spikes.publish(own).is_ok());
+            ros.sent(decoded.publish(values).is_ok());
+            ros.given += 1;
+        }
+    };
+    let sources = bank.sources();
+    let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
+    ros.listen(
+        &arguments.topic(topic),
+        |kind| Fields::find(&sources, kind),
+        |ros, taken| {
+            let values = taken.all(&sources)?;
+            let stamp = Time::from_nanos(ros.stamp(taken.stamp));
+            let header = Header { stamp, frame_id: taken.frame };
+            let coded = bank.take(&values, header, &mut ros.counters)?;
+            send(ros, coded);
+            Ok(())
+        },
+    )?;
+    let left = bank.end(&mut ros.counters)?;
+    send(&mut ros, left);
+    ros.end();
+    Ok(())
+}
+
 fn decode(arguments: &Arguments) -> Result<()> {
-    let mut decoding = Decoding::new(Settings::read(&arguments.parameters)?)?;
+    let settings = Settings::read(&arguments.parameters)?;
+    if let Some(path) = settings.flight()? {
+        return decode_flight(arguments, Unbank::new(Flight::read(path)?, settings.gap));
+    }
+    let mut decoding = Decoding::new(settings)?;
     let mut ros = Ros::new(arguments)?;
     let decoded = ros.publisher("~/decoded", "spyke_msgs", "SpykeValue", ALL)?;
     let kind = |kind: &str| match kind {
@@ -143,6 +200,25 @@ fn decode(arguments: &Arguments) -> Result<()> {
         if let Some(value) = decoding.take(&spikes, &said, &mut ros.counters)? {
             let timestamp = said.timestamp;
             ros.sent(decoded.publish(SpykeValue { value, timestamp }).is_ok());
+            ros.given += 1;
+        }
+        Ok(())
+    })?;
+    ros.end();
+    Ok(())
+}
+
+fn decode_flight(arguments: &Arguments, mut decoding: Unbank) -> Result<()> {
+    let mut ros = Ros::new(arguments)?;
+    let decoded = ros.publisher("~/decoded", "spikewire_msgs", "Values", ALL)?;
+    let kind = |kind: &str| match kind {
+        "spikewire_msgs/Spikes" => Ok(PhantomData),
+        _ => bail!("the topic is of {kind}; spikes of a flight are spikewire_msgs/Spikes"),
+    };
+    ros.listen(&arguments.topic("spikes"), kind, |ros, message: FlightSpikes| {
+        if let Some(values) = decoding.take(&message, &mut ros.counters)? {
+            let header = message.header;
+            ros.sent(decoded.publish(FlightValues { header, values }).is_ok());
             ros.given += 1;
         }
         Ok(())
@@ -392,6 +468,11 @@ impl<'a> Ros<'a> {
         self.is_stopped.load(Ordering::Relaxed)
     }
 
+    /// Returns a message's stamp, or the time if it has none.
+    fn stamp(&self, stamp: Option<i64>) -> i64 {
+        stamp.filter(|stamp| *stamp != 0).unwrap_or_else(|| self.now().to_nanos())
+    }
+
     fn now(&self) -> Time {
         self.node.time_now().into()
     }
@@ -454,8 +535,10 @@ impl<'a> Ros<'a> {
             hardware_id: String::new(),
             values: all.map(|(name, count)| (name.to_owned(), count.to_string())).collect(),
         };
-        let message =
-            DiagnosticArray { stamp: self.now(), frame_id: String::new(), status: vec![status] };
+        let message = DiagnosticArray {
+            header: Header { stamp: self.now(), frame_id: String::new() },
+            status: vec![status],
+        };
         let is_sent =
             self.diagnostics.as_ref().is_none_or(|publisher| publisher.publish(message).is_ok());
         self.sent(is_sent);

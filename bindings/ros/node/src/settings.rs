@@ -100,6 +100,30 @@ impl Settings {
         Ok(asked)
     }
 
+    /// Returns the path of a flight's file, if one is given.
+    ///
+    /// # Errors
+    /// A parameter is given that the file has.
+    pub(crate) fn flight(&self) -> Result<Option<&str>> {
+        let Some((_, path)) = self.own.iter().find(|(name, _)| name == "flight") else {
+            return Ok(None);
+        };
+        if let Some((name, _)) = self.own.iter().find(|(name, _)| name != "flight") {
+            bail!("{name}: it stands in the flight's file; parameters are flight, topic and gap");
+        }
+        Ok(Some(path.as_str().context("flight: it must be a path")?))
+    }
+
+    /// Returns the path of a flight's file and the topic, which the node of a flight must have.
+    ///
+    /// # Errors
+    /// One is missing, or a parameter is given that the file has.
+    pub(crate) fn to_fly(&self) -> Result<(&str, &str)> {
+        let flight = self.flight()?.context("flight is missing: the path of a flight.toml")?;
+        let topic = self.topic.as_deref();
+        Ok((flight, topic.context("topic is missing: what to encode, such as /imu/data")?))
+    }
+
     /// Returns scheme and topic, which an encoding node must have.
     ///
     /// # Errors

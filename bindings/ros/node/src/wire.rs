@@ -31,11 +31,41 @@ pub(crate) struct SpykeValue {
     pub timestamp: Time,
 }
 
+/// `std_msgs/Header`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Header {
+    pub stamp: Time,
+    pub frame_id: String,
+}
+
+/// `spikewire_msgs/Spike`
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Spike {
+    pub address: u16,
+    pub slot: u16,
+    pub polarity: i8,
+}
+
+/// `spikewire_msgs/Spikes`
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct FlightSpikes {
+    pub header: Header,
+    pub sample: u64,
+    pub spikes: Vec<Spike>,
+    pub start: Vec<f32>,
+}
+
+/// `spikewire_msgs/Values`
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct FlightValues {
+    pub header: Header,
+    pub values: Vec<f64>,
+}
+
 /// `diagnostic_msgs/DiagnosticArray`
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct DiagnosticArray {
-    pub stamp: Time,
-    pub frame_id: String,
+    pub header: Header,
     pub status: Vec<DiagnosticStatus>,
 }
 

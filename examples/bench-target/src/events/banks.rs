@@ -9,6 +9,7 @@ use board::stopwatch::{counted, keep};
 use spikewire::{
     Bank, Calibration, ConfigError, Start, Tick,
     rate::{Hough, Scale, Shape, Taps, ThresholdHough},
+    temporal::StepForward,
 };
 
 use super::{
@@ -19,7 +20,7 @@ use crate::signal::Measured;
 
 #[inline(never)] // leaves the stack before the next one comes
 pub fn measure<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
-    let schemes = flight::Schemes::<S>::new().ok_or(fmt::Error)?;
+    let schemes = flight::Schemes::new(StepForward::<S>::try_new).ok_or(fmt::Error)?;
     bank(out, ("bank-sf-6", sample), schemes.bank())?;
 
     let minima = minima::<S>();

@@ -1,6 +1,6 @@
 //! The recorded flight as events, and as the samples of a faster sensor.
 
-use spikewire::{Bank, Event, Polarity, Sample, Tick, temporal::StepForward};
+use spikewire::{Bank, ConfigError, Event, Polarity, Start, Tick, temporal::StepForward};
 
 use crate::signal::Measured;
 
@@ -10,27 +10,27 @@ pub const CHANNELS: usize = 6;
 pub const PERIOD: u16 = 5_038;
 
 /// A scheme for each channel.
-pub type Six<'a, S> = [&'a StepForward<S>; CHANNELS];
+pub type Six<'a, P> = [&'a P; CHANNELS];
 
 /// The channels' schemes: a spike for every 0.1 rad/s and every 0.5 m/s².
-pub struct Schemes<S: Sample> {
-    rate: StepForward<S>,
-    acceleration: StepForward<S>,
+pub struct Schemes<P> {
+    rate: P,
+    acceleration: P,
 }
 
-impl<S: Sample> Schemes<S> {
-    pub fn new() -> Option<Self> {
-        let [rate, acceleration] =
-            [0.1, 0.5].map(|threshold| StepForward::try_new(S::from_f64(threshold)).ok());
+impl<P: Start<Sample: Measured>> Schemes<P> {
+    /// Of what `scheme` makes of a threshold.
+    pub fn new(scheme: impl Fn(P::Sample) -> Result<P, ConfigError>) -> Option<Self> {
+        let [rate, acceleration] = [0.1, 0.5].map(|threshold| scheme(in_units(threshold)).ok());
         Some(Self { rate: rate?, acceleration: acceleration? })
     }
 
-    pub fn each(&self) -> Six<'_, S> {
+    pub fn each(&self) -> Six<'_, P> {
         let Self { rate, acceleration } = self;
         [rate, rate, rate, acceleration, acceleration, acceleration]
     }
 
-    pub fn bank(&self) -> Bank<Six<'_, S>, CHANNELS> {
+    pub fn bank(&self) -> Bank<Six<'_, P>, CHANNELS> {
         Bank::per_channel(self.each())
     }
 }
@@ -43,7 +43,11 @@ pub fn samples() -> impl Iterator<Item = (Tick, [f32; CHANNELS])> {
 
 /// A set of samples in the sample type.
 pub fn typed<S: Measured>((tick, set): (Tick, [f32; CHANNELS])) -> (Tick, [S; CHANNELS]) {
-    (tick, set.map(|value| S::from_f64(value.into())))
+    (tick, set.map(|value| in_units(value.into())))
+}
+
+fn in_units<S: Measured>(value: f64) -> S {
+    S::from_f64(value * S::UNITS)
 }
 
 /// The recording as a sensor at another rate would have seen it, on straight lines between the samples.
@@ -68,7 +72,7 @@ pub fn samples_every(period: u32) -> impl Iterator<Item = (Tick, [f32; CHANNELS]
 
 /// Hands every event of the flight to `each`.
 pub fn events(mut each: impl FnMut(Event)) {
-    let Some(schemes) = Schemes::<f32>::new() else { return };
+    let Some(schemes) = Schemes::new(StepForward::<f32>::try_new) else { return };
     let mut bank = schemes.bank();
     for (tick, sample) in samples() {
         bank.encode(tick, sample, &mut each);

@@ -9,7 +9,7 @@ use core::{
 use board::stopwatch::{counted, keep};
 use fixed::{FixedI32, types::extra::U16};
 use spikewire::{
-    Decoder, Event, FromEvents, Sample, Scheme,
+    Decoder, Event, FromEvents, Scheme,
     link::{Coding, FrameView, MAX_FRAME, Reader, Receiver, Session, Transmitter},
     temporal::StepForward,
 };
@@ -19,14 +19,17 @@ use super::{
     flight::{self, CHANNELS, Digest, NO_EVENT, PERIOD, Schemes, Six},
     meter::{Cost, take},
 };
+use crate::signal::Measured;
+
+type Steps<S> = Schemes<StepForward<S>>;
 
 /// More events than a frame holds.
 const FULL: usize = 512;
 
 #[inline(never)] // leaves the stack before the next one comes
 pub fn measure(out: &mut impl Write) -> fmt::Result {
-    let floats = Schemes::new().ok_or(fmt::Error)?;
-    let fixed = Schemes::new().ok_or(fmt::Error)?;
+    let floats = Schemes::new(StepForward::try_new).ok_or(fmt::Error)?;
+    let fixed = Schemes::new(StepForward::try_new).ok_or(fmt::Error)?;
     let mut full = Link::new(&floats, &fixed);
     let mut waiting = [NO_EVENT; FULL];
     let mut count = 0;
@@ -40,8 +43,14 @@ pub fn measure(out: &mut impl Write) -> fmt::Result {
         }
     });
     // What is left fills no frame, and would cost more an event.
-    full.print(out, "link-full")?;
+    full.print(out, "link-full")
+}
 
+/// A frame every 100 ms.
+#[inline(never)] // leaves the stack before the next one comes
+pub fn measure_slow(out: &mut impl Write) -> fmt::Result {
+    let floats = Schemes::new(StepForward::try_new).ok_or(fmt::Error)?;
+    let fixed = Schemes::new(StepForward::try_new).ok_or(fmt::Error)?;
     let mut slow = Link::new(&floats, &fixed);
     flight::batches::<FULL>(100_000, |events| {
         slow.all_sent &= slow.send(events) == events.len() && slow.is_whole();
@@ -65,14 +74,14 @@ struct Link<'a> {
 }
 
 /// Events to values at the far end, and without a link.
-struct Values<'a, S: Sample> {
-    receiver: Receiver<Six<'a, S>, CHANNELS, 0>,
+struct Values<'a, S: Measured> {
+    receiver: Receiver<Six<'a, StepForward<S>>, CHANNELS, 0>,
     decoders: [Decoder<'a, StepForward<S>>; CHANNELS],
     cost: Cost,
 }
 
 impl<'a> Link<'a> {
-    fn new(floats: &'a Schemes<f32>, fixed: &'a Schemes<FixedI32<U16>>) -> Self {
+    fn new(floats: &'a Steps<f32>, fixed: &'a Steps<FixedI32<U16>>) -> Self {
         Self {
             transmitter: Transmitter::new(
                 Coding::for_channels(CHANNELS as u16, PERIOD),
@@ -157,8 +166,8 @@ fn write(
     transmitter.next_frame(source, buffer).ok().flatten().map_or(0, <[u8]>::len)
 }
 
-impl<'a, S: Sample> Values<'a, S> {
-    fn new(schemes: &'a Schemes<S>) -> Self {
+impl<'a, S: Measured> Values<'a, S> {
+    fn new(schemes: &'a Steps<S>) -> Self {
         let schemes = schemes.each();
         let decoders = schemes.map(Scheme::decoder);
         Self { receiver: Receiver::per_channel(schemes), decoders, cost: Cost::default() }

@@ -7,8 +7,9 @@ use core::{
 
 use board::stopwatch::{Count, counted};
 use spikewire::{
-    Bank, Consumer, Event, EventQueue, Overflow, Source as _, SpscQueue, Tick,
+    Bank, ConfigError, Consumer, Event, EventQueue, Overflow, Source as _, SpscQueue, Start, Tick,
     link::{MAX_FRAME, Reader, Receiver, Session, Transmitter},
+    temporal::{SendOnDelta, StepForward},
 };
 
 use super::{
@@ -59,10 +60,23 @@ fn queue(
 /// Counts the whole way by sets of six samples, at the recording's own rate and at 8 kHz.
 #[inline(never)] // leaves the stack before the next one comes
 pub fn measure<S: Measured>(out: &mut impl Write, sample: &str) -> fmt::Result {
-    let schemes = Schemes::<S>::new().ok_or(fmt::Error)?;
+    let schemes = Schemes::new(StepForward::<S>::try_new).ok_or(fmt::Error)?;
     Way::new(&schemes, PERIOD).go(out, ("path-200hz", sample), flight::samples())?;
-    let fast = flight::samples_every(SPACING.into()).take(10 * 8_000);
-    Way::new(&schemes, SPACING).go(out, ("path-8khz", sample), fast)
+    fast(out, "path-8khz", sample, StepForward::<S>::try_new)?;
+    fast(out, "path-send-on-delta-8khz", sample, SendOnDelta::<S, 4>::try_new)
+}
+
+/// The samples of 10 s at 8 kHz.
+#[inline(never)] // leaves the stack before the next one comes
+fn fast<P: Start<Sample: Measured>>(
+    out: &mut impl Write,
+    path: &str,
+    sample: &str,
+    scheme: impl Fn(P::Sample) -> Result<P, ConfigError>,
+) -> fmt::Result {
+    let schemes = Schemes::new(scheme).ok_or(fmt::Error)?;
+    let samples = flight::samples_every(SPACING.into()).take(10 * 8_000);
+    Way::new(&schemes, SPACING).go(out, (path, sample), samples)
 }
 
 /// Of 8000 samples a second, in µs.
@@ -73,13 +87,17 @@ const KEYFRAMES: u32 = 1_000_000;
 
 /// What an interrupt does.
 #[inline(never)]
-fn interrupt<S: Measured>(bank: &mut Bank<Six<'_, S>, CHANNELS>, tick: &Tick, set: &[S; CHANNELS]) {
+fn interrupt<P: Start>(
+    bank: &mut Bank<Six<'_, P>, CHANNELS>,
+    tick: &Tick,
+    set: &[P::Sample; CHANNELS],
+) {
     bank.encode_into(*tick, *set, &EVENTS);
 }
 
 /// What it does as well, once a second.
 #[inline(never)]
-fn keyframes<S: Measured>(bank: &Bank<Six<'_, S>, CHANNELS>, tick: &Tick) {
+fn keyframes<P: Start>(bank: &Bank<Six<'_, P>, CHANNELS>, tick: &Tick) {
     bank.keyframe_into(*tick, &EVENTS);
 }
 
@@ -94,18 +112,18 @@ fn send(transmitter: &mut Transmitter, events: &mut Consumer<'_>, buffer: &mut [
 }
 
 /// From samples to frames, and to values at the other end.
-struct Way<'a, S: Measured> {
-    bank: Bank<Six<'a, S>, CHANNELS>,
+struct Way<'a, P: Start> {
+    bank: Bank<Six<'a, P>, CHANNELS>,
     transmitter: Transmitter,
     reader: Reader<MAX_FRAME>,
-    receiver: Receiver<Six<'a, S>, CHANNELS, 0>,
+    receiver: Receiver<Six<'a, P>, CHANNELS, 0>,
     interrupt: Cost,
     main: Cost,
     all: Cost,
 }
 
-impl<'a, S: Measured> Way<'a, S> {
-    fn new(schemes: &'a Schemes<S>, period: u16) -> Self {
+impl<'a, P: Start<Sample: Measured>> Way<'a, P> {
+    fn new(schemes: &'a Schemes<P>, period: u16) -> Self {
         let bank = schemes.bank();
         let transmitter = Transmitter::for_bank(&bank, period, Session::counted(1));
         Self {
@@ -161,7 +179,7 @@ impl<'a, S: Measured> Way<'a, S> {
     }
 
     /// The instructions of an interrupt, without its call.
-    fn interrupt(&mut self, tick: &Tick, set: &[S; CHANNELS]) -> Count {
+    fn interrupt(&mut self, tick: &Tick, set: &[P::Sample; CHANNELS]) -> Count {
         let (tick, set, bank) = (black_box(tick), black_box(set), &mut self.bank);
         let call = *self.interrupt.call.get_or_insert_with(|| counted(|| take(bank, tick, set)));
         counted(|| interrupt(bank, tick, set)).saturating_sub(call)

@@ -218,8 +218,8 @@ impl Sink<'_> {
         let cells = rows.get_mut(*made..).unwrap_or_default();
         for (cell, spike) in cells.iter_mut().zip(spikes.iter().take(count)) {
             *cell = *spike as i8;
+            *made += 1;
         }
-        *made += count;
         true
     }
 

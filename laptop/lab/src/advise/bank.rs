@@ -21,8 +21,8 @@ use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 /// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
 
-/// Seconds between keyframes, if no simulated flights in a control loop give this time. A receiver that joins late
-/// waits for a keyframe up to this long.
+/// Default time between keyframes, in seconds. Used unless the scheme serves a control loop and its simulated flights
+/// had keyframes. A receiver that joins late waits for a keyframe up to this long.
 const KEYFRAMES: f64 = 1.0;
 
 /// The advice on all channels together.
@@ -185,8 +185,8 @@ impl BankAdvice {
     }
 }
 
-/// Makes a bank: one scheme, with settings for all channels. The inner error is the reason that the scheme cannot serve
-/// all channels.
+/// Makes a bank: one scheme, with settings for all channels. If the scheme cannot serve all channels, returns
+/// `Ok(Err(reason))`.
 fn bank(
     request: &AdviseRequest,
     scheme: Scheme,
@@ -295,8 +295,8 @@ fn words(filter: Filter) -> String {
     }
 }
 
-/// Returns the values of the parameters that all channels of a bank must share. If the parameter is a count, its value
-/// is the largest of the channels' values. Otherwise, its value is that of the first channel.
+/// Returns the parameters that all channels of a bank must share, each with one value. A parameter that is a count gets
+/// the largest value among the channels. Any other parameter gets the value of the first channel.
 fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;

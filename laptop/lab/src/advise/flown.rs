@@ -1,5 +1,5 @@
-//! Results of simulated flights with each code in the control loop. The rotors of the simulated drones shake the
-//! sensor. `cargo xtask write loop` measures the results, which `docs/loop.md` shows.
+//! Results of simulated flights with each code in the control loop. In the simulation, the rotors shake the sensor.
+//! `cargo xtask write loop` measures the results, and `docs/loop.md` shows them.
 
 use crate::flight::Filter;
 use serde::{Deserialize, Serialize};
@@ -9,6 +9,9 @@ use std::sync::LazyLock;
 /// The results of the simulated flights, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`,
 /// because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
+
+/// The parameters with which the schemes flew, as JSON. The file is a symbolic link, as `verdicts.json` is.
+const FOUND: &str = include_str!("banks.json");
 
 /// Largest attitude error with which a scheme counts as fit to fly, as a multiple of the error without a code.
 /// Without a code, the controller reads the samples themselves.
@@ -60,6 +63,40 @@ pub(crate) struct Error {
 static BANKS: LazyLock<BTreeMap<String, Flown>> = LazyLock::new(|| {
     serde_json::from_str::<Figures>(FIGURES).map(|figures| figures.banks).unwrap_or_default()
 });
+
+/// The verdict of the simulated flights on a scheme, and the settings of these flights.
+#[derive(Debug, Serialize)]
+pub struct Verdict {
+    /// The reason not to fly the scheme on a link that loses 1 % of the frames. `None` if the scheme is fit to fly.
+    pub objection: Option<String>,
+    /// Attitude error with the code divided by the attitude error without a code, averaged over several drones and
+    /// controllers. `None` if no such pair of errors is known.
+    pub beside: Option<f64>,
+    /// Corner frequency of the low-pass before the code, in Hz; `None` without a low-pass.
+    pub low_pass: Option<f32>,
+    /// Time between keyframes, in ms; `None` if the code needs none.
+    pub keyframe_ms: Option<f64>,
+    /// Parameters of the scheme for three groups of channels: turn rates (rad/s), sideways forces (m/s²), and the force
+    /// along the thrust (m/s²).
+    pub groups: Vec<serde_json::Value>,
+}
+
+/// Returns the verdict on the scheme named `scheme`, if it was flown.
+pub fn verdict(scheme: &str) -> Option<Verdict> {
+    #[derive(Deserialize)]
+    struct Found {
+        groups: Vec<serde_json::Value>,
+    }
+    let own = flown(scheme)?;
+    let mut found = serde_json::from_str::<BTreeMap<String, Found>>(FOUND).ok()?;
+    Some(Verdict {
+        objection: objection(scheme, LOSSES[0]),
+        beside: without_a_code().and_then(|plain| own.beside(plain)),
+        low_pass: own.low_pass,
+        keyframe_ms: own.keyframe_ms,
+        groups: found.remove(scheme).map(|own| own.groups).unwrap_or_default(),
+    })
+}
 
 fn without_a_code() -> Option<&'static Flown> {
     BANKS.get("without a code")
@@ -135,7 +172,7 @@ impl Flown {
 
 #[cfg(test)]
 mod tests {
-    use super::{BANKS, LOSSES, flown, objection, without_a_code};
+    use super::{BANKS, LOSSES, flown, objection, verdict, without_a_code};
     use crate::scheme::Scheme;
 
     #[test]
@@ -155,6 +192,20 @@ mod tests {
             count += 1;
         }
         assert!(count > 0 && count < BANKS.len(), "{count} of {}", BANKS.len());
+    }
+
+    #[test]
+    fn each_flown_scheme_has_the_parameters_of_its_bank() {
+        let own = verdict("sod").unwrap();
+        assert_eq!((own.objection, own.low_pass, own.keyframe_ms), (None, Some(80.0), Some(200.0)));
+        for scheme in Scheme::all().filter(|own| flown(own.name()).is_some()) {
+            let own = verdict(scheme.name()).unwrap();
+            assert_eq!(own.groups.len(), 3, "{}", scheme.name());
+            for name in own.groups[0].as_object().unwrap().keys() {
+                assert!(scheme.info().parameter(name).is_some(), "{} {name}", scheme.name());
+            }
+        }
+        assert!(verdict("bernoulli").is_none());
     }
 
     #[test]

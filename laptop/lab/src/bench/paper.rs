@@ -22,8 +22,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Returns the largest difference between a printed figure and the unrounded figure, which is half a unit of the
-    /// last decimal.
+    /// Returns the largest error that rounding causes in a printed figure: half a unit of the last decimal.
     pub fn rounding(&self) -> f64 {
         0.5 * 10_f64.powi(-(self.decimals as i32))
     }

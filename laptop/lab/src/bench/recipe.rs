@@ -1,13 +1,13 @@
-//! Runs each scheme over a signal like the toolbox, the program that the paper's authors published. The parameters, the
-//! start values, and the treatment of the first spike and the last sample are the toolbox's.
+//! Runs each scheme over a signal in the same way as the toolbox, the program that the paper's authors published. The
+//! parameters, the start values, and the treatment of the first spike and the last sample are the toolbox's.
 
 use spikewire::population::{Gaussian, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
 use spikewire::temporal::{MovingWindow, StepForward, TemporalContrast};
 use spikewire::{Calibration, Code, ConfigError, Output, Spike, Start};
 
-/// Number of columns: one for each scheme of the paper's tables, one for GRF, and one for GRF with slots. The paper
-/// gives no figures for the last two.
+/// Number of columns: one for each scheme of the paper's tables, and two for Gaussian receptive fields (GRF), without
+/// and with slots (sub-timesteps). The paper gives no figures for the last two columns.
 pub(super) const COLUMNS: usize = 8;
 
 /// The efficiency and error of a scheme on a signal.
@@ -55,8 +55,9 @@ fn try_run(signal: &[f32]) -> Result<[Outcome; COLUMNS], ConfigError> {
     ])
 }
 
-/// Runs temporal contrast. The encoder is primed with a sample before the signal, chosen such that the signal's first
-/// difference occurs twice. Decoding starts from 0, and each spike moves the value by two thresholds.
+/// Runs the scheme temporal contrast. The encoder is primed with an extra sample before the signal. From the extra
+/// sample to the first sample, the signal changes by as much as from the first to the second. Decoding starts from 0,
+/// and each spike moves the value by two thresholds.
 fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, ConfigError> {
     let threshold = TemporalContrast::from_calibration(calibration, CONTRAST_FACTOR)?.threshold();
     let scheme = TemporalContrast::try_new(threshold)?.try_with_step(2.0 * threshold)?;
@@ -67,7 +68,7 @@ fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, C
     Ok(step_outcome(signal, &scheme, &before, 0.0))
 }
 
-/// Runs the moving window. Before the run, the encoder's window is filled with the first samples of the signal.
+/// Runs the scheme moving window. Before the run, the encoder's window is filled with the first samples of the signal.
 /// Decoding starts from the value of the first sample.
 fn moving_window(signal: &[f32]) -> Outcome {
     let window = signal.get(..WINDOW).unwrap_or_default();
@@ -107,8 +108,8 @@ where
     outcome(signal, count(&spikes), error)
 }
 
-/// Runs a rate code as the paper's toolbox does. The toolbox's loops end one sample early. Therefore, no window
-/// contains the last sample, and the code of this sample is always `last`.
+/// Runs a rate code as the paper's toolbox does. The toolbox's loops end one sample early, and thus never read the last
+/// sample. The code of the last sample is therefore always `last`.
 fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,

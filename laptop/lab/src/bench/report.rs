@@ -97,8 +97,8 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// Returns the largest difference from the paper's mean that still counts as agreement, as a share of the paper's mean.
-/// Also returns the name of the cell to which this difference belongs.
+/// Returns the largest difference from the paper's mean that would still count as agreement in some cell, as a share of
+/// the paper's mean. Also returns the name of this cell.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {

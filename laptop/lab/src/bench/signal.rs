@@ -22,8 +22,8 @@ impl Waveform {
         Self { values: (1..=seconds * RATE).map(at).collect() }
     }
 
-    /// Returns the waveform with the noise `- 0.5 U(0,1)` added. Each value of `number` selects a random generator of
-    /// its own.
+    /// Returns the waveform minus the noise `0.5 U(0, 1)`, where `U(0, 1)` is uniformly distributed from 0 to 1.
+    /// `number` is the number of the test signal. Each number has its own stream of random numbers.
     pub fn with_noise(&self, seed: u64, number: u64) -> Vec<f32> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(number);

@@ -113,8 +113,8 @@ impl Row {
         Ok(())
     }
 
-    /// Copies the rate, the duration and the counts of `clock` to the row. Rate and duration are rounded to 6 decimals,
-    /// so that they do not change when the row is written and read.
+    /// Copies the rate, the duration and the numbers of gaps, steps back and restarts from `clock` to the row. Rate and
+    /// duration are rounded to 6 decimals, so that they stay the same when the row is written and read again.
     pub(super) fn take(&mut self, clock: &Clock) {
         let rounded = |number: f64| (number * 1e6).round() / 1e6;
         self.rate = clock.rate().map(rounded);
@@ -213,7 +213,7 @@ impl Settings {
     }
 }
 
-/// A manifest that is being completed.
+/// The manifest of a data set, opened to append rows.
 pub(super) struct Manifest {
     directory: PathBuf,
     /// The open file of the manifest, locked for this run.
@@ -258,7 +258,8 @@ impl Manifest {
         Ok(Self { directory: directory.to_owned(), file, rows })
     }
 
-    /// Returns whether the manifest has a valid row for a log in its present state `file`.
+    /// Returns whether the manifest has a valid row for a log. `file` is the present length and modification time of
+    /// the log. A row is invalid if the log has changed, or if the log was refused for a reason that may be gone.
     pub(super) fn has(&self, log: &Path, file: &File) -> bool {
         let File { bytes, modified_us } = *file;
         self.rows.get(&log.display().to_string()).is_some_and(|row| {
@@ -314,8 +315,8 @@ impl Manifest {
     }
 }
 
-/// Puts each flight on a side of the split. The flights with the smallest hashes are for testing. Copies of one log
-/// count as one flight.
+/// Assigns each flight to training or testing, by a hash of the content of a log. The flights with the smallest hashes
+/// are for testing. Copies of one log count as one flight.
 fn split(rows: &mut [Row], test: f64, flights: Flights) {
     let flight = |row: &Row| match flights {
         Flights::Logs => row.sha256.clone(),

@@ -200,7 +200,7 @@ impl Run {
         Ok(Self { request: request.clone(), manifest, logs, left, passed_over })
     }
 
-    /// Returns the logs that had no row when the data set was opened.
+    /// Returns the logs that had no row in the manifest when the data set was opened.
     pub fn left(&self) -> Vec<PathBuf> {
         self.left.clone()
     }
@@ -217,7 +217,8 @@ impl Run {
         self.manifest.add(row)
     }
 
-    /// Splits the flights, sorts the manifest by log, and counts the outcome of the requested logs.
+    /// Splits the flights into training and test flights, and sorts the manifest by log. Returns the counts of the
+    /// requested logs.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.

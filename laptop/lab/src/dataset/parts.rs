@@ -21,8 +21,9 @@ use std::sync::Arc;
 
 /// Name of the column that holds the times.
 pub(super) const TIME: &str = "time_us";
-/// Keys of a Parquet file's metadata. `HEADER` has the header of the spikes. The others have the arguments of
-/// [`Clock::new`](crate::input::Clock::new), except that `FIRST` has only the number of `first_times`.
+/// Keys of a Parquet file's metadata. The value of `HEADER` is the header of the spikes: the scheme and its settings.
+/// The values of `GAP` and `RATE` are arguments of [`Clock::new`](crate::input::Clock::new). The value of `FIRST` is
+/// the number of times in the argument `first_times`.
 pub(super) const HEADER: &str = "spikewire";
 pub(super) const FIRST: &str = "spikewire.first";
 pub(super) const GAP: &str = "spikewire.gap";
@@ -48,7 +49,7 @@ pub(super) struct Parts {
     neurons: u16,
     /// Time between samples in µs at the rate in the header; 0 if the rate is unknown.
     period: u64,
-    /// Index and time of each finite sample whose events are not complete yet.
+    /// For each finite sample whose events are not complete yet, the index and the time in µs.
     pending: VecDeque<(u64, i64)>,
     /// Number of finite samples before the first one in `pending`.
     first_pending: u64,

@@ -13,11 +13,12 @@ const TABLES: [&str; 8] = ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz",
 /// Endings of the names of compressed files.
 const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
-/// Returns the full paths of the logs, sorted and without repetitions, and the number of other files in the
-/// directories. A file that is given by name always counts as a log.
+/// Finds the logs, including tables, in the given files, directories and patterns. Returns the logs' full paths, sorted
+/// and without repetitions, and the number of files in the directories that are neither logs nor tables. A file that is
+/// given by name always counts as a log.
 ///
 /// # Errors
-/// Returns an error if a file is missing, or if a directory cannot be read.
+/// Returns an error if a file is missing, if a pattern is invalid, or if a directory cannot be read.
 pub(super) fn find(given: &[PathBuf], output: &Path) -> Result<(Vec<PathBuf>, usize)> {
     // It may not be there yet.
     let output = output.canonicalize().unwrap_or_default();

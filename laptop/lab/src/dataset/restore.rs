@@ -112,8 +112,8 @@ impl Part {
         columns.iter().position(|own| own.name() == name)
     }
 
-    /// Makes the clock anew that was used when the log was encoded. The file's metadata hold the arguments of the
-    /// clock.
+    /// Rebuilds the clock with which the log was encoded. The rate and the limit of gaps come from the file's metadata.
+    /// The times of the first samples come from the file's table.
     fn clock(&self, is_timed: bool) -> Result<Clock> {
         let number = |key| self.about(key).and_then(|own| own.parse::<f64>().ok());
         let first = number(FIRST).ok_or_else(|| other("no number of first samples"))? as usize;

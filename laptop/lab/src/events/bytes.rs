@@ -48,7 +48,8 @@ impl<D: EventDecoder> EventReader for Reader<D> {
     }
 }
 
-/// Writes events with the encoder of one format, and reads them back to count the events whose time the format changes.
+/// A writer of events in one format. It decodes what it has encoded, and counts the events whose time the format
+/// changes.
 pub(super) struct Writer<E, D> {
     encoder: E,
     decoder: D,
@@ -59,8 +60,8 @@ pub(super) struct Writer<E, D> {
 }
 
 impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
-    /// Makes a writer that starts with `header`. `decoder` must be of the same format. An event that the format cannot
-    /// express is dropped and counted if `drops`; otherwise it is an error.
+    /// Makes a writer that starts with `header`. `encoder` and `decoder` must be of the same format. If `drops` is
+    /// true, events that the format cannot express are dropped and counted. Otherwise, such an event causes an error.
     pub(super) fn new(encoder: E, decoder: D, header: &'static [u8], drops: bool) -> Self {
         Self { encoder, decoder, header, drops, events: 0, omitted: Omitted::default() }
     }

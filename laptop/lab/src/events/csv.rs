@@ -11,7 +11,7 @@ use std::io::Write;
 pub(super) const HEADER: &str = "tick,address,polarity";
 const VALUES: &str = "tick,address,value,known";
 
-/// Reads a table of events, or a file of spikes that have times.
+/// A reader of event tables in CSV. Also reads a file of spikes, if the file gives times.
 pub(super) struct Reader {
     file: String,
     /// The bytes of the unfinished line.

@@ -9,7 +9,7 @@ use spikewire_cameras::format::eieio;
 use std::io::Write;
 use std::num::NonZeroU32;
 
-/// The mapping of a board's keys and time stamps to addresses and ticks.
+/// Mapping of a `SpiNNaker` board's keys and time stamps to addresses and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
     /// Key that stands for address 0. EIEIO gives the source of an event as a number, the key.
@@ -21,7 +21,8 @@ pub struct Board {
 }
 
 impl Board {
-    /// Returns the key of an event, or `None` if no key stands for the event.
+    /// Returns the key of an event: the number that stands for its address and polarity. Returns `None` if the key
+    /// would exceed 32 bits. Also returns `None` for an event of polarity down if keys have no polarity.
     fn key(self, event: Event) -> Option<u32> {
         let address = u32::from(event.address);
         match (self.is_signed, event.polarity) {
@@ -62,8 +63,8 @@ impl Reader {
         Self { board, waiting: Vec::new(), time: Tick::from_micros(0), skipped: 0 }
     }
 
-    /// Reads the whole datagrams at the front of the buffer. Skips bytes at which no datagram can begin. If `is_end`,
-    /// also skips an incomplete datagram at the end of the recording.
+    /// Reads the complete datagrams at the front of the buffer. Skips bytes at which no datagram can begin. If `is_end`
+    /// is true, also skips an incomplete datagram at the end of the recording.
     fn datagrams(&mut self, is_end: bool, items: &mut Vec<Item>) {
         let Self { board, waiting, time, skipped } = self;
         let mut bytes = waiting.as_slice();
@@ -92,7 +93,7 @@ impl Reader {
     }
 }
 
-/// Returns whether a datagram of a kind that [`eieio`] decodes could begin with `bytes`.
+/// Returns whether `bytes` could be the beginning of an EIEIO datagram that the decoder [`eieio`] supports.
 fn begins(bytes: &[u8]) -> bool {
     let padded: Vec<u8> = bytes.iter().copied().chain([0; LONGEST]).collect();
     bytes.len() < 2 || eieio::decode(&padded).is_some()

@@ -17,7 +17,7 @@ use std::str::FromStr;
 pub enum Format {
     /// The frames of `spikewire::link`.
     Link(Coding),
-    /// eDVS, with the encoding of its events' times.
+    /// The format of eDVS event cameras, with the encoding of the events' times.
     Edvs(Edvs, EdvsTime),
     /// Event Stream, in a file `.es`.
     EventStream,
@@ -187,8 +187,11 @@ impl<'a> Settings<'a> {
         number.ok_or_else(|| EventsKind::OutOfRange { key, text }.into())
     }
 
-    /// Removes the pair of `key`, and returns true for the value 1 and false for the value 0. Returns `otherwise` if
-    /// the key is missing.
+    /// Removes the pair with the key `key`, and returns whether its value is 1. Returns `otherwise` if the key is
+    /// missing.
+    ///
+    /// # Errors
+    /// Returns an error if the value is neither 0 nor 1.
     fn bit(&mut self, key: &str, otherwise: bool) -> Result<bool> {
         match self.number::<u32>(key, otherwise.into())? {
             bit @ 0..=1 => Ok(bit == 1),

@@ -6,7 +6,7 @@ use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Se
 use spikewire::{Event, Keyframe, Tick};
 use std::io::Write;
 
-/// Decodes link frames to the values that the sender encoded.
+/// A decoder of link frames. It computes the values that the sender encoded.
 pub trait Values {
     /// Decodes a frame, and appends the decoded values to `items`. A temporal code gives a value for each keyframe and
     /// each event. Any other code gives a value for each sample, once the time of the sample is over.
@@ -124,7 +124,7 @@ pub(super) struct Writer {
     /// Whether no frame has been written since the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
-    /// Whether a loss or a restart is still to be reported in a frame.
+    /// Whether no frame has been written since the latest loss or restart. The next frame reports the loss or restart.
     owes_mark: bool,
 }
 

@@ -32,8 +32,8 @@ pub enum Item {
     Event(Event),
     /// A value that the sender's encoder held, from which a decoder can resume.
     Keyframe(Keyframe),
-    /// A heartbeat of a sender whose code has no keyframes: the tick of a sample, and the sender's first address. All
-    /// events of that sample come before the heartbeat.
+    /// A heartbeat, sent for a sample by a sender whose code has no keyframes. The fields are the tick of the sample
+    /// and the first address of the sender. All events of the sample come before the heartbeat.
     Heartbeat(Tick, u16),
     /// The value of a decoder after an event or keyframe.
     Value {
@@ -43,12 +43,12 @@ pub enum Item {
         address: u16,
         /// The decoded value, in the recording's unit.
         value: f64,
-        /// Certainty of the value.
+        /// Certainty that the value equals the value of the sender's own decoder.
         known: Known,
     },
     /// A loss of this number of frames on the link.
     LostFrames(u32),
-    /// A loss of events in the sender, which never sent them.
+    /// A loss of events in the sender. These events were never sent.
     LostEvents,
     /// A restart of the sender.
     Restart,
@@ -74,7 +74,7 @@ pub trait EventReader {
     /// Returns an error if the bytes belong to a different format.
     fn read(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()>;
 
-    /// Ends the input, and appends items that were held back.
+    /// Ends the input, and appends the items that the reader has not appended yet.
     ///
     /// # Errors
     /// See [`read`](Self::read).

@@ -31,7 +31,8 @@ impl Omitted {
         self.others += u64::from(item != Item::Restart);
     }
 
-    /// Formats the counts as notes. `what` names the thing that the format lacks for the dropped events, such as a key.
+    /// Formats the counts as notes for the user. The note on dropped events says that the format has no `what` for
+    /// them. An example of `what` is `key`.
     pub(super) fn notes(self, what: &str) -> Vec<String> {
         let Self { dropped, retimed, furthest, others } = self;
         let all = [

@@ -137,7 +137,8 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Returns the number of events, or of decoded values, for each address from 0 to 65535.
+    /// Returns an entry for each address from 0 to 65535: the number of events and decoded values that have this
+    /// address.
     pub fn addresses(&self) -> &[u64] {
         &self.addresses
     }
@@ -152,7 +153,7 @@ impl<'a> Stream<'a> {
         self.bytes
     }
 
-    /// Checks whether the bytes read belong to `format`. `file` is the input's name in the error.
+    /// Checks that the bytes read so far belong to `format`. `file` is the input's name in the error.
     ///
     /// # Errors
     /// Returns an error if bytes were skipped and neither an event nor a frame was found.

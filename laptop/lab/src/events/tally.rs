@@ -17,7 +17,7 @@ pub struct Tally {
     pub link: Option<LinkTally>,
 }
 
-/// Counts that a reader of link frames keeps.
+/// Counts of a reader of link frames (packets from a sender): received frames, losses, faults and contents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkTally {
     /// Number of frames that arrived whole.
@@ -46,7 +46,8 @@ pub struct LinkTally {
     pub unused_keyframes: u64,
     /// Comparison of the keyframes with the values decoded just before each keyframe.
     pub held: Held,
-    /// The reason that no decoded value is exact. `None` if a value is exact, or if no values are decoded.
+    /// The reason that no decoded value is exact (known to equal the sender's value). `None` if a value is exact, or
+    /// if no values are decoded.
     pub withheld: Option<Withheld>,
 }
 
@@ -54,7 +55,8 @@ pub struct LinkTally {
 /// should already hold the keyframe's value are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
-    /// Number of keyframes that were compared with an exact value, which the decoder held before the keyframe.
+    /// Number of keyframes that were compared. A keyframe is compared if the decoder's value before the keyframe was
+    /// exact (known to equal the sender's value).
     pub compared: u64,
     /// Number of compared keyframes that differed from the exact value.
     pub contradicted: u64,

@@ -10,8 +10,8 @@ use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::thread::JoinHandle;
 
-/// Pixel format that `ffmpeg` is asked for: 8 bits of full-range brightness. Grey and full-range sources pass
-/// unchanged. A limited range is expanded to the full range, as [`Y4m`] does.
+/// Pixel format that `ffmpeg` is asked for: 8 bits of full-range brightness. `ffmpeg` then leaves the brightness of
+/// grey and full-range videos unchanged. It expands a limited range, 16 to 235, to the full range, as [`Y4m`] does.
 const GREY: &str = "gray";
 
 /// The frames into which `ffmpeg` converts a file.

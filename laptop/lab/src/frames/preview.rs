@@ -1,5 +1,4 @@
-//! Draws a video and its events side by side, in the layout of the paper's figures: the frame, then a panel for each
-//! threshold.
+//! Draws a video and its events side by side: the frame, then a panel for each threshold.
 
 use super::FramesKind;
 use super::video::Rate;
@@ -163,8 +162,8 @@ impl Preview {
     }
 }
 
-/// Returns red, green and blue of each colour: first the greys, then dark ink for pixels that became brighter, red for
-/// pixels that became darker, and white.
+/// Returns the colours as bytes of red, green and blue. The greys come first. Dark ink for pixels that became brighter,
+/// red for pixels that became darker, and white follow in this order.
 fn palette() -> Vec<u8> {
     let greys = (0..GREYS).flat_map(|grey| [(grey * 255 / (GREYS - 1)) as u8; 3]);
     greys.chain([0x2b, 0x2f, 0x36, 0xc2, 0x3b, 0x4e, 0xff, 0xff, 0xff]).collect()

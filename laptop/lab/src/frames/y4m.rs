@@ -14,7 +14,7 @@ use y4m::{Decoder, Error};
 /// The first bytes of a YUV4MPEG2 file.
 pub(super) const MAGIC: &[u8] = b"YUV4MPEG2 ";
 
-/// Maximum length of the header in bytes, the same as in the decoder.
+/// Maximum length of the header in bytes. The decoder, the crate `y4m`, has the same limit.
 const LONGEST_HEADER: usize = 1024;
 
 /// A reader that counts the bytes read through it.

@@ -5,12 +5,12 @@ use std::fmt;
 /// The kind of an unusual step from one sample's time to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A step forward that exceeds the limit, which is a multiple of the usual step.
+    /// A step forward in time that exceeds the allowed length. The allowed length is a multiple of the usual step.
     Gap,
-    /// A step back: samples are out of order.
+    /// A step back in time. The sample is earlier than the sample before it, so the samples are out of order.
     Backward,
-    /// A step so far back that the recorder's clock must have restarted, for example after a reboot. A new segment
-    /// begins.
+    /// A long step back in time. The recorder's clock must have restarted, for example after a reboot. A new segment of
+    /// the recording begins.
     Restart,
 }
 
@@ -66,7 +66,7 @@ pub struct Clock {
     span: Option<(i64, i64)>,
     /// Total length of the segments before the current one, in µs.
     before: i64,
-    /// The latest times in µs, with at most [`RUN`] steps between them.
+    /// The times of the latest samples in µs, at most [`RUN`] + 1 times.
     run: Vec<i64>,
     /// Time between samples in µs, measured when the sample rate last changed.
     run_step: f64,
@@ -211,8 +211,8 @@ impl Clock {
     }
 
     /// Measures the sample rate of the latest run of steps. Records a change of rate if both the median and the mean of
-    /// the steps have changed: a gap changes only the mean, and steps that alternate between two lengths change only
-    /// the median.
+    /// the steps have changed. A gap changes only the mean. Steps that alternate between two lengths change only the
+    /// median.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {
@@ -287,7 +287,8 @@ impl fmt::Display for Clock {
     }
 }
 
-/// Returns true if more than two steps go back, and if these are more than a tenth of the steps that are not 0.
+/// Returns whether the times are out of order: more than two steps from one time to the next go back, and the steps
+/// back are more than a tenth of all steps that are not 0.
 fn is_disordered(times: &[i64]) -> bool {
     const FEW: usize = 2;
     let steps = |is: fn(&[i64]) -> bool| times.windows(2).filter(|pair| is(pair)).count();
@@ -295,10 +296,11 @@ fn is_disordered(times: &[i64]) -> bool {
     back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
 }
 
-/// Returns the median of the steps forward, in µs, and the number of samples for each step forward. This number is 1
-/// unless times repeat.
+/// Returns the median of the steps forward, in µs, and the mean number of samples for each step forward. A mean
+/// below 2 is returned as 1.
 ///
-/// Returns `None` if no step goes forward, or if times repeat and fewer than three steps go forward.
+/// Returns `None` if no step goes forward. Also returns `None` if the mean is 2 or more and fewer than three steps go
+/// forward.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));

@@ -90,8 +90,8 @@ impl Table {
         Self::of_text(text, 0, cut, file, options)
     }
 
-    /// Opens a table from a file that is not CSV. `rows` is the table converted to CSV. The file has no line for the
-    /// header line of `rows`, so line numbers in errors do not count the header line.
+    /// Opens a table from a file that is not CSV. `rows` is the table converted to CSV, with a header line that the
+    /// file does not have. Line numbers in errors therefore do not count the header line.
     ///
     /// # Errors
     /// See [`open`](Self::open).
@@ -140,7 +140,17 @@ impl Table {
                 });
                 (1..=last).map(|number| number.to_string()).collect()
             }
-            _ => ahead.pop_front().iter().flatten().map(name).collect(),
+            _ => {
+                let mut names: Vec<_> = ahead.pop_front().iter().flatten().map(name).collect();
+                // A quoted `#` before the first name, as in EuRoC's header, begins no comment.
+                if let Some(first) = names.first_mut()
+                    && let Some(bare) = first.strip_prefix('#').map(str::trim_start)
+                    && !bare.is_empty()
+                {
+                    *first = bare.to_owned();
+                }
+                names
+            }
         };
         let mut table = Self {
             ahead,
@@ -445,7 +455,7 @@ fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     Ok(records)
 }
 
-/// Returns the line at which a row begins, for a row that [`ahead`] has read.
+/// Returns the number of the line at which a row begins, counted from 1. The row must come from [`ahead`].
 fn line(record: &ByteRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
 }
@@ -511,8 +521,10 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// Returns the only column that holds neither times nor counts. Returns an error if there is no such column, or if
-/// there are several.
+/// Returns the only column of signals: the column that holds neither times nor row numbers.
+///
+/// # Errors
+/// Returns an error if there is no such column, or if there are several.
 fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
     let mut signals = signals(names, time);
     match (signals.next(), signals.next()) {

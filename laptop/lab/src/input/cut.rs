@@ -17,7 +17,8 @@ pub(super) struct WholeLines<R> {
 }
 
 impl<R: Read> WholeLines<R> {
-    /// Makes a reader of `input`. If bytes are left out, the reader puts a note about them into `cut`.
+    /// Makes a reader of the complete lines of `input`. If the reader leaves out bytes at the end, it puts a note about
+    /// these bytes into `cut`.
     pub(super) fn new(input: R, cut: Rc<Cell<Option<String>>>) -> Self {
         Self { input, held: Vec::new(), at: 0, whole: 0, is_read: false, cut }
     }

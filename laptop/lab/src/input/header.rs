@@ -14,7 +14,7 @@ pub(super) struct Start {
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
-    /// Offset in `text` of the line after the one at `line`.
+    /// Offset in `text` of the line directly below the line at offset `line`.
     next: usize,
 }
 
@@ -84,8 +84,8 @@ impl Start {
     }
 }
 
-/// Returns whether the first row holds samples rather than names. Such a row contains numbers, and no text in it stands
-/// above a number in the second row.
+/// Returns whether the first row of a table holds samples rather than names. This is the case if the first row contains
+/// a number, and no text in the first row has a number below it in the second row.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);

@@ -61,8 +61,8 @@ impl Deref for InputOptions {
 pub struct ChannelOptions {
     /// Columns of a CSV table, by name or by number from 1.
     pub column: Vec<String>,
-    /// Columns of a table by name, such as `gyro_x`. The name `all` stands for all columns except times and counts. For
-    /// a log, fields as `TOPIC.FIELD`.
+    /// Columns of a table by name, such as `gyro_x`. The name `all` stands for all columns except times and counts. If
+    /// the input is a log, each name is a field in the form `TOPIC.FIELD`.
     pub columns: Vec<String>,
     /// Name of the column or field that holds the time: a column of a table, or a field of a log, such as
     /// `header.stamp`. The default for a table is a column with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas
@@ -271,8 +271,9 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Returns the options with columns such as `TOPIC.FIELD` split into their common topic and their fields. Returns
-    /// `None` if a column has a different form, if the topics differ, or if a topic or field is already chosen.
+    /// Returns the options with columns in the form `TOPIC.FIELD` replaced by a topic and its fields. Returns `None` if
+    /// there are no columns, if a column has a different form, or if the topics differ. Also returns `None` if these
+    /// options already choose a topic or a field.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;

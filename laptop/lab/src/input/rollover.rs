@@ -4,25 +4,25 @@ use super::{Chunk, Source};
 use crate::Result;
 use catalogue::run::Words;
 
-/// Ranges of 32-bit clocks, in µs. The first clock counts µs, the second ms.
+/// Ranges of 32-bit clocks, in µs: first for a clock that counts µs, then for a clock that counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
 /// Limit in µs on the time between the last sample before a wrap of the clock and the first sample after it. A wrap
 /// within the limit is recognised. [`STEPS`] may raise the limit.
 const SECOND: i64 = 1_000_000;
-/// Factor that may raise the limit [`SECOND`]. The limit is at least this multiple of the latest step forward.
+/// Smallest ratio of the limit to the latest step forward. After a long step, the limit is therefore above [`SECOND`].
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.
 #[derive(Debug, Default)]
 pub struct Rollover {
     previous: Option<i64>,
-    /// The latest step forward, in µs.
+    /// The latest step forward from one time to the next, in µs.
     step: i64,
     samples: u64,
     /// Number of times that the clock wrapped around.
     count: i64,
-    /// Range of the clock in µs. Each wrap sets the clock back by its range.
+    /// Range of the clock in µs: the time after which the clock wraps around.
     range: i64,
     /// Index of the last sample before the clock wrapped around for the first time.
     first: u64,
@@ -71,7 +71,7 @@ impl Rollover {
     }
 }
 
-/// A recording whose times are continued where its clock wraps around.
+/// A source of samples whose times continue to rise when the recorder's clock wraps around.
 pub(super) struct Unwrapped {
     source: Box<dyn Source>,
     rollover: Rollover,

@@ -32,8 +32,8 @@ const OTHERS: [(&[u8], &str); 12] = [
     (b"ULog", "a flight log; it is read from a file only"),
 ];
 
-/// Returns a reader of a file as text. Files packed with gzip or zstd are unpacked, and UTF-16 becomes UTF-8. Text in
-/// other encodings that extend ASCII passes unchanged. `name` is the file's name in errors.
+/// Returns a reader of a file as text. Unpacks files that are packed with gzip or zstd, and converts UTF-16 to UTF-8.
+/// Does not change text in any other encoding that extends ASCII. `name` is the file's name in errors.
 ///
 /// # Errors
 /// Returns an error if the file is not text.
@@ -79,7 +79,8 @@ pub fn shown(bytes: &[u8]) -> String {
     }
 }
 
-/// Decodes an input of text. `head` holds its first bytes.
+/// Converts text in UTF-16 to UTF-8, and removes the byte order mark of UTF-8. Other text stays as it is. `head` holds
+/// the first bytes of the input.
 ///
 /// # Errors
 /// Returns an error if the input is not text.
@@ -139,9 +140,8 @@ mod encoding {
     }
 }
 
-/// Replacements of the text decoders, for the web page. They decode only Latin-1, because the conversion tables of all
-/// encodings would make up a tenth of the page. The browser decodes files in other encodings before this library reads
-/// them.
+/// Text decoders for the web page. They decode only Latin-1, because the conversion tables of all encodings would make
+/// up a tenth of the page. The browser decodes files in other encodings before this library reads them.
 #[cfg(target_family = "wasm")]
 mod encoding {
     use crate::Result;

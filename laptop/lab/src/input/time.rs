@@ -80,12 +80,12 @@ pub(super) enum Named {
     /// The unit follows from the values. The given unit applies to whole numbers that are too small for times since
     /// 1970.
     Whole(TimeUnit),
-    /// The values are times if they are dates; otherwise the column has no times.
+    /// The column holds times only if its values are dates.
     Dates,
 }
 
-/// Interprets a column's name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. Returns `None` if the
-/// name is not that of a time.
+/// Interprets the name of a column, as exports of Betaflight, `ArduPilot`, PX4, ROS and pandas write it. Returns `None`
+/// if the name does not stand for times.
 pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
@@ -115,8 +115,8 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
-/// Interprets the name of a column that the user chose as the time. If the name has no unit, the unit is seconds unless
-/// the values suggest a different one.
+/// Interprets the name of the column that the user chose for the times. If the name contains no unit, the unit is
+/// guessed from the values. The guess is seconds unless the values or the name suggest another unit.
 pub(super) fn of_given(name: &str) -> Named {
     match of_name(name) {
         Some(named @ (Named::In(_) | Named::Whole(_))) => named,
@@ -144,8 +144,8 @@ fn is_time(name: &str) -> bool {
     )
 }
 
-/// Splits the last word off a name such as `time (us)`, `time [us]`, `time_us`, `time us` or `stamp.secs`. The last
-/// word may be a unit.
+/// Splits a name into the part before its last word and the last word, which may be a unit. Examples are `time (us)`,
+/// `time [us]`, `time_us`, `time us` and `stamp.secs`. Returns `None` if the name has only one word.
 fn last_word(name: &str) -> Option<(&str, &str)> {
     let bracketed = |open, close| {
         let (base, word) = name.strip_suffix(close)?.rsplit_once(open)?;
@@ -168,8 +168,8 @@ pub(super) enum Reading {
 }
 
 impl Reading {
-    /// Finds the format of a column's times by the information in its name and by its first fields. Returns `None` if
-    /// the fields are not times.
+    /// Finds the format of a column's times. `named` tells what the column's name says about the times, and `first`
+    /// holds the first fields of the column. Returns `None` if the fields are not times.
     pub(super) fn new(named: Named, first: &[&[u8]], has_commas: bool) -> Option<Self> {
         let numbers: Option<Vec<f64>> =
             first.iter().map(|field| number(field, has_commas)).collect();
@@ -214,8 +214,9 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// Converts digits with or without a decimal point from `unit` to ps. All digits of a time stamp are used, while a
-/// float would keep only 15. Returns `None` if the field contains an exponent or any other character.
+/// Converts a number from `unit` to ps. The field holds digits with or without a decimal point or, if `has_commas`, a
+/// decimal comma. All digits of a time stamp are used, while a float would keep only 15. Returns `None` if the field
+/// contains an exponent or any other character.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
     /// Maximum number of digits before the decimal point. The limit keeps the time in ps within 128 bits.
     const MOST: usize = 24;
@@ -289,8 +290,8 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// A column is taken for a time if its name ends in a unit and the name without the unit means a time. The tests of
-    /// the command-line program cover the names in common exports.
+    /// A column is read as times if its name consists of a word for a time and a unit. The tests of the command-line
+    /// program cover the names in common exports.
     #[test]
     fn names_that_are_no_times() {
         let is = |unit| Some(Named::In(unit));
@@ -337,8 +338,8 @@ mod tests {
         assert_eq!(microseconds(duration), 86_400_005_000);
     }
 
-    /// All digits of a time stamp are used. As a float, 1520530308199447453 ns would become 48 ns later, and would be
-    /// rounded to the next µs.
+    /// All digits of a time stamp are used. As a float, 1520530308199447453 ns would become 1520530308199447.5 µs, and
+    /// would be rounded up to the next µs.
     #[test]
     fn all_digits_of_a_stamp_count() {
         for (text, unit, commas, time) in [

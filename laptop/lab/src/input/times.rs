@@ -13,7 +13,8 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// Makes a summary of no times yet. A step longer than `gap` usual steps will count as a gap.
+    /// Makes a summary that contains no times yet. A step from one time to the next counts as a gap if it is longer
+    /// than `gap` times the usual step.
     pub(super) fn new(gap: f64) -> Self {
         Self { gap, first: Vec::new(), clock: None, rollover: Rollover::default() }
     }

@@ -1,13 +1,15 @@
 //! Brings a trained network onto a chip: quantises the network, runs the quantised network on the chip's model, and
 //! compares the spikes with those of the original.
 
+use super::trained::Layer;
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
 use crate::network::NetworkKind;
 use crate::network::fault::ensure;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Number of time steps in a window. For each window, comparisons check whether the same outputs have the most spikes.
+/// Number of time steps in a window. A comparison of two runs checks for each window whether the same outputs have the
+/// most spikes in both runs.
 pub const WINDOW: usize = 20;
 
 /// A network to bring onto a chip, and the recordings on which it is tuned and tested.
@@ -49,14 +51,14 @@ pub struct Brought {
     pub tuned: Figures,
     /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
-    /// The effect of each part of the chip's arithmetic. To find the effect, the network runs with this part alone, and
-    /// otherwise in double precision. The number is the share of active steps in which this run and full double
-    /// precision fire the same outputs. A step is active if an output fires in either run. The recording is the
-    /// held-out one. If there is none, it is the recording on which the parameters were tuned.
+    /// The effect of each part of the chip's arithmetic on the spikes. Two runs of the network are compared for each
+    /// part: one in double precision except for this part, and one entirely in double precision. The number is the
+    /// share of active steps in which the same outputs fire in both runs. A step is active if an output fires in either
+    /// run. The runs use the held-out recording or, without one, the recording on which the parameters were tuned.
     pub costs: Vec<(Cost, f64)>,
-    /// Share of active steps in which the same outputs fire in double precision and in the training framework. A low
-    /// share suggests that the network's file, or the rule of its neurons, was understood wrongly. `None` if the
-    /// framework's spikes are not given, or if no output fires.
+    /// Share of active steps in which the same outputs fire in double precision and in the training framework. A step
+    /// is active if an output fires in either run. A low share suggests that the network's file, or the rule of its
+    /// neurons, was understood wrongly. `None` if the framework's spikes are not given, or if no output fires.
     pub reading: Option<f64>,
 }
 
@@ -76,13 +78,13 @@ pub struct Figures {
     /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
     pub windows: usize,
     /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in double precision
-    /// as on the chip.
+    /// and on the chip.
     pub windows_agreeing: usize,
-    /// Mean number of clock cycles that the chip takes for a step. For the flight controller: mean number of weights
-    /// that a step adds.
+    /// Mean number of clock cycles that the chip takes for a step. On the flight controller, the mean number of weights
+    /// that are added in a step.
     pub mean_clocks: f64,
-    /// Largest number of clock cycles that the chip takes for a step. For the flight controller: largest number of
-    /// weights that a step adds.
+    /// Largest number of clock cycles that the chip takes for a step. On the flight controller, the largest number of
+    /// weights that are added in a step.
     pub most_clocks: u64,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
@@ -145,7 +147,9 @@ pub fn bring(request: &Request) -> Result<Brought> {
     }
     let network = chip.quantise(trained, tuned, &original.fired, compare, progress)?;
     let shown = (held_out.map_or(tuned, |all| all.steps), other.as_ref().unwrap_or(&original));
-    let costs = network.costs().into_iter().filter_map(|cost| {
+    let has_own_reset = trained.layers.iter().any(Layer::has_own_reset);
+    let own_reset = has_own_reset.then_some(Cost::Reset);
+    let costs = network.costs().into_iter().chain(own_reset).filter_map(|cost| {
         let alone = cost.alone(trained, (tuned, &original.fired), shown.0);
         Some((cost, agreement(shown.1.fired.last()?.get(from..)?, alone.get(from..)?)?))
     });
@@ -158,9 +162,9 @@ pub fn bring(request: &Request) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs, reading })
 }
 
-/// Compares two spike trains step by step. Counts the steps in which at least one train has a spike, and returns the
-/// share of these steps in which the same neurons fire in both. Returns `None` if neither train has a spike.
-fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
+/// Compares two spike trains step by step. Among the steps in which at least one of them has a spike, returns the share
+/// in which the same neurons fire in both; `None` if neither train has a spike.
+pub(super) fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     let active = one.iter().zip(other).filter(|(one, other)| !one.is_empty() || !other.is_empty());
     let (active, same) = active.fold((0, 0), |(active, same), (one, other)| {
         let [one, other] = [one, other].map(|all| all.iter().collect::<BTreeSet<_>>());
@@ -295,7 +299,8 @@ fn root_mean_square(numbers: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(count.max(1))).sqrt()
 }
 
-/// Returns for each step the output with the highest potential; no output for steps in which all potentials are 0.
+/// Returns, for each step, the output with the highest potential. The list for a step is empty if all its potentials
+/// are 0.
 fn highest(potentials: &[Vec<f64>]) -> Trains {
     let of_step = |step: &Vec<f64>| {
         if step.iter().all(|potential| *potential == 0.0) {
@@ -350,18 +355,24 @@ impl Figures {
         }
     }
 
-    /// Returns how well the network on the chip agrees with double precision, from 0 to 1. This is the mean of two
-    /// shares: of the active steps that agree, and of the windows that agree.
-    pub(super) fn holds(&self) -> f64 {
-        let windows = self.windows_agreeing as f64 / self.windows.max(1) as f64;
-        f64::midpoint(self.agreement().unwrap_or(0.0), windows)
-    }
-
     /// Returns the share of active steps in which the same outputs fire in double precision and on the chip; `None` if
     /// no output ever fires.
     pub fn agreement(&self) -> Option<f64> {
         (self.active > 0).then(|| self.active_agreeing as f64 / self.active as f64)
     }
+}
+
+/// Returns how well the outputs' spikes on the chip, `fired`, agree with those of the original, from 0 to 1. This is
+/// the mean of two shares: of the active steps that agree, and of the windows in which the same outputs have the most
+/// spikes.
+pub(super) fn holds(original: &[Vec<u16>], fired: &[Vec<u16>]) -> f64 {
+    let all = original.chunks(WINDOW).zip(fired.chunks(WINDOW));
+    let all = all.map(|(original, fired)| (most(original), most(fired)));
+    let all = all.filter(|(original, fired)| !original.is_empty() || !fired.is_empty());
+    let (same, windows) =
+        all.fold((0, 0), |(same, all), (one, other)| (same + u32::from(one == other), all + 1_u32));
+    let windows = f64::from(same) / f64::from(windows.max(1));
+    f64::midpoint(agreement(original, fired).unwrap_or(0.0), windows)
 }
 
 /// Returns the outputs with the most spikes in these steps: several if they are tied, none if no output fires.

@@ -32,9 +32,9 @@ pub trait Chip: Sync {
 /// that support both variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
-    /// Comparison after each spike that arrives: the chip's default.
+    /// After each spike that arrives at the neuron: the chip's default.
     Spike,
-    /// Comparison once in each time step, as in training. The driver sends extra events to the chip for this purpose.
+    /// Once in each time step, as in training. The driver sends extra events to the chip for this purpose.
     Step,
 }
 
@@ -66,7 +66,7 @@ pub trait OnChip {
     }
 
     /// Returns, for each layer, the number of its weights that exceeded the chip's range and were clipped. If the
-    /// outputs are potentials, one more entry counts the outputs' weights.
+    /// outputs are potentials instead of spikes, one more entry counts the clipped weights of the outputs.
     fn clipped(&self) -> Vec<usize>;
 
     /// Returns Rust source that defines the network. The source compiles without `std` if `spikewire-chips` has its

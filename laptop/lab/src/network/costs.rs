@@ -9,11 +9,13 @@ use std::fmt::{self, Display};
 /// A part of a chip's arithmetic that differs from double precision and changes a network's spikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
-    /// Comparing potentials with thresholds after each spike, instead of once in each step.
+    /// Comparison of potentials with thresholds after each spike that arrives, instead of once in each step.
     Order,
     /// Leaks that subtract a fixed amount, instead of a share of the potential.
     Leak,
-    /// Rounding a neuron's weights to whole numbers.
+    /// The chip's reset, which either sets the potential to 0 or subtracts the threshold.
+    Reset,
+    /// Rounding of each neuron's weights to whole numbers.
     Weights {
         /// Largest absolute value of a weight after rounding.
         largest: f64,
@@ -25,6 +27,7 @@ impl Display for Cost {
         match self {
             Self::Order => write!(f, "comparing after each spike"),
             Self::Leak => write!(f, "leaks by fixed amounts"),
+            Self::Reset => write!(f, "the chip's reset"),
             Self::Weights { largest } => write!(f, "weights of -{largest} to {largest}"),
         }
     }
@@ -35,10 +38,10 @@ impl Display for Cost {
 const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0];
 
 impl Cost {
-    /// Runs the network on `inputs` in double precision, with one exception: the part of the chip's arithmetic that
-    /// this cost stands for. Returns the spikes of the last layer. Parameters of this part, such as fixed leaks, are
-    /// fitted beforehand. The fit makes each layer fire the spikes in `fired` when the inputs `tuned` arrive, as far as
-    /// possible.
+    /// Runs the network on `inputs`, and returns the spikes of the last layer. The arithmetic is double precision,
+    /// except for the part of the chip's arithmetic that this cost stands for. This part may have parameters, such as
+    /// fixed leaks. They are chosen beforehand, on a recording with the inputs `tuned`: each layer should then fire the
+    /// spikes in `fired` as nearly as possible.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -47,16 +50,22 @@ impl Cost {
     ) -> Trains {
         let (mut before, mut drive) = (inputs.clone(), tuned);
         for (layer, own) in trained.layers.iter().zip(fired) {
+            let exact = match self {
+                Self::Weights { largest } => Some(rounded(layer, largest)),
+                Self::Reset => Some(layer.clone().reset_by_chip()),
+                Self::Order | Self::Leak => None,
+            };
+            if let Some(layer) = exact {
+                before = layer.follow(&before, |_, _| ());
+                drive = own;
+                continue;
+            }
             let count = layer.neurons.len();
             let leaks = (0..count).map(|at| match self {
                 Self::Leak => Some(leak(layer, at, drive, own)),
                 _ => None,
             });
             let leaks: Vec<Option<f64>> = leaks.collect();
-            let layer = match self {
-                Self::Weights { largest } => &rounded(layer, largest),
-                _ => layer,
-            };
             before = run(layer, &leaks, self == Self::Order, &before);
             drive = own;
         }
@@ -79,8 +88,9 @@ fn rounded(layer: &Layer, largest: f64) -> Layer {
     layer
 }
 
-/// Returns the leak, as a fixed amount for each step, with which the spikes of neuron `at` are nearest to those in
-/// `fired`. `drive` contains the input spikes of the layer.
+/// Chooses a fixed leak for neuron `at`: an amount by which each step moves the potential towards 0. Tries several
+/// leaks, and returns the one that makes the neuron's spikes nearest to those in `fired`. `drive` contains the input
+/// spikes of the layer.
 fn leak(layer: &Layer, at: usize, drive: &Trains, fired: &Trains) -> f64 {
     let Neuron { keep, threshold, .. } = layer.neurons[at];
     let distance = |amount: f64| {

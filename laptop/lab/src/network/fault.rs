@@ -149,8 +149,6 @@ kinds! {
              `tau_syn` of a step, or LIF"
         ),
         SilentInside => ("neurons that never fire must be the last"),
-        OutputBias { output: usize, bias: f64 } =>
-            ("output {output} has a bias of {bias}: it must be 0, and be added where it is read"),
         OutputLeak { keep: f64 } => (
             "the chip's outputs are read after they have leaked, and these keep {keep:.4} of their potential a step"
         ),

@@ -157,9 +157,10 @@ fn node_at(name: &str) -> Spot {
 const DEEPEST: usize = 8;
 
 impl Graph {
-    /// Adds the nodes and edges of the NIR graph in `group` to this graph, together with those of the graphs nested in
-    /// it. The name of each node gets the prefix `path`. `depth` is the number of graphs around the graph in `group`.
-    /// Returns the names of the input node and the output node of the graph in `group`.
+    /// Adds the nodes and edges of the NIR graph in `group` to this graph. Also adds the nodes and edges of all graphs
+    /// that are nested in the NIR graph. `path` is the path of the NIR graph, empty for the outermost graph. The path
+    /// becomes the first part of each added name. `depth` is the number of graphs that enclose the NIR graph. Returns
+    /// the names of the input node and the output node of the NIR graph.
     ///
     /// # Errors
     /// Returns an error if the group is not a graph with one input and one output, or if graphs are nested too deeply.
@@ -216,8 +217,8 @@ impl Graph {
         })
     }
 
-    /// Replaces nested graphs in edges: an edge from a nested graph starts at the output node of that graph, and an
-    /// edge to a nested graph ends at its input node.
+    /// Moves the ends of edges from nested graphs to nodes. An edge that starts at a nested graph now starts at the
+    /// graph's output node. An edge that ends at a nested graph now ends at the graph's input node.
     fn join(&mut self) {
         for (from, to) in &mut self.edges {
             if let Some((_, output)) = self.inner.get(from) {
@@ -239,8 +240,8 @@ impl Graph {
         after
     }
 
-    /// Follows the chain of nodes from `first` to `last`. Returns the name of each node on the chain, with the node's
-    /// connections back to itself.
+    /// Follows the chain of nodes from `first` to `last`. Returns, for each node, its name and the connections that
+    /// lead from the node back to itself.
     ///
     /// # Errors
     /// Returns an error if the graph is not a chain.

@@ -120,6 +120,21 @@ impl Layer {
         self.weights.first().map_or(0, Vec::len)
     }
 
+    /// Replaces a reset that no chip has by the one that is most like it.
+    pub(super) fn reset_by_chip(self) -> Self {
+        let reset = match self.reset {
+            Reset::ToValueHeld => Reset::ToValue,
+            Reset::SubtractNoDelay => Reset::Subtract,
+            reset => reset,
+        };
+        Self { reset, ..self }
+    }
+
+    /// Returns whether no chip has this reset.
+    pub(super) fn has_own_reset(&self) -> bool {
+        matches!(self.reset, Reset::ToValueHeld | Reset::SubtractNoDelay)
+    }
+
     fn check(&self) -> Result<()> {
         let Self { weights, recurrent, bias, neurons, .. } = self;
         let first = self.inputs();
@@ -152,8 +167,8 @@ impl Layer {
         Ok(())
     }
 
-    /// Runs the layer on the inputs of all steps; returns the neurons that fire, by step. Calls `see` in each step with
-    /// the index of each neuron and its potential before a reset.
+    /// Runs the layer on the inputs of all steps; returns the neurons that fire, by step. For each step and neuron,
+    /// calls `see` with the neuron's index and the neuron's potential before a reset.
     pub(super) fn follow(&self, inputs: &Trains, mut see: impl FnMut(usize, f64)) -> Trains {
         let mut potentials = vec![0.0; self.neurons.len()];
         let mut before: Vec<u16> = Vec::new();
@@ -246,8 +261,8 @@ impl Trained {
         Ok(Self { layers, readout: None })
     }
 
-    /// Makes a network whose outputs are the potentials of `readout`, which follows the last of `layers`; without a
-    /// readout, the outputs are the spikes of the last layer.
+    /// Makes a network whose outputs are the potentials of `readout`, which follows the last of `layers`. If `readout`
+    /// is `None`, the outputs are the spikes of the last layer.
     ///
     /// # Errors
     /// Returns the errors of [`new`](Self::new). Also returns an error if the readout does not fit the last layer, or
@@ -278,10 +293,10 @@ impl Trained {
         Ok(self)
     }
 
-    /// Converts layers for chips on which a spike subtracts the threshold one step later. Only layers that subtract the
-    /// threshold in the same step are changed. In these layers, the next leak also reduces the subtracted amount. On
-    /// the chip, it does not, so the chip would subtract too much. A positive weight from each neuron to itself makes
-    /// up for the difference.
+    /// Converts layers for chips on which a spike subtracts the threshold one step later. Changes only layers in which
+    /// a spike subtracts the threshold in the same step. In such a layer, the next leak also reduces the subtracted
+    /// amount. Because the chip subtracts only after this leak, it would subtract too much. A positive weight from each
+    /// neuron to itself makes up for the difference.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {

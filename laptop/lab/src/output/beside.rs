@@ -17,8 +17,8 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Deletes all unfinished files when the program is interrupted. The program must exit after this call: starting or
-/// finishing a file blocks from now on, so that no file appears after the deletion.
+/// Deletes all unfinished files when the program is interrupted. The program must exit after this call. From now on, a
+/// thread that starts or finishes a file waits forever, so that no file appears after the deletion.
 pub fn abandon() {
     let files = unfinished();
     for file in files.iter() {
@@ -103,7 +103,8 @@ impl Write for Beside {
     }
 }
 
-/// Returns whether both paths lead to the same file, if necessary through links. The input `-` is standard input.
+/// Returns whether both paths lead to the same file, directly or through links. The path `-` for `input` stands for
+/// standard input.
 pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
         return false;
@@ -114,7 +115,7 @@ pub(super) fn is_same(output: &Path, input: &Path) -> bool {
 
 /// Follows symbolic links to the last target, even if no file exists there yet.
 fn target(mut path: PathBuf) -> io::Result<PathBuf> {
-    /// Maximum number of links to follow. A longer chain is assumed to lead in a circle.
+    /// Maximum number of symbolic links to follow. A longer chain of links is assumed to lead in a circle.
     const MOST: usize = 40;
     for _ in 0..MOST {
         if !fs::symlink_metadata(&path).is_ok_and(|data| data.is_symlink()) {

@@ -59,7 +59,7 @@ impl Output {
         Self { name: "memory".to_owned(), place: Place::Memory(Vec::new()), bytes: 0 }
     }
 
-    /// Opens the output at `path`, or standard output if `path` is `None` or `-`. Links are followed.
+    /// Opens the output at `path`, or standard output if `path` is `None` or `-`. Symbolic links are followed.
     ///
     /// # Errors
     /// Returns an error if no file can be written at `path`, or if `path` and `input` are the same file.

@@ -11,7 +11,7 @@ use crate::tune::Curve;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// The Pareto fronts of all schemes on one channel.
+/// The Pareto fronts of all schemes on one channel. A front holds the best trade-offs of spikes against error.
 pub struct Panel {
     /// Name of the channel.
     pub title: String,
@@ -23,7 +23,8 @@ pub struct Panel {
 
 /// Font size of a panel's title, legible when the picture is as narrow as a phone.
 const TITLE: i32 = 22;
-/// Font size of all other text, legible when the picture is as narrow as a phone.
+/// Font size of the text that is not a panel's title, in pixels. The text is legible when the picture is as narrow as a
+/// phone.
 const TEXT: i32 = 19;
 const HEAD: i32 = 34;
 const LABELS: u32 = 84;
@@ -34,8 +35,8 @@ const LOWEST: f64 = -100.0;
 /// Number of steps into which the efficiency axis is divided to compare schemes.
 const STEPS: usize = 400;
 
-/// A scheme that forms a part of the common front (the least error of all schemes at each efficiency), and the colour
-/// of the scheme's line.
+/// A scheme that forms part of the common front, and the colour of its line. The common front gives the least error of
+/// all schemes at each efficiency.
 pub(super) type Named = (Scheme, RGBColor);
 
 /// Returns the efficiency, in percent, at the given step along the axis, from 0 to [`STEPS`].
@@ -45,9 +46,9 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front. Its item for a step along the efficiency axis is the scheme with the least error at
-    /// that efficiency or above, with the efficiency and the error that it reaches; `None` if no scheme reaches that
-    /// efficiency.
+    /// Returns the common front: for each step along the efficiency axis, the point of least error among all points
+    /// that have the step's efficiency or more. Each point has the scheme, the efficiency and the error. The entry is
+    /// `None` if no scheme reaches the step's efficiency.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);
@@ -65,7 +66,7 @@ impl Panel {
 /// shares of all channels' common fronts, the largest share first. At most as many schemes are returned as there are
 /// colours.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// A scheme gets a name and a colour only if it forms more than this share of the common fronts.
+    /// A scheme gets a name and a colour only if it forms more than this share of the common fronts of all panels.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {
@@ -80,7 +81,7 @@ pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
     large.map(|(scheme, _)| scheme).zip(DISTINCT).collect()
 }
 
-/// Returns the height in pixels of a legend that is `width` pixels wide and names these schemes.
+/// Returns the height in pixels of a legend that is `width` pixels wide. The legend lists the schemes in `named`.
 pub(super) fn legend_height(named: &[Named], width: u32) -> u32 {
     let columns = (width as i32 / ENTRY).max(1);
     (((named.len() as i32 + 2 + columns - 1) / columns) * LINE + 12) as u32
@@ -186,9 +187,9 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Finds the point at which the panel names the line of `scheme`: the middle of the scheme's part of the common front.
-/// Returns the efficiency and error at this point. Leaves out points with an efficiency below `left` percent, and
-/// returns `None` if no points are left.
+/// Returns the efficiency and error at the point of the panel where the name of `scheme` is drawn. The common front has
+/// the least error of all schemes at each efficiency. The point is the middle of the part of this front that `scheme`
+/// forms. Only points with an efficiency of at least `left` percent count. Returns `None` if there are none.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

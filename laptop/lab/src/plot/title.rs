@@ -10,7 +10,8 @@ pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>
 /// Height of a panel's title with its details, in pixels.
 pub(super) const TITLE: u32 = 52;
 
-/// Draws a panel's letter and title and, below them in small print, up to two lines of details.
+/// Draws the title of a panel, with the panel's letter in front. Below the title, draws up to two lines of details in
+/// small print.
 pub(super) fn title<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     letter: Option<char>,
@@ -32,7 +33,8 @@ pub(super) fn title<B: DrawingBackend>(
     Ok(())
 }
 
-/// Draws the legend of signal and decoded values at the right of the title, above the curves.
+/// Draws the legend, which shows the colours of the signal and of the decoded values. The legend stands above the
+/// curves, to the right of the title.
 pub(super) fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>) -> Drawn<B> {
     let width = area.dim_in_pixel().0 as i32;
     let small = (FONT, 13).into_font().color(&INK);

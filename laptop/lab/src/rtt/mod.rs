@@ -68,10 +68,11 @@ fn copy(
     is_due: &mut dyn FnMut() -> bool,
     bytes: &mut u64,
 ) -> Result<()> {
-    /// Time between polls of an empty channel. A board's buffer of 1 KiB fills in 10 ms at 100 kB/s.
+    /// Time between polls of an empty channel. A board's buffer of 1 KiB does not overflow in this time: at 100 kB/s,
+    /// the buffer fills in 10 ms.
     const PAUSE: Duration = Duration::from_millis(1);
-    /// Maximum number of bytes that are read after `is_due` returned true. The limit ends the copy even if the board
-    /// sends without a pause.
+    /// Maximum number of bytes that are read after `is_due` has requested the end of the copy. The limit ends the copy
+    /// even if the board sends without a pause.
     const REST: u64 = 1 << 20;
     let mut buffer = vec![0; 1 << 14];
     let mut last = None;

@@ -29,7 +29,8 @@ pub struct Messages {
 }
 
 impl Messages {
-    /// Opens a log, and returns the header of its spikes. If the log has no header, makes a header from all messages.
+    /// Opens a log, and returns a header with the scheme and settings of its spikes. If the log contains no header,
+    /// makes one from the parameters in the messages.
     ///
     /// # Errors
     /// Returns an error if the log has no spikes, or if its messages lack a parameter that decoding needs.
@@ -56,7 +57,7 @@ impl Messages {
         Ok((messages, header))
     }
 
-    /// Converts the current message, which belongs to channel number `channel`, to items.
+    /// Converts the current message to items. The message belongs to the channel with the number `channel`.
     fn take(&mut self, channel: usize) -> Result<()> {
         let (neurons, slots) = (self.neurons, self.slots);
         let sample = self.channels[channel].1;
@@ -121,8 +122,9 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads a neuron's spike from a message. A message of a single neuron has the spike in the field `spike`. A message of
-/// several neurons has it in element `place` of the array `spike`. Returns `None` beyond the array's end.
+/// Reads one spike of a message, at the index `place` from 0. `of` is the number of spikes in the message, or
+/// `usize::MAX` if unknown. If the message has one spike, the field `spike` is a number. If the message has several
+/// spikes, the field `spike` is an array. Returns `None` if `place` is beyond the last spike.
 ///
 /// # Errors
 /// Returns an error if the message has no field `spike`.
@@ -147,7 +149,7 @@ struct Found {
     range: (f64, f64),
     neurons: usize,
     first: i64,
-    /// Sum of the thresholds in all messages. The toolbox decodes with their mean.
+    /// Sum of the thresholds in all messages. As in the paper's toolbox, decoding uses the mean threshold.
     thresholds: f64,
     samples: u64,
     last: i64,
@@ -262,9 +264,9 @@ const MOST: usize = 1 << 16;
 mod tests {
     use super::Found;
 
-    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The range moves down by
-    /// the distance between two neighbouring fields, because neuron 7 of the toolbox has the same centre as neuron 6 of
-    /// this crate. For a log with the scheme `grf`, the range stays.
+    /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The toolbox counts its
+    /// neurons from 0 in the formula of the centres, and this crate from 1. Thus each centre of the toolbox is lower, by
+    /// the distance between two neighbouring fields. For a log with the scheme `grf`, the range stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {
         for (scheme, min, max) in [("gaussian_fields", "-1.5", "7.5"), ("grf", "-1", "8")] {

@@ -27,9 +27,9 @@ pub enum Item {
     },
     /// A run of samples that were not finite.
     Rejected {
-        /// Index of the first sample of the run.
+        /// Index of the first sample that was not finite.
         first: u64,
-        /// Number of samples in the run.
+        /// Number of consecutive samples that were not finite.
         count: u64,
     },
     /// The end of the file.
@@ -60,7 +60,7 @@ pub struct Reader<R> {
 }
 
 impl<R: BufRead> Reader<R> {
-    /// Reads the header, and returns it with a reader of the spikes after it.
+    /// Reads the header. Returns a reader of the spikes, and the header.
     ///
     /// # Errors
     /// Returns an error if the header is incomplete or contradicts itself.

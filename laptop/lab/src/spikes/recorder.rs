@@ -91,7 +91,8 @@ struct Pending {
 
 /// First time in µs that a message cannot hold, because a message stores seconds in 32 bits.
 const LATEST: u64 = (1 << 32) * 1_000_000;
-/// Topic of the first channel's spikes. The paper's toolbox uses the same name.
+/// Topic of the first channel's spikes. The toolbox of the paper *A toolbox for neuromorphic perception in robotics*
+/// uses the same name.
 pub(super) const EVENT: &str = "event";
 /// Topic of the header.
 pub(super) const HEADER: &str = "event_header";

@@ -7,8 +7,8 @@ use std::time::Duration;
 /// A message of the paper's toolbox: the spikes of one sample, and parameters for decoding.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Spyke {
-    /// Number of spikes of each neuron, negative for spikes down. The numbers of all neurons in one sub-timestep
-    /// precede the numbers in the next sub-timestep.
+    /// Number of spikes of each neuron in each sub-timestep (part of a sample). The number is negative for spikes of
+    /// polarity down. The numbers are sorted by sub-timestep, and within each sub-timestep by neuron.
     pub spikes: Vec<i8>,
     /// Value from which decoding starts.
     pub start: f32,
@@ -18,7 +18,7 @@ pub(crate) struct Spyke {
     pub threshold: f32,
     /// The sample that was encoded.
     pub input: f32,
-    /// Name of the scheme in the paper's toolbox.
+    /// Name of the scheme in the toolbox that the module documentation names.
     pub scheme: &'static str,
     /// Time of the sample by the recording's clock. If the recording has no times, the time since the first sample.
     pub time: Duration,

@@ -38,7 +38,7 @@ pub struct Writer {
 /// The numbers of samples and spikes in a file of spikes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Summary {
-    /// Number of samples.
+    /// Number of samples of each channel, including those that were not finite.
     pub samples: u64,
     /// Number of samples that were not finite.
     pub rejected: u64,

@@ -18,7 +18,8 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Returns a sentence for the user: the parameter, its value, and the bounds within which the value was searched.
+    /// Returns a sentence for the user. The sentence states the parameter, its value, and the lowest and highest value
+    /// that the search could try.
     pub fn words(&self) -> String {
         let Self { parameter, value, searched: [low, high] } = self;
         format!(
@@ -67,7 +68,7 @@ fn number(axis: &Axis, options: &Asked) -> Option<f64> {
     }
 }
 
-/// Converts a number on an axis to the parameter's value, as a user gives it.
+/// Converts a number on an axis to the value of the parameter, in the form in which a user gives this value.
 fn meaning(axis: &Axis, number: f64) -> f64 {
     match axis.role {
         Role::Log(unit) => number.exp() * unit,
@@ -76,8 +77,8 @@ fn meaning(axis: &Axis, number: f64) -> f64 {
     }
 }
 
-/// Returns a number just beyond a bound of an axis: the next whole number on an axis of whole numbers, otherwise 2 % of
-/// the axis's length beyond the bound.
+/// Returns a number just beyond a bound of an axis. On an axis of whole numbers, this is the next whole number. On
+/// other axes, it lies 2 % of the axis's length beyond the bound.
 fn further(axis: &Axis, is_high: bool) -> f64 {
     let (end, sign) = if is_high { (axis.high, 1.0) } else { (axis.low, -1.0) };
     match axis.role {

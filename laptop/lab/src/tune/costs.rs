@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The measured counts, as JSON, which `cargo bench-target --baseline` writes and `cargo verify` checks. The file is a
-/// symbolic link, because a source package contains only files of its own directory.
+/// The text of `baseline.json`: the measured instruction counts. `cargo bench-target --baseline` writes this file, and
+/// `cargo verify` checks it. The file is a symbolic link, because a source package contains only files of its own
+/// directory.
 const COUNTS: &str = include_str!("baseline.json");
 
 #[derive(Deserialize)]
@@ -23,16 +24,16 @@ static MEASURED: LazyLock<BTreeMap<String, f64>> = LazyLock::new(|| {
         .unwrap_or_default()
 });
 
-/// The costs of one channel on a flight controller.
+/// The costs of one channel on a flight controller: latency, RAM and instructions.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Costs {
-    /// Latency of the code: how many samples after a sample the encoder emits its code.
+    /// Latency of the code, in samples: the time from a sample until the encoder emits the code of this sample.
     pub latency: usize,
     /// Size of the encoder's state in bytes, if known.
     pub ram: Option<usize>,
     /// Mean number of instructions to encode a sample, if measured.
     pub instructions: Option<f64>,
-    /// Whether `instructions` is an upper bound. The bound is scaled up from a measured filter that is shorter.
+    /// Whether `instructions` is an upper bound. The bound is the count measured for a shorter filter, scaled up.
     pub is_bound: bool,
 }
 
@@ -63,8 +64,8 @@ impl Costs {
     }
 }
 
-/// Returns the name of the sample type whose measured instruction counts stand for `sample`. Both types have the same
-/// width.
+/// Returns the name of a sample type for which instructions were counted. This type has the same width as `sample`, and
+/// its counts are used for `sample`.
 fn measured_as(sample: SampleType) -> &'static str {
     match sample {
         SampleType::F32 => "f32",
@@ -80,7 +81,7 @@ fn cores() -> Vec<&'static str> {
     cores
 }
 
-/// Returns the usual spelling of a core's name, which may be in upper or lower case.
+/// Finds a core by `name` in upper or lower case, and returns the usual spelling of the core's name.
 ///
 /// # Errors
 /// Returns an error if no instructions were measured on a core of this name.

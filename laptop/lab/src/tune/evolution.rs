@@ -5,8 +5,8 @@
 
 use super::chance::Chance;
 
-/// Number of entries in the memory of scale factors, and in the memory of crossover rates. An entry is a mean of values
-/// that gave points better than their parents.
+/// Number of entries in each of two memories: one of scale factors, one of crossover rates. Each entry is the weighted
+/// mean of the factors or rates with which one generation produced points better than their parents.
 const MEMORY: usize = 6;
 /// Number of parents at the end of the search. Parents are the points from which new points are made. The number of
 /// parents falls while the budget is spent.
@@ -17,7 +17,8 @@ const BEST: f64 = 0.15;
 /// An optimiser that seeks the smallest value of a function. The caller computes the values.
 pub(super) struct Evolution {
     chance: Chance,
-    /// The parents and their values. Each call of `ask` sorts the parents, the best first.
+    /// The parents, each with the function's value at this point. Each call of `ask` sorts the parents by value,
+    /// smallest first.
     parents: Vec<(Vec<f64>, f64)>,
     /// Former parents that were replaced by better points.
     replaced: Vec<Vec<f64>>,
@@ -25,7 +26,7 @@ pub(super) struct Evolution {
     factors: [f64; MEMORY],
     rates: [f64; MEMORY],
     remembered: usize,
-    /// Scale factor and crossover rate of each point that `ask` returned last.
+    /// Scale factor and crossover rate of each point that the latest call of `ask` returned.
     asked: Vec<(f64, f64)>,
 }
 
@@ -96,9 +97,9 @@ impl Evolution {
     /// Takes points that `ask` returned, in the same order, each with its value. The caller may have changed the
     /// coordinates of these points, and may leave out points at the end.
     pub(super) fn tell(&mut self, points: Vec<(Vec<f64>, f64)>) {
-        /// Maximum weight of a point that is better than its parent. Up to this maximum, the weight is the amount by
-        /// which the function is smaller at the point than at its parent. Without a maximum, points whose parents break
-        /// a limit would outweigh all others.
+        /// Maximum weight of a point in the means of scale factors and crossover rates. Only a point that is better
+        /// than its parent has a weight. The weight is the amount by which the function is smaller at the point than at
+        /// its parent. Without a maximum, points whose parents break a limit would outweigh all others.
         const MOST: f64 = 1e5;
         let mut successes = Vec::new();
         let tried = points.into_iter().zip(&self.asked);

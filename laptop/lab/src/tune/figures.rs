@@ -27,14 +27,14 @@ pub struct Figures {
     /// Delay of the decoded values in samples, in addition to the code's latency. It is the lag at which signal and
     /// decoded values correlate most.
     pub lag: i64,
-    /// RMSE after the error was low-pass filtered at a frequency limit, if a limit was given.
+    /// RMSE of the low-pass filtered error, if a frequency limit for the filter was given and the sample rate is known.
     pub below: Option<f64>,
     /// Events a second, if the rate is known.
     pub events_per_second: Option<f64>,
-    /// Entropy of the spikes in bits a second: the entropy of a sample's code, times the sample rate.
+    /// Entropy of the spikes, in bits a second. It is the entropy of one sample's code multiplied by the sample rate.
     pub bits_per_second: Option<f64>,
-    /// Bits a second that the raw samples need after rounding to a step so large that the rounding error has the code's
-    /// RMSE.
+    /// Bits a second of the samples if they were sent without the code, rounded as coarsely as the code's error
+    /// permits. The rounding step is chosen such that the rounding error has the same RMSE as the code.
     pub raw_bits_per_second: Option<f64>,
 }
 
@@ -145,7 +145,7 @@ fn bits(part: f64) -> f64 {
     if part > 0.0 { -part * part.log2() } else { 0.0 }
 }
 
-/// Counts how often each code of a sample occurs. Samples without events have an empty code.
+/// Counts how often each code occurs. The code of a sample is the list of its events, which may be empty.
 fn count_codes(events: &[Event], samples: usize, codes: &mut HashMap<Vec<Event>, usize>) {
     let groups = events.chunk_by(|a, b| a.sample == b.sample);
     let mut silent = samples;
@@ -179,7 +179,8 @@ pub fn squares_below(values: &[f64], limit: f64) -> f64 {
     kept.map(|(_, power)| power).sum()
 }
 
-/// Returns the power spectrum: the part of the sum of squares at each frequency from 0 to half the sample rate.
+/// Returns the power spectrum, from frequency 0 to half the sample rate. Its entries add up to the sum of the squares
+/// of `values`.
 pub fn power(values: &[f64]) -> Vec<f64> {
     let count = values.len();
     if count < 2 {

@@ -1,6 +1,6 @@
-//! Tunes step codes, whose spikes each move the decoded value up or down by a step. Computes the number of spikes and
-//! the error at each threshold, in exact arithmetic and without the codec. Then scores only the best thresholds with
-//! the codec.
+//! Tunes step codes. In a step code, each spike moves the decoded value up or down by a step. The number of spikes and
+//! the error at each threshold are first computed in exact arithmetic, without the codec. Then the codec scores only
+//! the best thresholds.
 
 use super::problem::{Goal, most_spikes};
 use super::search::{BATCH, Run};
@@ -14,8 +14,8 @@ const SMALLEST: f64 = 1e-3;
 /// Maximum number of samples that are processed to list outcomes. An outcome is a threshold with its spikes and its
 /// error. The limit bounds the time to seconds.
 const PASSES: usize = 4_000_000_000;
-/// Factor of a second limit on the number of samples that are processed to list outcomes: this factor times the number
-/// of settings that the search may score. The second limit keeps a search with a small budget short.
+/// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
+/// limit keeps a search with a small budget short. In a search with a large budget, [`PASSES`] is the smaller limit.
 const PASSES_A_SETTING: usize = 200_000;
 /// Number of settings below which the budget does not shorten the list.
 const FEW_SETTINGS: usize = 300;
@@ -73,8 +73,8 @@ impl Run<'_> {
         is_fitted
     }
 
-    /// Lists the outcomes worth scoring, for all combinations of integer parameters. Returns `None` if the scheme
-    /// cannot list its outcomes.
+    /// Lists the outcomes (thresholds with their spikes and errors) that are worth scoring, for all combinations of
+    /// integer parameters. Returns `None` if the scheme cannot list its outcomes.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
         let pieces = self.pieces;

@@ -1,5 +1,5 @@
-//! Finds parameters of a scheme that meet a goal. The modules define the score of settings, the space in which settings
-//! lie, and the search.
+//! Finds parameters with which a scheme meets a goal. The modules define the score of settings, the space in which
+//! settings lie, and the search.
 
 mod bounds;
 mod chance;

@@ -87,7 +87,7 @@ pub enum Limit {
     Latency,
     /// Number of events a second.
     Rate,
-    /// Efficiency in percent.
+    /// Efficiency in percent: 100 less the number of spikes for every 100 samples.
     Efficiency,
     /// Root mean square error, in the signal's unit.
     Rmse,
@@ -112,7 +112,7 @@ impl Limit {
 pub struct Excess {
     /// The limited quantity.
     pub limit: Limit,
-    /// Value of the quantity for these settings.
+    /// Value that the limited quantity has with these settings. Infinite if the value is not known.
     pub value: f64,
     /// The limit itself: the largest or smallest value that is allowed.
     pub allowed: f64,
@@ -123,18 +123,21 @@ pub struct Excess {
 /// Settings, and their score on the stretches to tune on.
 #[derive(Clone, Debug)]
 pub struct Scored {
-    /// The options that give the settings.
+    /// The options from which the settings are completed. Parameters that the options do not give have a default or a
+    /// derived value.
     pub options: Asked,
     /// Counts of samples, spikes and errors.
     pub tally: Tally,
     /// Costs of the settings on a flight controller, such as memory and instructions.
     pub costs: Costs,
-    /// The limits that the settings break. The goal's limit on RMSE or efficiency is one of the possible limits.
+    /// The limits that the settings break. If the goal demands a maximum RMSE or a minimum efficiency, this is a limit,
+    /// too.
     pub excess: Vec<Excess>,
 }
 
 impl Scored {
-    /// Returns whether the settings break no limit. The goal's limit on RMSE or efficiency is one of the limits.
+    /// Returns whether the settings break no limit. If the goal demands a maximum RMSE or a minimum efficiency, this is
+    /// a limit, too.
     pub fn is_allowed(&self) -> bool {
         self.excess.is_empty()
     }
@@ -150,7 +153,7 @@ pub struct Problem<'a> {
     pub fixed: Asked,
     /// The stretches to tune on.
     pub train: &'a [Stretch],
-    /// The goal.
+    /// The goal of the search.
     pub goal: Goal,
     /// How the errors of several flights count.
     pub over: Over,
@@ -357,8 +360,9 @@ impl<'a> Problem<'a> {
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
-    /// Returns the value of a number of spikes and a sum of squared errors for a goal; a smaller value is better.
-    /// Ignores all limits that are not part of the goal.
+    /// Rates a result by how well it reaches a goal, and returns the rating. A smaller rating is better. The result
+    /// consists of a number of spikes and a sum of squared errors over `samples` samples. Ignores all limits that are
+    /// not part of the goal.
     pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
         let rmse = (squares / samples as f64).sqrt();
@@ -386,8 +390,8 @@ impl<'a> Problem<'a> {
 /// results.
 const NOT_ALLOWED: f64 = 1e12;
 
-/// Returns the largest number of spikes at which the efficiency is at least `efficiency` percent. If the percentage was
-/// computed from a number of spikes, returns exactly that number.
+/// Returns the largest number of spikes in `samples` samples at which the efficiency is at least `efficiency` percent.
+/// Corrects rounding: the efficiency of a whole number of spikes gives exactly this number again.
 pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     let spikes = (100.0 - efficiency) / 100.0 * samples as f64;
     let nearest = spikes.round();

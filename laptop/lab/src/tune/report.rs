@@ -12,11 +12,12 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Note for the user on settings of a code whose errors add up from step to step.
+/// Note for the user about the settings of a code that drifts: in its decoder, the errors of all steps add up until a
+/// keyframe arrives.
 pub(crate) const DRIFTS: &str = "drifts: the errors of all its steps add up until a keyframe comes, and each flight's add up \
      otherwise: not to be relied on in another flight";
 
-/// One channel of all recordings, cut into stretches.
+/// One channel of all recordings, cut into stretches: consecutive samples that are coded in one piece.
 pub struct Cut {
     /// The channel's name.
     pub name: String,
@@ -24,7 +25,7 @@ pub struct Cut {
     pub train: Vec<Stretch>,
     /// Stretches that are held out, to check the settings on.
     pub held_out: Vec<Stretch>,
-    /// Each segment of the recordings as one stretch.
+    /// One stretch for each segment of the recordings. A restart of the recorder's clock begins a new segment.
     pub whole: Vec<Stretch>,
 }
 
@@ -55,11 +56,11 @@ pub struct Row {
     /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
     /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether `listed` counts all outcomes that are possible, over all thresholds.
+    /// Whether `listed` counts every outcome that some threshold can have.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent.
     pub is_cut_short: bool,
-    /// Notes for the user.
+    /// Notes for the user: reasons not to trust the settings.
     pub notes: Vec<String>,
     /// The settings found.
     #[serde(skip)]
@@ -323,8 +324,8 @@ fn details(text: &mut String, row: &Row, core: &str) -> std::fmt::Result {
     row.notes.iter().try_for_each(|note| writeln!(text, "  {note}"))
 }
 
-/// Returns a text for the user: no settings keep to all limits. For each limit that the best settings break, the text
-/// states the limit and the value that the settings reach.
+/// Returns a message that tells the user that no settings keep to all limits. The message lists each limit that the
+/// best settings break, with the value that these settings reach.
 pub fn missed(problem: &Problem, found: &Found, best: &Scored) -> Words {
     let settings = problem
         .train

@@ -16,8 +16,8 @@ use std::time::{Duration, Instant};
 
 /// The logs, schemes and goal of a search, for [`tune`].
 pub struct TuneRequest {
-    /// Logs that are tuned on together. Each log has one recording for each channel, and all logs have the same
-    /// channels.
+    /// Logs from which one result is found for each channel. Each log has one recording for each channel, and all logs
+    /// have the same channels.
     pub logs: Vec<Vec<Recording>>,
     /// The schemes whose parameters are searched, each scheme by itself.
     pub schemes: Vec<Scheme>,
@@ -28,8 +28,8 @@ pub struct TuneRequest {
     /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
     /// and sum.
     pub free_taps: bool,
-    /// Goal of the search. `None` stands for the least error at an efficiency at least as high as that of the paper's
-    /// settings.
+    /// Goal of the search. `None` stands for the goal [`Goal::LeastError`] with the efficiency that the paper's
+    /// settings reach.
     pub goal: Option<Goal>,
     /// Upper limits on what settings may cost.
     pub limits: Limits,
@@ -191,7 +191,7 @@ pub struct Tuned {
     pub curves: Vec<Curve>,
     /// For each scheme that misses the goal, the reason and how near the scheme comes.
     pub missed: Vec<Words>,
-    /// Reasons not to trust the recordings, if the request was to search anyway.
+    /// Reasons not to trust the recordings. Empty unless [`TuneRequest::anyway`] is set.
     pub notes: Vec<String>,
 }
 
@@ -199,7 +199,7 @@ pub struct Tuned {
 pub struct Curve {
     /// The scheme.
     pub scheme: Scheme,
-    /// Efficiency in percent and RMSE at each point of the front.
+    /// Efficiency in percent and RMSE of each of the settings on the Pareto front.
     pub points: Vec<(f64, f64)>,
     /// Efficiency in percent and RMSE of the paper's settings, if the scheme has any.
     pub paper: Option<(f64, f64)>,
@@ -291,7 +291,8 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
     Ok(Outcome::Row(Box::new(Row::new(&problem, channel, &found, best, request.below)?)))
 }
 
-/// Returns the curve of a Pareto front, scored on held-out blocks or, if there are none, on the blocks tuned on.
+/// Scores the settings of a Pareto front, and returns the curve of their efficiencies and errors. The settings are
+/// scored on the held-out blocks or, if no block is held out, on the blocks used for tuning.
 fn curve(problem: &Problem, cut: &Cut, found: &Found, paper: Option<&Scored>) -> Curve {
     let stretches = if cut.held_out.is_empty() { &cut.train } else { &cut.held_out };
     let scored = |one: &Scored| {

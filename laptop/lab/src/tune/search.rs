@@ -1,8 +1,8 @@
-//! Searches for settings. If the scheme can list the outcomes of all thresholds, the search is exact; otherwise, the
-//! search is an evolution.
+//! Searches for the settings of a scheme. The search is exact if the scheme can list the number of spikes and the error
+//! for all thresholds. Otherwise, the search is an evolution.
 //!
-//! The length of a search is counted in settings that are scored with the codec, which makes the result the same on
-//! every machine.
+//! The length of a search is counted in settings scored with the codec, not in seconds. Therefore the result is the
+//! same on every machine.
 
 use super::Bound;
 use super::bounds::bounds;
@@ -38,7 +38,7 @@ pub struct Found {
     /// Number of outcomes (spikes and error of a threshold) that were computed in exact arithmetic, without the codec.
     /// Thresholds with the same spikes share an outcome.
     pub listed: usize,
-    /// Whether every possible outcome of a threshold was listed.
+    /// Whether all thresholds were compared in this way: `listed` is then the number of all their outcomes.
     pub is_complete: bool,
     /// Whether the search stopped before its budget of settings was spent, by its deadline or on request.
     pub is_cut_short: bool,
@@ -46,7 +46,7 @@ pub struct Found {
     pub bounds: Vec<Bound>,
 }
 
-/// Options of a search that do not belong to its problem.
+/// Options of a search that are not part of the [`Problem`].
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
     /// Seed of the random generator.
@@ -68,7 +68,8 @@ const LONGER: usize = 4;
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
-/// Value of settings that cannot be built. It is worse than the value of any other settings.
+/// Rating of invalid settings, for which no codec can be built. The search seeks small ratings, and the ratings of all
+/// valid settings are smaller than this one.
 const NONE: f64 = 1e30;
 
 /// Searches for the best settings for a problem within a budget.
@@ -177,7 +178,8 @@ impl Run<'_> {
         scored
     }
 
-    /// Scores points of a space until the budget is spent. Returns each scored point with its value for `goal`.
+    /// Scores points of a space until the budget is spent. Returns each point with its rating for `goal`. The rating of
+    /// a point with invalid settings is [`NONE`].
     fn tried(&mut self, space: &Space, goal: Goal, points: Vec<Vec<f64>>) -> Vec<(Vec<f64>, f64)> {
         let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
         let scored = self.try_all(&options);
@@ -259,7 +261,8 @@ impl Run<'_> {
         Some(())
     }
 
-    /// Runs an evolution strategy on the taps of the best filter so far, again and again until the budget is spent.
+    /// Improves the taps of the best filter with an evolution strategy. Restarts the strategy from the best filter so
+    /// far until the budget is spent.
     fn free(&mut self, space: &Space, seed: u64) {
         /// Number of generations without progress after which the strategy restarts.
         const PATIENCE: usize = 60;

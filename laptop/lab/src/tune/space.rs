@@ -34,27 +34,28 @@ pub(super) struct Axis {
 /// The meaning of the numbers on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
-    /// The natural logarithm of a quotient: the parameter divided by the given unit.
+    /// Number on the axis: the natural logarithm of the parameter divided by the given unit.
     Log(f64),
-    /// The difference between the parameter and the first given value, divided by the second given value.
+    /// Number on the axis for `Around(base, unit)`: the parameter less `base`, as a multiple of `unit`.
     Around(f64, f64),
-    /// The quotient of the parameter and the sum of the absolute values of the filter's taps.
+    /// Number on the axis: the parameter divided by the sum of the absolute values of the filter's taps.
     OfFilter,
-    /// The natural logarithm of a quotient: the parameter divided by the threshold.
+    /// Number on the axis: the natural logarithm of the parameter divided by the threshold.
     Thresholds,
     Whole,
-    /// A whole number that is a maximum, such as the largest number of spikes in a sample.
+    /// Number on the axis: the parameter itself, a whole number. The parameter is a maximum, such as the largest number
+    /// of spikes in a sample.
     Most,
     Words(&'static [&'static str]),
-    /// Natural logarithm of the filter's length in taps.
+    /// Number on the axis: the natural logarithm of the filter's length in taps.
     Length,
     Shape,
     Alpha,
-    /// The natural logarithm of the quotient S / H. S is the sum of the filter's taps. H is the height of the signal's
-    /// mean above the parameter `shift`. A signal that stays at its mean gives one spike every S / H samples. The two
-    /// values are the lower and the upper bound of S.
+    /// Number on the axis: the natural logarithm of S / H. S is the sum of the filter's taps. H is the height of the
+    /// signal's mean above the parameter `shift`. A signal that stays at its mean gives one spike every S / H samples.
+    /// For `Sum(low, high)`, S is clamped to the range from `low` to `high`.
     Sum(f64, f64),
-    /// A tap of the filter, as a multiple of the given unit.
+    /// Number on the axis: a tap of the filter, divided by the given unit.
     Tap(f64),
 }
 
@@ -74,13 +75,13 @@ pub(crate) struct Space {
 pub(crate) struct Inner {
     /// Index of the axis in the space.
     pub axis: usize,
-    /// Whether the axis is the sum of the filter's taps. The compared values are then factors of this sum. Otherwise,
-    /// the axis is the threshold, and the compared values are thresholds.
+    /// Whether the axis is the sum of the filter's taps. If true, a pass over the signal compares factors, and each
+    /// factor multiplies this sum. Otherwise, the pass compares thresholds.
     pub is_factor: bool,
 }
 
 impl Space {
-    /// Makes the space of those of the scheme's parameters that are searched and have no value in `fixed`. `extent`
+    /// Makes the space of the scheme's searched parameters. A parameter with a value in `fixed` is not searched. `extent`
     /// holds the range and mean of the samples.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
         let mut axes = Vec::new();
@@ -95,7 +96,8 @@ impl Space {
     }
 
     /// Returns a search space in which each tap of the filter has an axis. The axes for the filter's shape, length and
-    /// sum are left out. Parameters that are integers or words have no axes either, and keep their values in `found`.
+    /// sum are left out. Parameters that are integers or words have no axes either. The new space fixes each of them at
+    /// the parameter's value in `found`.
     pub(crate) fn with_taps(&self, found: &Asked, taps: &[f64]) -> Self {
         let peak = taps.iter().fold(0.0, |peak: f64, tap| peak.max(tap.abs()));
         let mut fixed = self.fixed.clone();
@@ -133,9 +135,9 @@ impl Space {
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns the axis along which a scheme can compare many values in one pass. This is the axis of the threshold, as
-    /// a share of the sum of the taps' absolute values. If the scheme has no threshold, it is the axis of the sum of
-    /// the taps.
+    /// Returns the axis on which a scheme can try many values in one pass over the signal. For a scheme with a
+    /// threshold, the numbers on this axis are thresholds divided by the sum of the taps' absolute values. For a scheme
+    /// without a threshold, this is the axis of the sum of the taps. Returns `None` if the space has no such axis.
     pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
         let has_threshold =
             scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
@@ -148,9 +150,9 @@ impl Space {
         Some(Inner { axis, is_factor: !has_threshold })
     }
 
-    /// Returns `count` points to start from, spread over each axis. `share` is the share of samples at which the code
-    /// may spike. The sums of filter taps are chosen such that spikes at about this share of the samples decode to the
-    /// signal's mean.
+    /// Returns `count` points from which a search starts, spread over each axis. `share` is the wanted number of spikes
+    /// for each sample, at most 1. For each point, the sum of the filter's taps is chosen such that a signal at its
+    /// mean gives about this number of spikes for each sample.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.clamp(0.02, 1.0);
@@ -182,7 +184,8 @@ impl Space {
         points
     }
 
-    /// Returns every combination of values of the parameters that are integers or words, as options.
+    /// Returns every combination of values of the searched parameters that are integers or words. Leaves out maxima
+    /// such as the largest number of spikes in a sample.
     pub(crate) fn combinations(&self) -> Vec<Asked> {
         let mut all = vec![Asked::default()];
         for axis in
@@ -369,8 +372,8 @@ mod tests {
     use crate::scheme::Scheme;
     use catalogue::run::Asked;
 
-    /// Each scheme accepts the options at the lower bounds of all axes of its search space, those at the upper bounds,
-    /// and those in the middle.
+    /// Takes three points of each scheme's search space: all axes at the lower bound, all in the middle, and all at the
+    /// upper bound. The scheme accepts the options of each point.
     #[test]
     fn every_corner_is_understood() {
         for scheme in Scheme::all() {

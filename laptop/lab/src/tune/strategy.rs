@@ -16,9 +16,10 @@ pub(super) struct Strategy {
     step: f64,
     /// Variance of the points of a generation along each axis, before the factor `step` is applied.
     variances: Vec<f64>,
-    /// Evolution path of the mean. The step size is adapted by the length of this path.
+    /// Evolution path: a decaying sum of the mean's recent moves. The length of this path determines how the step size
+    /// changes.
     path: Vec<f64>,
-    /// Evolution path of the mean over more generations, by which the variances are adapted.
+    /// Second evolution path, which decays at another rate than `path`. This path helps to adapt the variances.
     long_path: Vec<f64>,
     weights: Vec<f64>,
     mass: f64,

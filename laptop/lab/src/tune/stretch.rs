@@ -7,7 +7,7 @@ use crate::trial::Recording;
 use catalogue::run::{Given, SampleType};
 use std::ops::Range;
 
-/// Consecutive samples that are coded in one piece, and the ranges of those samples that are scored.
+/// Consecutive samples that are coded in one piece. Only the samples in the ranges `scored` are scored.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// The samples that are coded.
@@ -21,7 +21,7 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Makes a stretch of each segment of a recording.
+    /// Makes one stretch of each segment of a recording. A restart of the recorder's clock begins a new segment.
     pub fn whole(recording: &Recording) -> Vec<Self> {
         let stretch = |own: &Range<usize>| {
             let scored = std::iter::once(0..own.len()).collect();
@@ -75,7 +75,7 @@ impl Stretch {
         self.scored.iter().any(|own| (own.start as u64..own.end as u64).contains(&sample))
     }
 
-    /// Returns the samples rounded to a sample type.
+    /// Returns the samples, each rounded to the nearest value that the sample type `sample` can hold.
     pub fn rounded(&self, sample: SampleType) -> Vec<f64> {
         self.values.iter().map(|value| held(sample, *value)).collect()
     }
@@ -93,8 +93,9 @@ pub struct HoldOut {
 /// Minimum number of samples in each block of a recording.
 const SHORTEST: usize = 20;
 
-/// Offset of the held-out blocks, which are spread evenly. If 30 % of 20 blocks are held out, neither the first nor the
-/// last block is among them.
+/// Offset of the held-out blocks, which are spread evenly. Block `i` is held out if `floor((i + 1) * part + OFFSET)` is
+/// greater than `floor(i * part + OFFSET)`, where `part` is the share of held-out blocks. If 30 % of 20 blocks are held
+/// out, this offset leaves both the first and the last block for tuning.
 const OFFSET: f64 = 0.35;
 
 /// Cuts a recording into blocks. Returns the stretches whose blocks to tune on are scored, and the stretches whose

@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use crate::error::{offset, step, tri, unwrap, within};
 use crate::num::{Tally, Total, to_f64};
-use crate::scheme::codec::{Until, encode_each};
+use crate::scheme::codec::encode_each;
 use crate::scheme::temporal::with_most;
 use crate::temporal::Steps;
 use crate::{ConfigError, Destination, Fingerprint, Recovery, Sample, Scheme, Start};
@@ -247,7 +247,7 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
             state.potential = potential;
             samples.len().min(outputs.len())
         } else {
-            encode_each(self, state, samples, outputs, Until::End)
+            encode_each(self, state, samples, outputs)
         }
     }
 

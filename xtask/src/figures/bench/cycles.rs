@@ -130,8 +130,8 @@ impl Model {
         let more = u32::from(late) + u32::from(waits);
         let [least, most] = match one.name.as_str() {
             // Two registers of 32 bits, or one of 64, come one after the other.
-            "vldr" if one.operands.starts_with('d') => [2, 3],
-            "vldr" => [1, 2],
+            "vldr" if one.operands.starts_with('d') => [3, 3],
+            "vldr" => [2, 2],
             "vstr" if one.operands.starts_with('d') => [2, 3],
             "vstr" => [1, 2],
             "vldmia" | "vldmdb" | "vstmia" | "vstmdb" | "vpush" | "vpop" => {

@@ -84,7 +84,7 @@ pub fn verify() -> Result<()> {
     shell::output(shell::command("sha256sum").args(["-c", "SHA256SUMS"]).current_dir(&place))?;
     ensure_versions(&place)?;
     for (core, _) in CORES {
-        let core = if core == RISC_V.core { "riscv".into() } else { core.to_lowercase() };
+        let core = if core == RISC_V[0].core { "riscv".into() } else { core.to_lowercase() };
         let mut make = shell::command("make");
         make.args(["--silent", "run", &format!("CORE={core}")]).current_dir(place.join("bare"));
         let printed = shell::output(make.env_clear().env("PATH", "/usr/bin:/bin"))?;

@@ -30,7 +30,8 @@ pub struct ColumnSummary {
     pub name: String,
     /// Number of rows in which the value is missing or not finite.
     pub missing: u64,
-    /// The first field in the column that is not a number: number of its line, and its text.
+    /// The first field of the column that is not a number. The pair has the number of the field's line, and the field's
+    /// text.
     pub text: Option<(u64, String)>,
 }
 

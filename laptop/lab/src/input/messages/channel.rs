@@ -8,7 +8,7 @@ use catalogue::run::Words;
 use flight_logs::definition::{Definition, NoNumber, Path, Stamp};
 use flight_logs::{Entry, Fault, Kind, Log, Topic, microseconds, open};
 
-/// Fields of one topic of a log, read as channels.
+/// A source of samples from one topic of a log. Each chosen field of the topic is a channel.
 pub struct Channel {
     log: Box<dyn Log>,
     file: String,
@@ -121,7 +121,7 @@ impl Channel {
         })
     }
 
-    /// Appends the values and the time of a message, if it is of the chosen topic.
+    /// Appends the values and the time of a message, if the message belongs to the chosen topic.
     fn take(&mut self, entry: Entry, chunk: &mut Chunk) -> Result<()> {
         let Some(plan) = self.plans[entry.topic].as_ref() else { return Ok(()) };
         let topic = &self.log.topics()[entry.topic];
@@ -152,7 +152,7 @@ impl Channel {
         Ok(())
     }
 
-    /// Makes the error for a recording without samples, because its topic is unknown or has no messages.
+    /// Returns the error for a recording without samples. The topic is unknown, or it has no messages.
     fn nothing(&self) -> Error {
         let topic = self.topic.clone();
         if self.plans.iter().any(Option::is_some) {
@@ -164,8 +164,8 @@ impl Channel {
     }
 }
 
-/// Appends the values of a message's fields, and returns the message's time in µs. A field beyond the end of a short
-/// array has the value NaN.
+/// Appends the values of a message's fields to `values`, and returns the message's time in µs. A field in an array may
+/// be missing because the array is too short. The value of such a field is NaN.
 fn read(
     topic: &Topic,
     plan: &Plan,
@@ -186,7 +186,7 @@ fn read(
     })
 }
 
-/// Lists the names of the numbers that a field consists of.
+/// Returns the names of all numbers in a field that contains several, separated by commas.
 fn within(definition: &Definition, field: &str) -> String {
     let (numbers, _) = definition.names();
     let own: Vec<&str> =

@@ -19,7 +19,7 @@ pub struct Overview {
     pub fields: Vec<String>,
     /// Names of the fields that hold text.
     pub texts: Vec<String>,
-    /// The reason that the fields cannot be read. `None` if they can be read.
+    /// Reason for which the topic's fields cannot be read. `None` if they can be read.
     pub unread: Option<String>,
     /// Number of messages of the topic.
     pub count: u64,

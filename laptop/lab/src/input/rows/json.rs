@@ -7,7 +7,8 @@ use serde_json::value::RawValue;
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, BufRead, BufReader, Read};
 
-/// Number of first lines whose names become columns. A name that first appears on a later line is not read.
+/// Number of lines at the start of the file from which the names of the columns are taken. A name that first appears on
+/// a later line is not read.
 const AHEAD: usize = 64;
 
 /// Reads JSON lines as a CSV table.
@@ -39,7 +40,7 @@ pub(super) fn lines(input: impl Read + 'static) -> Result<Box<dyn Read>> {
 
 struct Objects<R> {
     input: BufReader<R>,
-    /// The index of each name's column.
+    /// For each name, the index of its column.
     names: BTreeMap<String, usize>,
     /// The first lines, which were read in advance for their names.
     ahead: VecDeque<String>,

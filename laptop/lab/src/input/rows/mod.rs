@@ -28,7 +28,7 @@ trait Rows {
     fn next(&mut self, text: &mut Vec<u8>) -> io::Result<bool>;
 }
 
-/// A reader of rows as the text of a CSV table.
+/// A reader that converts a table's rows to CSV, and returns the CSV text as bytes.
 struct Lines<T> {
     rows: T,
     text: Vec<u8>,

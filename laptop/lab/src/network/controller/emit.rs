@@ -293,7 +293,7 @@ fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
 static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
 {rows}];
 
-/// The outputs' potentials after these steps.
+/// The outputs' potentials after the last step of `STEPS`.
 #[rustfmt::skip]
 static POTENTIALS: [{numbers}; {outputs}] = [{last}];
 

@@ -12,8 +12,8 @@ use crate::network::fault::{Context, FitKind, LayerKind, Result, ensure};
 /// Largest absolute value of a number that `spikewire-network` accepts in `f32`.
 const LARGEST: f64 = 1e15;
 
-/// Smallest time constant of a current, as a share of a step, that is rounded up to one step. It is below 1 because a
-/// step of the recording may be a little longer than a step of the training.
+/// A time constant of a current that is at least this share of a step, but less than a step, counts as one step. Such a
+/// time constant occurs if a step of the recording is a little longer than a step of the training.
 const A_STEP: f64 = 0.98;
 
 /// Rounding error of gains in files of snnTorch and `SpikingJelly`. A gain that differs from 1 by less than this error
@@ -270,8 +270,8 @@ impl Neurons {
 }
 
 impl Neuron<f64> {
-    /// Shifts the neuron's potentials, such as its threshold, by `-start`: a neuron whose initial potential was `start`
-    /// then starts at 0.
+    /// Lowers all potentials of the neuron by `start`: the potential at rest, the threshold, and the potential after a
+    /// reset. A neuron whose initial potential was `start` then starts at 0.
     fn begun_at(mut self, start: f64, rule: &Rule) -> Self {
         self.inner -= (1.0 - self.decay) * start;
         if let Some(spike) = &mut self.spike {

@@ -195,10 +195,10 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
 }
 
-/// Chooses the steps of the self-test. Returns the inputs of [`CHECKED`] consecutive steps in which the network,
-/// started from rest, fires the most spikes; steps in which an output fires are preferred.
+/// Chooses [`CHECKED`] consecutive steps for the self-test, and returns their inputs. The network starts from rest, and
+/// fires more spikes in these steps than in other steps that were tried. Steps in which an output fires are preferred.
 fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
-    /// Maximum number of sequences of [`CHECKED`] steps whose spikes are counted to find the best sequence.
+    /// Maximum number of sequences of [`CHECKED`] steps to compare by their number of spikes.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
     let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);

@@ -33,9 +33,11 @@ pub(super) enum Recurrent<K> {
     OneToOne(Vec<K>),
 }
 
-/// A neuron. With a current, a step computes `I = a I + x + bias`, then `u = b v + I + inner`; without one, `u = b v +
-/// x + bias`. `a` and `b` are the decay factors, `x` is the sum of the weights of the inputs that fire, `v` the
-/// potential before the step, `u` the potential after it.
+/// A neuron. If it has a current, a step computes `I = a I + x + bias`, then `u = b v + I + inner`. If it has no
+/// current, a step computes `u = b v + x + bias`.
+///
+/// `I` is the current, `v` is the potential before the step, and `u` is the potential after it. `a` and `b` are decay
+/// factors. `x` is the sum of the weights of the inputs that fire. `bias` and `inner` are constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Neuron<K: Number> {
     /// Factor `a`, by which a step multiplies the current; `None` for a neuron without a current.
@@ -184,7 +186,7 @@ pub(super) struct Done<K> {
     pub fired: Vec<Trains>,
     /// The potentials of the last layer, by step.
     pub potentials: Vec<Vec<K>>,
-    /// Number of weights that were added, for each step.
+    /// Number of weight additions, by step.
     pub operations: Vec<u64>,
     /// Number of times that a neuron's potential or current left its range and was limited.
     pub saturated: u32,

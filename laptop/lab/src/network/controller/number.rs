@@ -2,7 +2,8 @@
 
 use std::fmt::Debug;
 
-/// A number type with the arithmetic of a neuron. Its operations round exactly as in `spikewire-network`.
+/// A type for the numbers of a neuron, such as its potential. The operations of the type round exactly as in
+/// `spikewire-network`.
 pub(super) trait Number: Copy + Default + PartialOrd + Debug + Send + Sync {
     /// The type of a decay factor.
     type Factor: Copy + PartialEq + Debug + Send + Sync;

@@ -14,12 +14,7 @@ impl Model {
     /// Converts the network to the form that can be brought onto chips.
     ///
     /// # Errors
-    /// Returns an error in one of these cases:
-    /// - A synaptic current lasts longer than one step.
-    /// - The last layer never fires, and one of its neurons has a bias.
-    /// - A neuron outside such a last layer never fires.
-    ///
-    /// Also returns the errors of [`Trained::with_readout`].
+    /// Returns an error if a current lasts longer than a step, or if neurons that never fire are not the last ones.
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =
@@ -32,8 +27,31 @@ impl Model {
             let name = layer.name.clone();
             of_layer(layer).context(name)
         });
-        Trained::with_readout(layers.collect::<Result<_>>()?, readout.transpose()?)
+        let mut layers = layers.collect::<Result<Vec<_>>>()?;
+        let readout = readout.transpose()?.map(|(mut readout, bias)| {
+            if let Some(last) = layers.last_mut().filter(|_| bias.iter().any(|bias| *bias != 0.0)) {
+                add_clock(last);
+                let rows = readout.weights.iter_mut().zip(bias);
+                rows.for_each(|(row, bias)| row.push(bias));
+            }
+            readout
+        });
+        Trained::with_readout(layers, readout)
     }
+}
+
+/// Adds a neuron that fires in every step, through which outputs that never fire get their bias.
+fn add_clock(layer: &mut trained::Layer) {
+    /// Amount that each step adds to the potential of the new neuron, in units of its threshold.
+    const BIAS: f64 = 1.1;
+    let keep = layer.neurons.first().map_or(1.0, |neuron| neuron.keep);
+    layer.weights.push(vec![0.0; layer.inputs()]);
+    if !layer.recurrent.is_empty() {
+        layer.recurrent.iter_mut().for_each(|row| row.push(0.0));
+        layer.recurrent.push(vec![0.0; layer.neurons.len() + 1]);
+    }
+    layer.bias.push(BIAS);
+    layer.neurons.push(trained::Neuron { keep, threshold: 1.0, leak: 0.0 });
 }
 
 /// Transposes a matrix of weights: from one row for each input to one row for each neuron.
@@ -83,14 +101,12 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     Ok(layer)
 }
 
-fn readout(layer: Layer<f64>) -> Result<Readout> {
+/// Converts a layer of neurons that never fire to the outputs of a network. Returns the outputs, and the bias of each
+/// output.
+fn readout(layer: Layer<f64>) -> Result<(Readout, Vec<f64>)> {
     let Layer { name, weights, neurons, .. } = layer;
-    let mut keep = Vec::new();
-    for (at, neuron) in neurons.iter().enumerate() {
-        check_current(neuron)?;
-        let bias = neuron.bias + neuron.inner;
-        ensure!(bias == 0.0, FitKind::OutputBias { output: at, bias });
-        keep.push(neuron.decay);
-    }
-    Ok(Readout { name, weights: turned(&weights), keep })
+    neurons.iter().try_for_each(check_current)?;
+    let keep = neurons.iter().map(|neuron| neuron.decay).collect();
+    let bias = neurons.iter().map(|neuron| neuron.bias + neuron.inner).collect();
+    Ok((Readout { name, weights: turned(&weights), keep }, bias))
 }

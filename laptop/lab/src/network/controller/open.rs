@@ -14,16 +14,17 @@ pub enum Choice {
     Reset,
     /// Whether a neuron fires at its threshold or only above it.
     Fires,
-    /// How a time constant becomes the factor by which a step multiplies a potential.
+    /// The formula that turns a time constant into the factor by which a step multiplies a potential.
     Decay,
-    /// Whether the potential takes the current of this step or of the step before.
+    /// The synaptic current that a step adds to the potential: the current of this step, or of the step before.
     Current,
     /// The duration of a step, in seconds.
     Step,
 }
 
-/// Returns a text that asks the user to make the choices in `open`, with the possible values of each in a line of its
-/// own. `spell` converts the name of a setting to the spelling that the user knows.
+/// Returns a text that asks the user to make the choices in `open`. The text describes each choice on a new line, with
+/// the name of its setting and the possible values. The function `spell` converts the name of a setting to the spelling
+/// that the user knows.
 pub(in super::super) fn words(
     spell: Spell,
     framework: Option<Framework>,

@@ -34,7 +34,8 @@ pub enum Reset {
     Subtract,
     /// Subtracts the threshold in the next step.
     SubtractLate,
-    /// Subtracts the threshold as snnTorch does with `reset_delay=False`.
+    /// Subtracts the threshold in the same step, as snnTorch does with `reset_delay=False`. If the last potential was
+    /// above the threshold, the neuron fires only if the new potential minus the threshold is above the threshold.
     SubtractNoDelay,
     /// Leaves the potential as it is.
     NoReset,
@@ -70,11 +71,11 @@ pub enum Current {
     Whole,
 }
 
-/// The parts of the rule for decay, firing and reset that the user gave. The other parts are `None` or empty. The
-/// framework may imply some of these.
+/// The parts of the rule for decay, firing and reset that the user gave. Parts that the user did not give are `None` or
+/// empty; the framework may imply some of them.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
-    /// The training framework, which implies some of the other parts.
+    /// The training framework. It may imply parts of the rule that the user did not give.
     pub framework: Option<Framework>,
     /// The ways in which a spike resets its neuron. A single entry applies to all layers. Otherwise, there is
     /// one entry for each layer that fires. Empty if the user gave none.
@@ -83,7 +84,7 @@ pub struct Asked {
     pub fires: Option<Fires>,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Option<Decay>,
-    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
+    /// The value of the synaptic current that a step adds to the potential: before or after the step changes it.
     pub current: Option<Current>,
     /// Duration of a step, in seconds.
     pub dt: Option<f64>,
@@ -100,7 +101,7 @@ pub struct Rule {
     pub fires: Fires,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Decay,
-    /// The value of the synaptic current that a step adds to the potential, such as the current before the step.
+    /// The value of the synaptic current that a step adds to the potential: before or after the step changes it.
     pub current: Current,
     /// Duration of a step, in seconds.
     pub dt: f64,
@@ -118,7 +119,7 @@ pub(super) const PLAIN: Rule = Rule {
     dt: 1.0,
 };
 
-/// Duration of a step, in seconds, that snnTorch and `SpikingJelly` assume by default when they write a file.
+/// Default duration of a step, in seconds, with which snnTorch and `SpikingJelly` write files.
 const WRITTEN: f64 = 1e-4;
 
 /// Properties of a network that decide which parts of a rule must be known.
@@ -213,8 +214,9 @@ impl Asked {
         }
     }
 
-    /// Fills in, for a chip, parts that neither the user nor the framework gives: neurons fire above the threshold,
-    /// decay by [`Decay::Euler`] and add [`Current::New`], and a step lasts `seconds`. Leaves the reset open.
+    /// Fills in the parts of the rule that neither the user nor the framework gives, for a network on a chip. Neurons
+    /// then fire above the threshold, decay by [`Decay::Euler`] and add [`Current::New`], and a step lasts `seconds`.
+    /// Leaves the reset open.
     pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Self {

@@ -2,29 +2,56 @@
 
 use super::super::chip::{Remarks, lines, list};
 use super::Quantised;
-use super::quantise::FIRED;
+use super::quantise::{FIRED, Tick};
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 
 pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
     let (inputs, count, outputs) = (network.inputs(), network.neurons(), network.outputs());
     let (source, meaning, micros) = (&remarks.source, &remarks.inputs, remarks.micros(1));
     let layers = list(network.layers.iter().map(|(name, neurons)| format!("{neurons} ({name})")));
-    let bias = network.bias.map_or(String::new(), |bias| {
-        format!(
-            "\n/// The input that carries the bias: it must fire in every step, like the other inputs.\npub const BIAS: u8 = {bias};\n"
-        )
-    });
+    let ticks = network.ticks.len();
+    let gates = |which: fn(&Tick) -> &Vec<usize>| {
+        list(network.ticks.iter().map(|tick| format!("&[{}]", list(which(tick).iter()))))
+    };
+    let bias = match &network.ticks[..] {
+        [tick] => tick.always.first().map_or(String::new(), |bias| {
+            format!(
+                "\n/// The input that carries the bias: it must fire in every step, like the other inputs.\npub const BIAS: u8 = {bias};\n"
+            )
+        }),
+        _ => format!(
+            "
+/// Number of ticks in a step. The network's own inputs fire before the first tick of a step.
+pub const TICKS: usize = {ticks};
+
+/// For each tick of a step, additional inputs that fire before this tick: biases, and gates. A gate is an input that
+/// lowers the potentials of neurons, so that they do not fire at some ticks.
+pub static ALWAYS: [&[u8]; TICKS] = [{}];
+
+/// For each tick of a step, additional inputs that fire before this tick: gates that raise neurons again. In the first
+/// step, only the gates of the last tick fire.
+pub static RAISES: [&[u8]; TICKS] = [{}];
+",
+            gates(|tick| &tick.always),
+            gates(|tick| &tick.raises)
+        ),
+    };
+    let age = if ticks == 1 { "a step" } else { "a tick" };
     let answer = match network.unit {
         Some(unit) => format!(
             "/// The value of 1 in an answer, in the units of the trained network.\npub const UNIT: f32 = {:?};",
             unit as f32
         ),
         None => format!(
-            "/// The bit of an answer that says whether the output's neuron fired; each lower bit is a step older.
+            "/// The bit of an answer that says whether the output's neuron fired; each lower bit is {age} older.
 pub const FIRED: u32 = {FIRED};"
         ),
     };
     let late = network.late();
+    let (unit, step) = match ticks {
+        1 => ("steps", "A step is a tick"),
+        _ => ("ticks", "A step has `TICKS` ticks"),
+    };
     let pairs = lines(network.pairs.iter().map(|ReckOnPair { keep, threshold }| {
         format!("ReckOnPair {{ keep: {keep}, threshold: {threshold} }}")
     }));
@@ -38,8 +65,8 @@ pub const FIRED: u32 = {FIRED};"
 
 use spikewire_chips::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
 {bias}
-/// Delay of the chip's answers, in steps: an answer shows the effect of the inputs of `LATE` steps before.
-/// A step is a tick{micros}.
+/// Delay of the chip's answers, in {unit}: an answer shows the effect of the inputs of `LATE` {unit} before.
+/// {step}{micros}.
 pub const LATE: usize = {late};
 
 {answer}

@@ -5,8 +5,10 @@ use crate::Spot;
 use crate::network::fault::{FitKind, Result, ensure};
 
 const NEURONS: usize = 256;
-const INPUTS: usize = 256;
 const OUTPUTS: usize = 16;
+/// Largest difference between the decay factors of two neurons that may share a leak. A step multiplies a neuron's
+/// potential by its decay factor.
+const SAME: f64 = 1e-4;
 
 /// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which
 /// shares a leak and a threshold. The network's neurons in a pair therefore belong to the same layer, and their trained
@@ -14,7 +16,8 @@ const OUTPUTS: usize = 16;
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
-    /// that stays free because a layer has an odd number of neurons.
+    /// that stays free. One neuron of a pair stays free if a layer has an odd number of neurons, or if no other neuron
+    /// of the layer has a similar leak.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
     /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
     by_layer: Vec<Vec<usize>>,
@@ -25,11 +28,23 @@ fn part(layer: &str) -> Spot {
 }
 
 impl Places {
+    /// Number of the chip's inputs.
+    pub(super) const INPUTS: usize = 256;
+
     /// Assigns all neurons of a network to the chip.
     ///
     /// # Errors
     /// Returns an error if the chip has too few neurons, inputs or outputs.
     pub(super) fn new(trained: &Trained, has_bias: bool) -> Result<Self> {
+        // Neurons of different leaks get a pair each, unless the chip is too small for that.
+        let apart = Self::placed(trained, has_bias, SAME);
+        if apart.is_ok() { apart } else { Self::placed(trained, has_bias, f64::INFINITY) }
+    }
+
+    /// Assigns all neurons of a network to the chip. `most` limits which neurons of a layer form a pair: both keep a
+    /// share of their potential in a step, and these shares differ by at most `most`. `has_bias` says whether the bias
+    /// needs an input.
+    fn placed(trained: &Trained, has_bias: bool, most: f64) -> Result<Self> {
         let mut neurons = Vec::new();
         let mut by_layer = Vec::new();
         for (at, layer) in trained.layers.iter().enumerate() {
@@ -41,7 +56,13 @@ impl Places {
                 neurons.push(None);
             }
             let mut own = vec![0; order.len()];
+            let mut last = 0.0;
             for neuron in order {
+                let keep = layer.neurons[neuron].keep;
+                if !neurons.len().is_multiple_of(2) && keep - last > most {
+                    neurons.push(None);
+                }
+                last = keep;
                 own[neuron] = neurons.len();
                 neurons.push(Some((at, neuron)));
             }
@@ -51,8 +72,8 @@ impl Places {
             by_layer.push(own);
         }
         let inputs = trained.inputs() + usize::from(has_bias);
-        let kind = || FitKind::Inputs { most: INPUTS, inputs, has_bias };
-        ensure!(inputs <= INPUTS, kind().at(part(&trained.layers[0].name)));
+        let kind = || FitKind::Inputs { most: Self::INPUTS, inputs, has_bias };
+        ensure!(inputs <= Self::INPUTS, kind().at(part(&trained.layers[0].name)));
         let (name, outputs) = match (&trained.readout, trained.layers.last()) {
             (Some(readout), _) => (readout.name.as_str(), readout.weights.len()),
             (None, Some(layer)) => (layer.name.as_str(), layer.neurons.len()),

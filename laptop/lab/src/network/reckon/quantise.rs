@@ -1,4 +1,4 @@
-//! Quantises a network from double precision to the integers of `ReckOn`.
+//! Quantises a network from double precision to the integers of the chip `ReckOn`.
 
 use super::super::trained::{Layer, Neuron, Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
@@ -10,12 +10,20 @@ use rayon::prelude::*;
 use spikewire_chips::{DescribeReckOn, ReckOnPair, ReckOnShared};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The integer that stands for a factor of 1, by which a step multiplies a neuron's potential.
+/// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
+/// factor.
 const KEEP: f64 = 32_768.0;
-/// The integer that stands for a factor of 1, by which a step multiplies an output's potential.
+/// The integer that stands for a decay factor of 1 of an output. Each tick of the chip multiplies the output's
+/// potential by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
-/// Smallest factor by which a step can multiply the potential of the chip's neurons.
+/// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
+/// more ticks of the chip.
 const LEAST_KEEP: f64 = 0.875;
+/// Maximum number of the chip's ticks that one step of the network takes.
+const MOST_TICKS: u32 = 16;
+/// Safety factor of gates: inputs that lower a neuron so that it does not fire. A gate lowers the neuron by this factor
+/// times the amount that the recording needs.
+const SPARE: f64 = 1.5;
 const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
@@ -25,11 +33,12 @@ const ROOM: f64 = 0.8 * 32_767.0;
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
 /// Number of left shifts that the chip offers for weights: 0 to 7.
 const SHIFTS: u8 = 8;
-/// Weight, left shift and decay factor of an output that reports the spikes of one neuron. Each step halves the
-/// output's potential, so that the potential's bits say in which of the last steps the neuron fired.
+/// Weight, left shift and decay factor of an output that shows the spikes of one neuron. A decay factor of 64 stands
+/// for 1/2: each tick of the chip halves the output's potential. The bits of the potential therefore show in which of
+/// the last ticks the neuron fired.
 const FOLLOWS: (i8, u8, u8) = (64, 7, 64);
-/// For an output that reports the spikes of one neuron: the bit of its potential that is 1 if the neuron fired in the
-/// latest step.
+/// Position of the bit that tells whether a neuron fired in the latest step. The bit belongs to the potential of the
+/// output that reports the neuron's spikes. Bit 0 is the lowest.
 pub(super) const FIRED: u32 = 12;
 
 /// A network in the integers of `ReckOn`.
@@ -45,20 +54,39 @@ pub(super) struct Quantised {
     /// The weights of outputs: one row for each neuron, with one weight for each output.
     pub(super) outputs: Vec<Vec<i8>>,
     pub(super) shared: ReckOnShared,
-    /// Index of the input that carries the bias. This input must fire in every step. `None` if the network has no bias.
-    pub(super) bias: Option<usize>,
-    /// For each layer: its name and its number of neurons.
+    /// The ticks of a step. Each lists the inputs that fire before the tick in addition to the network's own inputs.
+    pub(super) ticks: Vec<Tick>,
+    /// For each layer, its name and its number of neurons.
     pub(super) layers: Vec<(String, usize)>,
-    /// Value of an output's potential of 1 on the chip, in the units of the trained network; `None` if the outputs
-    /// report the spikes of neurons.
+    /// Factor that converts an output's potential on the chip to the units of the trained network. `None` if the
+    /// outputs report the spikes of neurons.
     pub(super) unit: Option<f64>,
-    /// For each layer, how rounding changed its weights. If the outputs' weights were trained, the last entry is for
-    /// these weights.
+    /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
+    /// weights of the outputs.
     pub(super) changes: Vec<Change>,
-    /// Differences between the leaks on the chip and the trained leaks. The leaks differ because two neurons of a pair
-    /// share one, and all outputs share one. The first figure is the number of neurons and outputs whose leak differs.
-    /// The second figure is the largest difference between a decay factor on the chip and the trained factor.
+    /// Two figures about the differences between the leaks on the chip and the trained leaks. The first is the number
+    /// of neurons and outputs whose leak differs. The second is the largest difference between a decay factor on the
+    /// chip and the trained factor. Leaks differ because the two neurons of a pair have a common leak on the chip, and
+    /// all outputs have a common leak.
     pub(super) shared_keeps: (usize, f64),
+}
+
+/// A tick of a step. At each tick, the chip's neurons leak and compare their potentials with their thresholds.
+///
+/// A step has several ticks if the trained neurons leak more in a step than the chip's neurons can leak in a tick. The
+/// network's own inputs fire before the first tick of the step. Layer `n` is to fire only at tick `n`, modulo the
+/// number of ticks in a step.
+///
+/// If spikes subtract the threshold or act on their own layer, *gates* keep the layer from firing at other ticks. Gates
+/// are additional inputs. Some of them lower all neurons of the layer after the tick at which the layer may fire. The
+/// others raise the neurons again before the next tick at which the layer may fire.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tick {
+    /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
+    pub(super) always: Vec<usize>,
+    /// Numbers of the gates that raise neurons before this tick. In the first step, they fire only if this is the last
+    /// tick of the step, because the neurons of the other ticks have not been lowered yet.
+    pub(super) raises: Vec<usize>,
 }
 
 /// How rounding changed the weights of a layer, or those of the outputs.
@@ -82,7 +110,8 @@ impl Change {
         if weights > 0.0 { (changes / weights).sqrt() } else { 0.0 }
     }
 
-    /// Rounds `weight * scale` to a weight of the chip, and adds the change of the weight to these statistics.
+    /// Rounds `weight * scale` to an integer, clips it to the range of the chip's weights, and returns it. Adds the
+    /// weight and its change to the statistics in `self`.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let rounded = (weight * scale).round();
         let held = rounded.clamp(-LARGEST - 1.0, LARGEST);
@@ -102,13 +131,16 @@ struct Source {
     layer: usize,
     neuron: usize,
     keep: f64,
-    /// The weight of each input; then the bias, if the network has a bias.
+    /// The weight of each input.
     inputs: Vec<f64>,
+    bias: f64,
+    /// Amount by which gates lower the neuron; 0 if the neuron needs no gates. Gates are inputs that keep the neuron
+    /// from firing at some ticks.
+    gate: f64,
     /// For each neuron that sends spikes to this one: the number of the chip's neuron that holds the sender, and the
     /// weight.
     recurrent: Vec<(usize, f64)>,
-    has_bias: bool,
-    /// Largest absolute potential that the neuron reaches in double precision.
+    /// Largest absolute potential that the neuron reaches in double precision, plus the amount [`gate`](Self::gate).
     peak: f64,
 }
 
@@ -119,15 +151,15 @@ fn largest(weights: impl Iterator<Item = f64>) -> f64 {
 impl Source {
     fn largest(&self) -> [f64; 2] {
         [
-            largest(self.inputs.iter().copied()),
+            largest(self.inputs.iter().copied().chain([self.bias])),
             largest(self.recurrent.iter().map(|(_, weight)| *weight)),
         ]
     }
 }
 
-/// Returns the scale of a pair of neurons: the largest factor by which the pair's weights and potentials can be
-/// multiplied so that all of them fit the chip. `shifts` are the chip's left shifts of input weights and of weights
-/// between neurons.
+/// Returns the largest factor by which the weights and potentials of a pair can be multiplied so that all of them fit
+/// the chip. A pair is two neurons of the chip that share a leak and a threshold. `shifts` has two entries: the chip's
+/// left shift of input weights, and its left shift of weights between neurons.
 fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let room = largest(pair.iter().map(|source| source.peak.max(1.0)));
     let of_kind = |kind: usize| {
@@ -138,14 +170,15 @@ fn scale(pair: &[Source], shifts: [u8; 2]) -> f64 {
 }
 
 /// Returns a measure of how much rounding changes a pair: two neurons of the chip that share a leak and a threshold.
-/// The measure sums the squared changes of the weights and the squared losses of potential. A neuron loses potential
-/// because the chip rounds each leak.
+/// The measure is the sum of the squared changes of all weights, plus the squared loss of potential of each neuron. A
+/// neuron loses potential because the chip rounds each leak. `shifts` has the same meaning as for [`scale`].
 fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
     let scale = scale(pair, shifts);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
     let squared = |weight: f64, scale: f64| ((weight * scale).round() / scale - weight).powi(2);
     let of_source = |source: &Source| {
-        let inputs: f64 = source.inputs.iter().map(|&weight| squared(weight, inputs)).sum();
+        let inputs: f64 =
+            source.inputs.iter().chain([&source.bias]).map(|&weight| squared(weight, inputs)).sum();
         let own: f64 = source.recurrent.iter().map(|&(_, weight)| squared(weight, recurrent)).sum();
         let lost = 0.5 / (1.0 - source.keep).max(0.01) / scale;
         inputs + own + lost * lost
@@ -176,14 +209,13 @@ pub(super) fn quantise(
     let mut neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
     ensure!(neurons.all(|neuron| neuron.leak == 0.0), FitKind::LeakByAmount { owner: "ReckOn's" });
     let at = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
-    let peaks = peaks(trained, inputs, fired);
+    let ticks = ticks(trained);
+    let original =
+        Recorded { trained, places: &places, ticks, peaks: peaks(trained, inputs, fired), fired };
     let pairs: Vec<Vec<Source>> = places
         .pairs()
         .map(|pair| {
-            let of = |(layer, neuron): (usize, usize)| {
-                source(trained, &places, has_bias, layer, neuron, peaks[layer][neuron])
-            };
-            pair.into_iter().map(of).collect()
+            pair.into_iter().map(|(layer, neuron)| original.source(layer, neuron)).collect()
         })
         .collect();
     let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
@@ -196,7 +228,7 @@ pub(super) fn quantise(
     let done = AtomicUsize::new(0);
     let total: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
     let chosen = pairs.par_iter().map(|pair| {
-        let keep = mean_keep(pair);
+        let keep = mean_keep(pair, ticks);
         let candidates = SCALES.map(|part| part * scale(pair, shifts));
         let distance = |scale: f64| -> f64 {
             let of = |source: &Source| {
@@ -205,7 +237,7 @@ pub(super) fn quantise(
                     keep,
                     scale,
                     shifts,
-                    Firing { resets_to_zero, fires: at },
+                    Rule { ticks, resets_to_zero, fires: at },
                     &places,
                 )
                 .distance(
@@ -229,11 +261,11 @@ pub(super) fn quantise(
     let count = places.neurons.len();
     let mut network = Quantised {
         pairs: Vec::new(),
-        inputs: vec![vec![0; count]; trained.inputs() + usize::from(has_bias)],
+        inputs: vec![vec![0; count]; trained.inputs()],
         recurrent: vec![vec![0; count]; count],
         outputs: Vec::new(),
         shared: ReckOnShared { shifts: [shifts[0], shifts[1], 0], keep: 0, resets_to_zero },
-        bias: has_bias.then(|| trained.inputs()),
+        ticks: vec![Tick::default(); ticks],
         layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
         unit: None,
         changes: trained
@@ -248,9 +280,13 @@ pub(super) fn quantise(
         network.pairs.push(ReckOnPair { keep, threshold: fires_at(scale, at) as i16 });
         for source in pair {
             network.put(source, scale, shifts);
-            network.tell_keep(source.keep, f64::from(keep) / KEEP, 1e-4);
+            network.tell_keep(source.keep, (f64::from(keep) / KEEP).powi(ticks as i32), 1e-4);
         }
     }
+    network.put_bias(&pairs, &chosen, shifts[0]);
+    network.put_gates(&pairs, &chosen, shifts[0]);
+    let (inputs, most) = (network.inputs.len(), Places::INPUTS);
+    ensure!(inputs <= most, FitKind::Inputs { most, inputs, has_bias });
     match &trained.readout {
         Some(readout) => network.read_out(readout, &trained.potentials(fired))?,
         None => network.follow(trained.layers.len() - 1),
@@ -258,38 +294,103 @@ pub(super) fn quantise(
     Ok(network)
 }
 
-fn mean_keep(pair: &[Source]) -> u16 {
-    let mean = pair.iter().map(|source| source.keep).sum::<f64>() / pair.len().max(1) as f64;
-    (mean.max(LEAST_KEEP) * KEEP).round() as u16
+/// Returns the number of ticks in a step: the smallest number of ticks, up to [`MOST_TICKS`], in which a neuron of the
+/// chip can leak as much as the network's neurons leak in a step.
+fn ticks(trained: &Trained) -> usize {
+    let neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
+    let least = neurons.map(|neuron| neuron.keep).fold(1.0, f64::min);
+    let most = LEAST_KEEP.powi(MOST_TICKS as i32);
+    (least.max(most).ln() / LEAST_KEEP.ln() - 1e-9).ceil().max(1.0) as usize
 }
 
-fn source(
-    trained: &Trained,
-    places: &Places,
-    has_bias: bool,
-    at: usize,
-    neuron: usize,
-    peak: f64,
-) -> Source {
-    let layer = &trained.layers[at];
-    let Neuron { keep, threshold, .. } = layer.neurons[neuron];
-    let part = |weight: &f64| weight / threshold;
-    let row = layer.weights[neuron].iter().map(part);
-    let mut inputs = vec![0.0; trained.inputs()];
-    let mut recurrent: Vec<(usize, f64)> = Vec::new();
-    match at.checked_sub(1) {
-        None => inputs = row.collect(),
-        Some(before) => {
-            recurrent
-                .extend(row.enumerate().map(|(from, weight)| (places.of(before, from), weight)));
+/// Returns the share of its potential that a neuron keeps in one tick, at least [`LEAST_KEEP`]. `keep` is the share
+/// that the neuron keeps in a step, and `ticks` is the number of ticks in a step.
+fn keep_of(keep: f64, ticks: usize) -> f64 {
+    keep.powf(1.0 / ticks as f64).max(LEAST_KEEP)
+}
+
+fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
+    let kept = pair.iter().map(|source| keep_of(source.keep, ticks));
+    (kept.sum::<f64>() / pair.len().max(1) as f64 * KEEP).round() as u16
+}
+
+/// The network in double precision, and what it did in the recording.
+struct Recorded<'a> {
+    trained: &'a Trained,
+    places: &'a Places,
+    ticks: usize,
+    /// Largest absolute potential of each neuron, by layer.
+    peaks: Vec<Vec<f64>>,
+    fired: &'a [Trains],
+}
+
+impl Recorded<'_> {
+    /// Returns neuron `neuron` of layer `at`, and the weights that lead to it.
+    fn source(&self, at: usize, neuron: usize) -> Source {
+        let Self { trained, places, ticks, .. } = *self;
+        let layer = &trained.layers[at];
+        let Neuron { keep, threshold, .. } = layer.neurons[neuron];
+        let part = |weight: &f64| weight / threshold;
+        let row = layer.weights[neuron].iter().map(part);
+        let mut inputs = vec![0.0; trained.inputs()];
+        let mut recurrent: Vec<(usize, f64)> = Vec::new();
+        match at.checked_sub(1) {
+            None => inputs = row.collect(),
+            Some(before) => {
+                let of = |(from, weight)| (places.of(before, from), weight);
+                recurrent.extend(row.enumerate().map(of));
+            }
         }
+        // The layer's own spikes, and a reset that subtracts, act at the tick after the layer has compared. Until it
+        // compares again, less is left of them than in training, where they act when the neuron compares.
+        let kept = keep_of(keep, ticks);
+        let grown = kept.powi(1 - ticks as i32);
+        let mut own: Vec<f64> =
+            layer.recurrent.get(neuron).into_iter().flatten().map(part).collect();
+        own.resize(layer.neurons.len(), 0.0);
+        for weight in &mut own {
+            *weight *= grown;
+        }
+        if layer.reset.subtracts() {
+            own[neuron] += 1.0 - grown;
+        }
+        let peak = self.peaks[at][neuron] / threshold;
+        let gate = if ticks > 1 && own.iter().any(|weight| *weight != 0.0) {
+            let sum = |fired: &Vec<u16>| -> f64 {
+                fired.iter().map(|&from| own[usize::from(from)]).sum()
+            };
+            let added = self.fired[at].iter().map(sum).fold(0.0, f64::max);
+            let left = if layer.reset.subtracts() { (peak * kept - 1.0).max(kept) } else { kept };
+            SPARE * (left + added)
+        } else {
+            0.0
+        };
+        let own = own.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0);
+        recurrent.extend(own.map(|(from, weight)| (places.of(at, from), weight)));
+        let bias = layer.bias[neuron] / threshold;
+        Source { layer: at, neuron, keep, inputs, bias, gate, recurrent, peak: peak + gate }
     }
-    let own = layer.recurrent.get(neuron).into_iter().flatten().map(part);
-    recurrent.extend(own.enumerate().map(|(from, weight)| (places.of(at, from), weight)));
-    if has_bias {
-        inputs.push(layer.bias[neuron] / threshold);
+}
+
+/// Returns two amounts: the amount by which gates lower a neuron, and the amount by which they raise the neuron again.
+/// Gates are inputs that keep the neuron from firing before its layer compares again. Between the lowering and the
+/// raising, the neuron leaks in `ticks - 1` ticks. Only the remainder of the first amount must therefore be raised.
+///
+/// Both amounts are multiples of `1 << shift`. The first is at least `gate`, and is chosen so that its remainder is as
+/// near as possible to such a multiple.
+fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
+    if gate == 0.0 {
+        return (0, 0);
     }
-    Source { layer: at, neuron, keep, inputs, recurrent, has_bias, peak: peak / threshold }
+    let unit = 1 << shift;
+    let least = (gate / f64::from(unit)).ceil() as i32;
+    let left = |lowered: i32| {
+        (1..ticks).fold(-lowered * unit, |potential, _| (potential * i32::from(keep)) >> 15)
+    };
+    let raised = |lowered: i32| (f64::from(-left(lowered)) / f64::from(unit)).round() as i32 * unit;
+    let wrong = |lowered: &i32| (left(*lowered) + raised(*lowered)).abs();
+    let lowered = (least..=least + least / 4).min_by_key(wrong).unwrap_or(least);
+    (lowered * unit, raised(lowered))
 }
 
 /// Returns the largest absolute potential that each neuron reaches in double precision, by layer and neuron.
@@ -303,43 +404,44 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
     trained.layers.iter().zip(before).map(of_layer).collect()
 }
 
-/// The spikes that act on a layer in a step.
+/// The spikes that act on a layer in a step, and the spikes that the layer fires in the step.
 struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
-    /// Neurons that fire, each as layer and index. Neurons of the layer before fire in the same step, neurons of the
-    /// layer itself in the step before.
-    neurons: Vec<(usize, usize)>,
+    /// Spikes of the preceding layer. Each gives a neuron by the index of its layer and by its index in the layer.
+    before: Vec<(usize, usize)>,
+    /// Neurons of the layer itself that fire in the step. Their spikes act one tick later.
+    own: Vec<(usize, usize)>,
 }
 
 /// Returns the spikes that act on each layer in each step, if all neurons fire as in double precision.
 fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive>> {
-    let of_layer = |(at, layer): (usize, &Layer)| {
+    let of_layer = |at: usize| {
+        let spikes = |layer: usize, step: usize| {
+            fired[layer][step].iter().map(move |&neuron| (layer, neuron.into())).collect()
+        };
         let of_step = |step: usize| {
-            let mut drive = Drive { inputs: vec![], neurons: vec![] };
+            let mut drive = Drive { inputs: vec![], before: vec![], own: spikes(at, step) };
             match at.checked_sub(1) {
                 None => {
                     drive.inputs.clone_from(&inputs[step]);
                     drive.inputs.sort_unstable();
                     drive.inputs.dedup();
                 }
-                Some(before) => drive
-                    .neurons
-                    .extend(fired[before][step].iter().map(|&neuron| (before, neuron.into()))),
-            }
-            if let (Some(last), false) = (step.checked_sub(1), layer.recurrent.is_empty()) {
-                drive.neurons.extend(fired[at][last].iter().map(|&neuron| (at, neuron.into())));
+                Some(before) => drive.before = spikes(before, step),
             }
             drive
         };
         (0..inputs.len()).map(of_step).collect()
     };
-    trained.layers.iter().enumerate().map(of_layer).collect()
+    (0..trained.layers.len()).map(of_layer).collect()
 }
 
 /// The rule by which all neurons of the chip fire and reset.
 #[derive(Clone, Copy)]
-struct Firing {
+struct Rule {
+    /// Number of ticks in a step.
+    ticks: usize,
     resets_to_zero: bool,
     fires: Fires,
 }
@@ -351,7 +453,10 @@ struct Held<'a> {
     inputs: Vec<i32>,
     recurrent: Vec<i32>,
     bias: i32,
-    resets_to_zero: bool,
+    /// Amounts by which gates lower and raise the neuron. Gates are inputs that keep the neuron from firing before its
+    /// layer compares again.
+    gates: (i32, i32),
+    rule: Rule,
     places: &'a Places,
 }
 
@@ -361,7 +466,7 @@ impl<'a> Held<'a> {
         keep: u16,
         scale: f64,
         shifts: [u8; 2],
-        rule: Firing,
+        rule: Rule,
         places: &'a Places,
     ) -> Self {
         let mut change = Change::default();
@@ -374,14 +479,15 @@ impl<'a> Held<'a> {
         for &(from, weight) in &source.recurrent {
             recurrent[from] = held(weight, shifts[1]);
         }
-        let bias = inputs.last().copied().filter(|_| source.has_bias).unwrap_or(0);
+        let bias = held(source.bias, shifts[0]);
         Self {
             keep: keep.into(),
             threshold: fires_at(scale, rule.fires) as i32,
             inputs,
             recurrent,
             bias,
-            resets_to_zero: rule.resets_to_zero,
+            gates: gates(source.gate * scale, keep, rule.ticks, shifts[0]),
+            rule,
             places,
         }
     }
@@ -390,30 +496,113 @@ impl<'a> Held<'a> {
     /// the neuron with index `neuron`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
-        let mut is_over = false;
+        let (mut is_over, mut raised) = (false, 0);
+        let mut own = 0;
         for (drive, meant) in drives.iter().zip(fired) {
-            let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
-            let own = drive.neurons.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]);
-            let added: i32 = first.chain(own).sum();
-            let kept = match (is_over, self.resets_to_zero) {
-                (false, _) => (potential * self.keep) >> 15,
-                (true, true) => 0,
-                (true, false) => ((potential * self.keep) >> 15) - self.threshold,
+            let sum = |spikes: &[(usize, usize)]| -> i32 {
+                spikes.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]).sum()
             };
-            potential = (kept + added + self.bias).clamp(i16::MIN.into(), i16::MAX.into());
-            is_over = potential >= self.threshold;
+            let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
+            let first = first.sum::<i32>() + sum(&drive.before) + self.bias + raised;
+            let mut count = 0;
+            for tick in 0..self.rule.ticks {
+                let added = own
+                    + match tick {
+                        0 => first,
+                        1 => -self.gates.0,
+                        _ => 0,
+                    };
+                own = if tick == 0 { sum(&drive.own) } else { 0 };
+                let kept = match (is_over, self.rule.resets_to_zero) {
+                    (false, _) => (potential * self.keep) >> 15,
+                    (true, true) => 0,
+                    (true, false) => ((potential * self.keep) >> 15) - self.threshold,
+                };
+                potential = (kept + added).clamp(i16::MIN.into(), i16::MAX.into());
+                is_over = potential >= self.threshold;
+                count += usize::from(is_over);
+            }
+            raised = self.gates.1;
             let meant = meant.iter().filter(|fired| usize::from(**fired) == neuron).count();
-            distance.step(is_over.into(), meant);
+            distance.step(count, meant);
         }
         distance.value()
     }
 }
 
 impl Quantised {
-    /// Returns the delay of the chip's outputs: the number of ticks from the inputs of a step to the answer that shows
-    /// their effect.
+    /// Returns the delay of the chip's outputs: the number of ticks between the inputs of a step and the output values
+    /// that show the effect of these inputs.
     pub(super) fn late(&self) -> usize {
         self.layers.len() + 1
+    }
+
+    /// Returns the numbers of the additional inputs that fire before tick `tick` of the recording: biases and gates.
+    /// They fire in addition to the network's own inputs.
+    pub(super) fn beside(&self, tick: usize) -> impl Iterator<Item = usize> {
+        let Tick { always, raises } = &self.ticks[tick % self.ticks.len()];
+        let raises = if tick + 1 >= self.ticks.len() { &raises[..] } else { &[] };
+        always.iter().chain(raises).copied()
+    }
+
+    /// Adds an input, and returns the number of the input. Each entry of `weights` is the number of a neuron of the
+    /// chip, and the weight from the input to this neuron. All other weights of the input are 0.
+    fn add_input(&mut self, weights: impl IntoIterator<Item = (usize, i8)>) -> usize {
+        let mut row = vec![0; self.places.neurons.len()];
+        for (at, weight) in weights {
+            row[at] = weight;
+        }
+        self.inputs.push(row);
+        self.inputs.len() - 1
+    }
+
+    /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of all
+    /// layers that compare at this tick, unless these layers have no bias.
+    fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+        for tick in 0..self.ticks.len() {
+            let mut weights = Vec::new();
+            for (pair, (_, scale)) in pairs.iter().zip(chosen) {
+                let at_tick = |source: &&Source| source.layer % self.ticks.len() == tick;
+                for source in pair.iter().filter(at_tick).filter(|source| source.bias != 0.0) {
+                    let at = self.places.of(source.layer, source.neuron);
+                    let scale = scale / f64::from(1 << shift);
+                    weights.push((at, self.changes[source.layer].weight(source.bias, scale)));
+                }
+            }
+            if !weights.is_empty() {
+                let input = self.add_input(weights);
+                self.ticks[tick].always.push(input);
+            }
+        }
+    }
+
+    /// Adds the gates of each layer: inputs that lower the layer's neurons after they have compared their potentials
+    /// with their thresholds, and raise them when they compare again. The layer then cannot fire at other ticks.
+    fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
+        let ticks = self.ticks.len();
+        for layer in 0..self.layers.len() {
+            let mut rests: Vec<(usize, [i32; 2])> = Vec::new();
+            for (pair, (keep, scale)) in pairs.iter().zip(chosen) {
+                for source in pair.iter().filter(|source| source.layer == layer) {
+                    let (lowered, raised) = gates(source.gate * scale, *keep, ticks, shift);
+                    let at = self.places.of(layer, source.neuron);
+                    rests.push((at, [-lowered >> shift, raised >> shift]));
+                }
+            }
+            for (kind, tick) in [(0, (layer + 1) % ticks), (1, layer % ticks)] {
+                while rests.iter().any(|(_, rest)| rest[kind] != 0) {
+                    let take = |(at, rest): &mut (usize, [i32; 2])| {
+                        let weight = rest[kind].clamp(-128, 127);
+                        rest[kind] -= weight;
+                        (*at, weight as i8)
+                    };
+                    let weights: Vec<(usize, i8)> = rests.iter_mut().map(take).collect();
+                    let input = self.add_input(weights);
+                    let tick = &mut self.ticks[tick];
+                    if kind == 0 { tick.always.push(input) } else { tick.raises.push(input) }
+                }
+            }
+        }
     }
 
     fn put(&mut self, source: &Source, scale: f64, shifts: [u8; 2]) {
@@ -443,16 +632,19 @@ impl Quantised {
     /// spikes.
     ///
     /// # Errors
-    /// Returns an error if the outputs' leak is too strong for the chip. The mean share of the potential that the
-    /// outputs keep in a step then rounds to 0.
+    /// Returns an error if the outputs' leak is too strong for the chip: the decay factor of a tick, averaged over all
+    /// outputs, rounds to 0 in the chip's integers.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>]) -> Result<()> {
         let Readout { name, weights, keep } = readout;
-        let mean = keep.iter().sum::<f64>() / keep.len() as f64;
+        let ticks = self.ticks.len();
+        let kept = keep.iter().map(|keep| keep.powf(1.0 / ticks as f64));
+        let mean = kept.sum::<f64>() / keep.len() as f64;
         let held = (mean * OUTPUT_KEEP).round();
         let kind = FitKind::OutputLeak { keep: mean };
         ensure!(held >= 1.0, kind.at(Spot::Part(name.clone())));
         for &keep in keep {
-            self.tell_keep(keep, held / OUTPUT_KEEP, 0.5 / OUTPUT_KEEP);
+            let held = (held / OUTPUT_KEEP).powi(ticks as i32);
+            self.tell_keep(keep, held, 0.5 * ticks as f64 / OUTPUT_KEEP);
         }
         let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
         let room = ROOM / largest(potentials.iter().flatten().copied()).max(most);

@@ -13,12 +13,10 @@ type Chip = ReckOn<Spi, Port>;
 /// Number of the chip's clock cycles in one SPI clock cycle.
 const RATIO: u32 = 10;
 
-/// Loads the network into the chip's model and runs the network on all inputs. All steps belong to one sample of
-/// the chip. Each step sends its input spikes, the bias and a tick.
-///
-/// On the chip, the first layer fires at the tick of the next step. Each further layer fires one tick after the layer
-/// before. The outputs show the last layer's spikes one tick after that layer fires. These delays are removed from the
-/// result: as in double precision, a spike passes through all layers within one step.
+/// Loads the network into the chip's model, and runs the network on all inputs as one sample. Each step sends its
+/// inputs and the bias, and then one or several ticks. On the chip, a spike needs one tick from each layer to the next,
+/// and one more tick from the last layer to the outputs. The result does not contain these delays: as in double
+/// precision, a spike passes through all layers within one step.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.
@@ -43,34 +41,46 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
     let late = network.late();
     board.pins().chip.fired.clear();
     let silent = vec![];
-    for step in 0..inputs.len() + late {
+    let ticks = network.ticks.len();
+    for tick in 0..inputs.len() * ticks + late {
         let before = board.pins().chip.clocks;
-        let mut sent: Vec<u16> = inputs.get(step).unwrap_or(&silent).clone();
-        sent.sort_unstable();
-        let all = sent.len();
-        sent.dedup();
-        ran.lost += (all - sent.len()) as u32;
-        for input in sent.into_iter().chain(network.bias.map(|bias| bias as u16)) {
+        if tick.is_multiple_of(ticks) {
+            let mut sent: Vec<u16> = inputs.get(tick / ticks).unwrap_or(&silent).clone();
+            sent.sort_unstable();
+            let all = sent.len();
+            sent.dedup();
+            ran.lost += (all - sent.len()) as u32;
+            for input in sent {
+                sample.send(input as u8).map_err(refused)?;
+            }
+        }
+        for input in network.beside(tick) {
             sample.send(input as u8).map_err(refused)?;
         }
         let answer = sample.step(ReckOnStep::default()).map_err(refused)?;
         let Some(ReckOnAnswer::Potentials(answer)) = answer else {
             return Err(ModelKind::Answer { answer }.into());
         };
-        if step < inputs.len() {
-            ran.clocks.push(board.pins().chip.clocks - before);
+        let clocks = board.pins().chip.clocks - before;
+        match ran.clocks.last_mut() {
+            Some(step) if !tick.is_multiple_of(ticks) => *step += clocks,
+            _ if tick < inputs.len() * ticks => ran.clocks.push(clocks),
+            _ => {}
         }
         for neuron in std::mem::take(&mut board.pins().chip.fired) {
             let Some((layer, place)) = network.places.neurons[usize::from(neuron)] else {
                 return Err(ModelKind::StrayNeuron { neuron }.into());
             };
-            if let Some(step) = step.checked_sub(layer + 1).filter(|_| layer < read_out)
-                && let Some(step) = ran.fired[layer].get_mut(step)
+            if let Some(tick) = tick.checked_sub(layer + 1).filter(|_| layer < read_out)
+                && let Some(step) = ran.fired[layer].get_mut(tick / ticks)
             {
                 step.push(place as u16);
             }
         }
-        let Some(step) = step.checked_sub(late) else { continue };
+        let Some(tick) = tick.checked_sub(late).filter(|tick| tick.is_multiple_of(ticks)) else {
+            continue;
+        };
+        let step = tick / ticks;
         let outputs = &answer[..network.outputs[0].len()];
         if let Some(unit) = network.unit {
             ran.potentials.push(outputs.iter().map(|&answer| f64::from(answer) * unit).collect());

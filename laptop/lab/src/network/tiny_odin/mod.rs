@@ -7,7 +7,7 @@ mod gated;
 mod quantise;
 mod run;
 
-use super::bring::{Original, figures};
+use super::bring::holds;
 use super::chip::{Chip, Compare, OnChip, Ran, Remarks, Stepped, written};
 use super::costs::Cost;
 use super::{Trained, Trains};
@@ -43,21 +43,24 @@ impl Chip for TinyOdin {
         let found = inputs[..part].to_vec();
         let found_fired: Vec<Trains> = fired.iter().map(|all| all[..part].to_vec()).collect();
         let gated = gated::quantise(trained, &found, &found_fired, progress);
-        let mut all: Vec<Box<dyn OnChip>> = Vec::new();
+        let mut all: Vec<(Trains, Box<dyn OnChip>)> = Vec::new();
         for gated in gated {
-            all.push(Box::new(gated));
+            all.push((gated.outputs(inputs), Box::new(gated)));
         }
         if compare.is_none() {
             match quantise(trained, &found, &found_fired, progress) {
-                Ok(plain) => all.push(Box::new(plain)),
+                Ok(plain) => {
+                    let outputs = plain.run(inputs)?.fired.pop().unwrap_or_default();
+                    all.push((outputs, Box::new(plain)));
+                }
                 Err(error) if all.is_empty() => return Err(error),
                 Err(_) => {}
             }
         }
-        let original = Original::of(trained, inputs);
+        let original = fired.last().map_or(&[][..], |fired| &fired[part..]);
         let mut best: Option<(f64, Box<dyn OnChip>)> = None;
-        for network in all {
-            let holds = figures(&original, &*network, inputs, part)?.holds();
+        for (outputs, network) in all {
+            let holds = holds(original, &outputs[part..]);
             if best.as_ref().is_none_or(|(most, _)| holds > *most) {
                 best = Some((holds, network));
             }
@@ -67,8 +70,8 @@ impl Chip for TinyOdin {
     }
 }
 
-/// Share of the recording, from its beginning, on which the search for parameters runs, as numerator and denominator.
-/// The remaining part of the recording is used to compare the networks that were found.
+/// Share of the recording on which the search for parameters runs, as numerator and denominator. This part is the
+/// beginning of the recording. The rest of the recording is used to compare the networks that were found.
 const FOUND: (usize, usize) = (3, 4);
 
 impl OnChip for Quantised {

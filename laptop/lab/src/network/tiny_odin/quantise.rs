@@ -23,10 +23,10 @@ const LARGEST: [f64; 20] = [
 ];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 const CLIMBS: usize = 2;
-/// Leaks to try for a neuron, as multiples of a reference. The reference is the amount that the trained neuron loses
-/// between two leaks of the chip, starting from half its threshold.
+/// Leaks to try for a neuron, as multiples of a reference amount. The reference is the amount that the trained neuron
+/// loses in the time between two leaks of the chip, if its potential starts at half its threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
-/// Maximum number of neurons that the search takes from each layer to compare intervals between leaks.
+/// Maximum number of neurons in each layer on which the intervals between leaks are rated.
 const SURVEYED: usize = 32;
 /// A value that stands for a leak where a function expects a weight. It is below all weights of the chip.
 const LEAK: i8 = i8::MIN;
@@ -56,8 +56,8 @@ pub(super) struct Quantised {
 pub(super) struct ChipLayer {
     /// Name of the layer in the network's file.
     pub name: String,
-    /// Number of inputs of the layer: the network's inputs for the first layer, and the neurons of the layer before for
-    /// others.
+    /// Number of inputs of the layer. For the first layer, this is the number of the network's inputs; for any other
+    /// layer, the number of neurons of the layer before.
     inputs: usize,
     pub neurons: Vec<ChipNeuron>,
 }
@@ -68,7 +68,7 @@ pub(super) struct ChipNeuron {
     /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
     /// neuron of the layer follows.
     pub weights: Vec<i8>,
-    /// Weight that acts in every step.
+    /// Weight that the neuron receives in every step.
     pub bias: i8,
     /// Potential at which the neuron fires.
     pub threshold: u16,
@@ -78,10 +78,10 @@ pub(super) struct ChipNeuron {
     pub clipped: usize,
 }
 
-/// Quantises a network for the chip, layer by layer. Finds for each neuron the scale of its weights, the threshold and
-/// the leak with which its spikes are nearest to those in double precision. The inputs of each further layer are the
-/// spikes of the quantised layer before it, in the chip's order. Calls `progress` with the number of finished searches
-/// (one or more for each neuron) and their total number.
+/// Quantises a network for the chip, layer by layer. Finds, for each neuron, the scale of the weights, the threshold
+/// and the leak that bring the neuron's spikes nearest to those in double precision. The inputs of each further layer
+/// are the spikes of the quantised layer before it, in the order in which the chip fires them. Calls `progress` with
+/// the number of finished searches and the total number of searches. Each neuron takes one or more searches.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip.
@@ -170,7 +170,7 @@ fn check_room(trained: &Trained, has_bias: bool) -> Result<()> {
 }
 
 /// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
-/// the layer's own neurons that fire in the same step follow. They are numbered after the inputs.
+/// the layer's own neurons that fire in the same step follow: neuron 0 has the first number after those of the inputs.
 struct Drive {
     /// For each step, the index in `spikes` just after the step's last spike.
     ends: Vec<usize>,
@@ -207,9 +207,9 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<u16>> {
 
 impl ChipLayer {
     /// Runs the layer as the chip does: all neurons compare their potentials with their thresholds after each spike,
-    /// and the layer's own spikes wait behind earlier spikes. Returns the neurons that fire in each step. In a
-    /// recurrent layer, `own` is the index of the first recurrent weight in [`weights`](ChipNeuron::weights). In other
-    /// layers, `own` is `None`.
+    /// and the spikes of the layer's own neurons wait in a queue. Returns the neurons that fire in each step. `own` is
+    /// the index of the first recurrent weight in [`weights`](ChipNeuron::weights), or `None` if the layer is not
+    /// recurrent. `steps_a_leak` is the number of steps between two leaks.
     fn fired(&self, inputs: &Trains, own: Option<usize>, steps_a_leak: usize) -> Trains {
         let mut potentials = vec![0_i32; self.neurons.len()];
         let mut act = |weight: &dyn Fn(&ChipNeuron) -> i8, out: &mut Vec<u16>| {
@@ -269,8 +269,8 @@ struct Aim<'a> {
 }
 
 /// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
-/// distance between the spikes and the target, and the neuron. The search climbs from the `climbs` best initial
-/// choices.
+/// distance between the spikes and the target, and the neuron. `climbs` is the number of initial choices of parameters
+/// that the search improves; with 0, it only selects the best initial choice.
 fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuron) {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();
@@ -282,8 +282,8 @@ fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuro
     (least, neuron(best))
 }
 
-/// Returns the initial choices of parameters for neuron `at`: several scales of the neuron's weights. Each scale has
-/// its matching threshold, and is combined with several leaks.
+/// Returns the initial choices of parameters for neuron `at`. The choices combine several scales of the neuron's
+/// weights with several leaks. The threshold is multiplied by the same factor as the weights.
 fn choices(layer: &Layer, at: usize, steps_a_leak: usize) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
@@ -470,7 +470,7 @@ mod tests {
     use crate::network::{Fires, Reset};
 
     /// Makes random inputs with at most one spike in a step. If a step had several spikes, the chip's neuron might fire
-    /// at the first one, and the weights of the others would remain in its potential.
+    /// at the first spike. The weights of the other spikes would then remain in the neuron's potential.
     fn some(inputs: u16, steps: u32) -> Trains {
         let fires = |step: u32, input: u16| {
             let mixed = (step * 257 + u32::from(input) * 7919).wrapping_mul(0x9E37_79B9);

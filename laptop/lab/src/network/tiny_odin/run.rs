@@ -57,7 +57,8 @@ pub(super) fn follow(network: &Quantised, steps: &mut Steps<'_>, see: &mut See<'
 }
 
 /// Runs a network of `layers` layers on the inputs of all steps, and returns the results of all steps together.
-/// `follow` runs the network step by step.
+/// `follow` is a function that runs the network step by step. Its first argument gives the inputs of each step. Its
+/// second argument receives the result of each step.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.

@@ -33,7 +33,7 @@ use spikewire_chips::{{Inputs, Steps, StepsLayer, TinyOdinNetwork, TinyOdinNeuro
 #[rustfmt::skip]
 pub static STEPS: Steps = {steps};
 
-/// Neurons in each layer: {layers}. The inputs of the network are the rows that `STEPS` uses.
+/// Neurons in each layer: {layers}. The field `inputs` contains the rows of synapses that `STEPS` uses.
 #[rustfmt::skip]
 pub static NETWORK: TinyOdinNetwork<{rows}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [
@@ -52,13 +52,14 @@ fn steps(steps: &Steps) -> String {
     let layers = list(layers.iter().map(|StepsLayer { neurons, loops }| {
         format!("StepsLayer {{ neurons: {neurons}, loops: {loops} }}")
     }));
+    let rows = list(rows.iter());
     let leaks = list(leaks.iter().map(|turn| format!("&[{}]", list(turn.iter()))));
     let own_leaks = list(own_leaks.iter());
     format!(
         "Steps {{
     inputs: {inputs},
     has_bias: {has_bias},
-    rows: {rows},
+    rows: &[{rows}],
     layers: &[{layers}],
     rungs: {rungs},
     leaks: &[{leaks}],

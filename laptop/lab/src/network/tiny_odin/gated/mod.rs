@@ -9,6 +9,7 @@ mod run;
 mod search;
 mod shape;
 
+use super::super::bring::agreement;
 use super::super::chip::{OnChip, Ran, Remarks, Stepped, written};
 use super::super::costs::Cost;
 use super::super::{Trained, Trains};
@@ -24,11 +25,12 @@ const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
-/// Maximum number of neurons that the search takes from each layer to compare [shapes](Shape).
-const SURVEYED: usize = 8;
-/// Number of [shapes](Shape) with which the whole network is quantised. The best shapes are chosen on a sample of the
-/// network's neurons.
+/// Number of [shapes](Shape) for which the search for parameters is thorough. A rough search with all shapes selects
+/// them.
 const CHOSEN: usize = 2;
+/// Increase in agreement with the original that makes one more event in each step worthwhile. Agreement is the share of
+/// active steps in which the same outputs fire. A step is active if an output fires in either network.
+const PRICE: f64 = 1e-4;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
 #[derive(Clone, Debug)]
@@ -36,7 +38,6 @@ pub(super) struct Gated {
     shape: Shape,
     layers: Vec<GatedLayer>,
     inputs: usize,
-    has_bias: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -49,9 +50,13 @@ struct GatedLayer {
     neurons: Vec<GatedNeuron>,
 }
 
-/// Rates all [shapes](Shape) on a sample of the network's neurons, and quantises the network with each of the best
-/// shapes. Calls `progress` with the number of finished parts of this work and the total number of parts. Returns an
-/// empty list if the chip has no room for any shape.
+/// Quantises the network: first with a rough search for each [shape](Shape), then with a thorough search for the
+/// [`CHOSEN`] shapes that were rated best. The rating is the agreement with the original, minus [`PRICE`] for each
+/// event in a step. Returns the best network of the rough search, then the networks of the thorough search. In the
+/// rough search, the parameters follow almost directly from the trained ones. In the thorough search, the spikes come
+/// nearer to those of the original in this recording. Returns an empty list if the chip has no room for any shape.
+///
+/// Calls `progress` with the number of finished parts of this work and the total number of parts.
 pub(super) fn quantise(
     trained: &Trained,
     inputs: &Trains,
@@ -62,10 +67,6 @@ pub(super) fn quantise(
     if rows_of(trained, has_bias, 1) > ROWS {
         return vec![];
     }
-    let before = || std::iter::once(inputs).chain(fired);
-    let drives: Vec<Drive> = (trained.layers.iter().zip(fired).zip(before()))
-        .map(|((layer, fired), before)| Drive::new(before, layer, fired))
-        .collect();
     let targets: Vec<Vec<Vec<bool>>> = trained
         .layers
         .iter()
@@ -74,41 +75,28 @@ pub(super) fn quantise(
         .collect();
     let (drive, threshold) = sizes(trained, inputs, fired);
     let shapes = shapes(trained, has_bias, drive, threshold);
-    // Rates a shape by some neurons of each layer: the distance of their spikes from the original's, if the spikes that
-    // act on them are the original's.
-    let survey = |shape: &Shape| -> f64 {
-        let mut sum = 0.0;
-        for (at, layer) in trained.layers.iter().enumerate() {
-            let count = layer.neurons.len();
-            let surveyed: Vec<usize> = (0..count).step_by(count.div_ceil(SURVEYED)).collect();
-            let of = |neuron: &usize| {
-                search(
-                    layer,
-                    *neuron,
-                    &Aim { drive: &drives[at], target: &targets[at][*neuron], shape },
-                    0,
-                )
-                .0
-            };
-            let own: Vec<f64> = surveyed.par_iter().map(of).collect();
-            sum += own.iter().sum::<f64>() * count as f64 / surveyed.len().max(1) as f64;
-        }
-        sum
+    let find = |shape, climbs| Gated::find(trained, inputs, &targets, fired, shape, climbs);
+    let rate = |network: &Gated| {
+        let agrees = fired.last().and_then(|fired| agreement(fired, &network.outputs(inputs)));
+        agrees.unwrap_or(1.0) - PRICE * network.shape.events(trained.layers.len()) as f64
     };
     let total = shapes.len() + CHOSEN.min(shapes.len());
-    let mut rated: Vec<(f64, Shape)> = Vec::new();
+    let mut rough: Vec<(f64, Gated)> = Vec::new();
     for shape in shapes {
-        rated.push((survey(&shape), shape));
-        progress(rated.len(), total);
+        let network = find(shape, 0);
+        rough.push((rate(&network), network));
+        progress(rough.len(), total);
     }
-    rated.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-    let surveyed = rated.len();
-    let found = rated.into_iter().take(CHOSEN).enumerate().map(|(at, (_, shape))| {
-        let found = Gated::find(trained, inputs, &targets, fired, shape, has_bias);
-        progress(surveyed + at + 1, total);
+    rough.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+    let tried = rough.len();
+    rough.truncate(CHOSEN);
+    let careful = rough.iter().enumerate().map(|(at, (_, network))| {
+        let found = find(network.shape.clone(), CLIMBS);
+        progress(tried + at + 1, total);
         found
     });
-    found.collect()
+    let careful: Vec<Gated> = careful.collect();
+    rough.into_iter().take(1).map(|(_, network)| network).chain(careful).collect()
 }
 
 /// Returns the largest sum of positive weights that a step adds to a neuron, and the median threshold of the neurons.
@@ -163,30 +151,38 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
 
 impl Gated {
     /// Quantises the network with the shape `shape`, layer by layer. The inputs of each further layer are the spikes of
-    /// the quantised layer before it.
+    /// the quantised layer before it. The search for each neuron climbs from the `climbs` best initial choices.
     fn find(
         trained: &Trained,
         inputs: &Trains,
         targets: &[Vec<Vec<bool>>],
         fired: &[Trains],
         shape: Shape,
-        has_bias: bool,
+        climbs: usize,
     ) -> Self {
-        let mut network = Self { shape, layers: Vec::new(), inputs: trained.inputs(), has_bias };
+        let mut network = Self { shape, layers: Vec::new(), inputs: trained.inputs() };
         let mut before = inputs.clone();
         for (at, layer) in trained.layers.iter().enumerate() {
             let drive = Drive::new(&before, layer, &fired[at]);
             let of = |neuron: usize| {
                 let aim =
                     Aim { drive: &drive, target: &targets[at][neuron], shape: &network.shape };
-                search(layer, neuron, &aim, CLIMBS).1
+                search(layer, neuron, &aim, climbs).1
             };
             let neurons = (0..layer.neurons.len()).into_par_iter().map(of).collect();
             let (name, loops) = (layer.name.clone(), !layer.recurrent.is_empty());
             network.layers.push(GatedLayer { name, inputs: layer.inputs(), loops, neurons });
             before = network.layers[at].run(&network.shape, &before);
         }
+        let mut neurons = network.layers.iter().flat_map(|layer| &layer.neurons);
+        network.shape.has_bias = neurons.any(|neuron| neuron.bias != 0);
         network
+    }
+
+    /// Runs the network in plain arithmetic, and returns the spikes of the last layer.
+    pub(super) fn outputs(&self, inputs: &Trains) -> Trains {
+        let of_layer = |before: Trains, layer: &GatedLayer| layer.run(&self.shape, &before);
+        self.layers.iter().fold(inputs.clone(), of_layer)
     }
 
     fn count(&self) -> usize {
@@ -206,8 +202,8 @@ impl Gated {
         None
     }
 
-    /// Returns two numbers of rows of synapses. The first number counts the rows for inputs, bias and neurons. The
-    /// second number also counts the rows that raise or lower the potentials of whole layers.
+    /// Returns two counts of rows of synapses. The first count includes the rows for inputs, bias and neurons. The
+    /// second count also includes the rows that raise or lower the potentials of whole layers.
     fn rows(&self) -> (u16, u16) {
         self.with_steps(|steps| (steps.first_rise(), steps.all_rows()))
     }
@@ -216,7 +212,7 @@ impl Gated {
     /// documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
         let Some((layer, _, neuron)) = self.at(post) else { return 0 };
-        let rows = usize::from(self.shape.rows);
+        let rows = self.shape.rows.len();
         let mut at = row;
         let mut take = |sources: usize| {
             let found = (at < sources * rows).then_some((at / rows, at % rows));
@@ -229,7 +225,7 @@ impl Gated {
         if let Some((from, row)) = take(self.inputs) {
             return part(neuron.weights.get(from).filter(|_| layer == 0), row);
         }
-        if let Some((_, row)) = take(self.has_bias.into()) {
+        if let Some((_, row)) = take(self.shape.has_bias.into()) {
             return part(Some(&neuron.bias), row);
         }
         for (source, own) in self.layers.iter().enumerate() {
@@ -350,7 +346,8 @@ impl OnChip for Gated {
         let Shape { rows, leaks, .. } = &self.shape;
         let leaks = leaks.iter().map(Vec::len).max().unwrap_or(0);
         let (sources, all) = self.rows();
-        let each = if *rows == 1 { "a row".to_owned() } else { format!("{rows} rows") };
+        let each =
+            if rows.len() == 1 { "a row".to_owned() } else { format!("{} rows", rows.len()) };
         vec![format!(
             "{} of the chip's 256 neurons, {} of its 256 rows: {each} a weight, and {} to compare once a step; {} events \
              a step beside its spikes, {leaks} of them leaks",
@@ -362,8 +359,8 @@ impl OnChip for Gated {
     }
 
     fn costs(&self) -> Vec<Cost> {
-        let bits = Cost::Weights { largest: LARGEST_RUNG * f64::from(self.shape.rows) };
-        if self.shape.spacing == 0 { vec![Cost::Leak, bits] } else { vec![bits] }
+        let bits = Cost::Weights { largest: LARGEST_RUNG * f64::from(self.shape.events_a_spike()) };
+        if self.shape.share.is_none() { vec![Cost::Leak, bits] } else { vec![bits] }
     }
 
     fn loss(&self) -> &'static str {

@@ -7,7 +7,7 @@ use super::shape::Shape;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GatedNeuron {
     /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
-    /// neuron of the layer follows. On the chip, a weight is the sum over several rows of synapses.
+    /// neuron of the layer follows. The chip splits each weight over one or more rows of synapses.
     pub weights: Vec<i16>,
     /// Weight that acts in every step.
     pub bias: i16,
@@ -45,9 +45,29 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
     centre + away.signum() * (away.abs() - by).max(0)
 }
 
+/// Returns the potential after all leaks of `turn`. Each leak moves the potential by at most `leak` towards the leak's
+/// height; the leaks come from the lowest height to the highest. `turn` has one entry for each leak: the number of
+/// events that lower the neurons before the leak. `height` converts an entry to the height of its leak.
+fn leaked(potential: i32, turn: &[u16], leak: i32, height: impl Fn(u16) -> i32) -> i32 {
+    // The leaks below the potential move it down, all but the last of them by the whole leak. When one comes, the leaks
+    // before have moved the potential already.
+    let (mut below, mut end) = (0, turn.len());
+    while below < end {
+        let middle = usize::midpoint(below, end);
+        let is_below = height(turn[middle]) < potential - middle as i32 * leak;
+        (below, end) = if is_below { (middle + 1, end) } else { (below, middle) };
+    }
+    let (downwards, upwards) = turn.split_at(below);
+    let lowered = downwards
+        .last()
+        .map_or(potential, |last| (potential - below as i32 * leak).max(height(*last)));
+    upwards.iter().fold(lowered, |potential, fallen| (potential + leak).min(height(*fallen)))
+}
+
 impl GatedNeuron {
-    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` has one entry for each leak
-    /// that all neurons receive in the step. The entry is the number of events that lower the neurons before this leak.
+    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that act on
+    /// all neurons in the step. The entry for a leak is the number of events in the step that lower the neurons before
+    /// the leak comes.
     #[inline]
     pub(super) fn step(
         &self,
@@ -69,9 +89,7 @@ impl GatedNeuron {
             let again = (threshold + above * rung - 1) / rung.max(1) + 1;
             *potential = if rung > 0 { (beyond / rung % again - above) * rung } else { 0 };
         }
-        for fallen in turn {
-            *potential = towards(*potential, (i32::from(*fallen) - above) * rung, leak);
-        }
+        *potential = leaked(*potential, turn, leak, |fallen| (i32::from(fallen) - above) * rung);
         if fires {
             let centre = (below - i32::from(shape.lift)) * rung;
             *potential = towards(*potential, centre, leak * i32::from(self.own_leaks));
@@ -79,11 +97,15 @@ impl GatedNeuron {
         fires
     }
 
-    /// Returns the part of `weight` that row `row` holds if the weight is split into `rows` rows of synapses.
-    pub(super) fn part(weight: i16, row: usize, rows: u16) -> i8 {
-        let rows = rows as i16;
-        let rest = i16::from((row as i16) < weight.abs() % rows);
-        (weight.signum() * (weight.abs() / rows + rest)) as i8
+    /// Returns the part of `weight` that row `row` holds if the weight is split into rows of synapses. `rows` has the
+    /// number of events that a spike sends on each row. All parts have the sign of the weight.
+    pub(super) fn part(weight: i16, row: usize, rows: &[u16]) -> i8 {
+        let (mut rest, mut part) = (weight, 0);
+        for &times in rows.iter().take(row + 1) {
+            part = (rest / times as i16).clamp(-8, 7);
+            rest -= part * times as i16;
+        }
+        part as i8
     }
 
     /// Returns the neuron's initial potential and threshold on the chip. A rung is an event that raises the potential
@@ -100,13 +122,35 @@ mod tests {
     use super::*;
 
     #[test]
+    fn leaks_of_a_step_act_one_after_the_other() {
+        for (turn, leak) in [(&[0, 3, 5, 8, 8, 9][..], 4), (&[2, 4, 6], 30), (&[5], 2), (&[], 3)] {
+            let height = |fallen: u16| 7 * (i32::from(fallen) - 5);
+            for potential in -90..90 {
+                let each =
+                    turn.iter().fold(potential, |v, fallen| towards(v, height(*fallen), leak));
+                assert_eq!(
+                    leaked(potential, turn, leak, height),
+                    each,
+                    "{turn:?} {leak} {potential}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn rows_add_up_to_their_weight() {
-        for rows in [1, 2, 4, 8] {
-            for weight in -8 * rows as i16..=7 * rows as i16 {
-                let parts = (0..usize::from(rows)).map(|row| GatedNeuron::part(weight, row, rows));
+        for rows in [&[1][..], &[4, 1], &[8, 1], &[8, 8, 1], &[24, 8, 1]] {
+            let sum: u16 = rows.iter().sum();
+            for weight in -8 * sum as i16..=7 * sum as i16 {
+                let parts = (0..rows.len()).map(|row| GatedNeuron::part(weight, row, rows));
                 let parts: Vec<i8> = parts.collect();
                 assert!(parts.iter().all(|part| (-8..=7).contains(part)), "{weight} {parts:?}");
-                assert_eq!(parts.iter().map(|part| i16::from(*part)).sum::<i16>(), weight);
+                let all =
+                    parts.iter().zip(rows).map(|(&part, &times)| i16::from(part) * times as i16);
+                assert_eq!(all.sum::<i16>(), weight, "{parts:?}");
+                assert!(
+                    parts.iter().all(|part| weight == 0 || part * (weight.signum() as i8) >= 0)
+                );
             }
         }
     }

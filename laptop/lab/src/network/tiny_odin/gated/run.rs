@@ -9,8 +9,8 @@ use silicon::Board;
 use spikewire_chips::{Describe, Input, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput};
 
 impl Gated {
-    /// Converts the sequence of events in the network's steps to the driver's form, and calls `see` with this form.
-    /// Returns the result of `see`.
+    /// Describes the sequence of events in a step as [`Steps`], the type that the chip's driver takes. Calls `see` with
+    /// this description, and returns the result of `see`.
     pub(super) fn with_steps<T>(&self, see: impl FnOnce(&Steps) -> T) -> T {
         let layers = self.layers.iter();
         let layers: Vec<StepsLayer> = layers
@@ -21,7 +21,7 @@ impl Gated {
         let own_leaks: Vec<u16> = neurons.map(|neuron| neuron.own_leaks).collect();
         see(&Steps {
             inputs: self.inputs as u16,
-            has_bias: self.has_bias,
+            has_bias: self.shape.has_bias,
             rows: self.shape.rows,
             layers: &layers,
             rungs: self.shape.rungs(),

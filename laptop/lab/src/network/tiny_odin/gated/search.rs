@@ -8,18 +8,20 @@ use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
-/// Values to try for a neuron's largest weight on the chip, divided by the number of rows of synapses over which each
-/// weight is split. A value above 7 clips the largest weights to the chip's range, but rounds the smaller weights more
-/// finely. The last value rounds all weights to 0 if a weight is split over at most 4 rows. The neuron then stays
-/// silent.
+/// Values to try for a neuron's largest weight on the chip, divided by the number of events that a spike sends. A value
+/// above 7 clips the largest weights to the chip's range, but rounds the smaller weights more finely. The last value
+/// rounds all weights to 0 if a spike sends fewer than 5 events. The neuron then stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
 /// Amounts to try first for a rung, an event that raises the neurons' potentials.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
+/// Number of initial choices of a neuron's parameters that a rough search tries, in which no choice is improved. The
+/// choices that change the neuron least are tried. Their result rates a [shape](Shape).
+const RATED: usize = 6;
 
 /// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
-/// the layer's own neurons that fired one step earlier follow. They are numbered after the inputs.
+/// the layer's own neurons that fired one step earlier follow: neuron 0 has the first number after those of the inputs.
 pub(super) struct Drive {
     ends: Vec<usize>,
     spikes: Vec<u16>,
@@ -56,50 +58,57 @@ struct Choice {
     threshold: u16,
     leak: u8,
     rung: u8,
-    /// Number of leaks after a spike, in addition to the number that [`own_leaks`] returns. Negative for fewer leaks.
+    /// Change of the number of leaks that the neuron alone receives after a spike. The number of leaks is the result of
+    /// [`own_leaks`] plus this change.
     more: i16,
+    /// Amount that every step adds to the potential. This amount comes in addition to the trained bias, and to a
+    /// correction for leaks that would otherwise move a potential of 0.
+    bias: i16,
 }
 
 /// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
-/// distance between the spikes and the target, and the neuron. The search climbs from the `climbs` best initial
-/// choices.
+/// distance between the spikes and the target, and the neuron. `climbs` is the number of initial choices of parameters
+/// that the search improves; with 0, it only selects the best initial choice.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
-    let first = choices(layer, at, aim.shape);
+    let mut first = choices(layer, at, aim.shape);
+    if climbs == 0 {
+        first.truncate(RATED);
+    }
     let (least, best) = climb(first, neighbours, distance, climbs);
     (least, made(layer, at, aim.shape, best))
 }
 
-/// Returns the initial choices of parameters for neuron `at`, beginning with those that change the neuron least. If
-/// several choices give the same spikes, the search takes the first one, because the smallest change is the most likely
-/// to suit other recordings.
+/// Returns the initial choices of parameters for neuron `at`. The first choices are those that differ least from the
+/// trained parameters. If several choices give the same spikes, the search takes the first of them, because the
+/// smallest difference is the most likely to suit other recordings.
 fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).chain(&layer.bias[at..=at]);
     let weights: Vec<f64> = weights.copied().collect();
     let largest = weights.iter().fold(0.0_f64, |most, weight| most.max(weight.abs()));
     let Neuron { keep, threshold, leak: amount } = layer.neurons[at];
+    let rungs = if shape.share.is_some() { &RUNGS[..2] } else { &RUNGS };
     let mut choices: Vec<(f64, Choice)> = Vec::new();
     for most in LARGEST {
-        let most = most * f64::from(shape.rows);
+        let most = most * f64::from(shape.events_a_spike());
         let unit = if largest > 0.0 { largest / most } else { threshold / LARGEST_RUNG };
         let threshold = fires_at(threshold / unit, layer.fires);
-        let rounded =
-            weights.iter().map(|weight| ((weight / unit).round() * unit - weight).powi(2));
+        let rounded = weights
+            .iter()
+            .map(|weight| (f64::from(shape.held(weight / unit)) * unit - weight).powi(2));
         let rounded: f64 = rounded.sum();
-        for rung in RUNGS {
+        for &rung in rungs {
             let room = MAX_POTENTIAL - shape.above * u16::from(rung);
             let threshold = threshold.min(room.into()) as u16;
-            // Amount that the original neuron loses in a step at half its threshold; if leaks at several heights
-            // imitate a share, the amount between two of them.
-            let lost = amount / unit
-                + (1.0 - keep) / 2.0
-                    * if shape.spacing == 0 {
-                        threshold.into()
-                    } else {
-                        f64::from(shape.spacing * u16::from(rung))
-                    };
+            // The amount that a leak removes: the one at which the neuron loses its share of a potential or, with less
+            // than two leaks a step, the amount that it loses at half its threshold.
+            let of_share = match shape.share {
+                Some(leaks) => leaks.leak(keep, rung),
+                None => (1.0 - keep) / 2.0 * f64::from(threshold),
+            };
+            let lost = amount / unit + of_share;
             // If no step has leaks for all neurons, only the leaks after a spike remain, which may be as large as
             // possible.
             let leaks = if shape.leaks.is_empty() {
@@ -108,7 +117,7 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
                 [lost.floor(), lost.ceil()].map(|leak| leak.min(MAX_LEAK.into()))
             };
             for leak in leaks.map(|leak| leak as u8) {
-                let choice = Choice { unit, threshold, leak, rung, more: 0 };
+                let choice = Choice { unit, threshold, leak, rung, more: 0, bias: 0 };
                 if choices.iter().all(|(_, other)| *other != choice) {
                     let change = rounded + ((f64::from(leak) - lost) * unit).powi(2);
                     choices.push((change, choice));
@@ -122,7 +131,7 @@ fn choices(layer: &Layer, at: usize, shape: &Shape) -> Vec<Choice> {
 
 impl Choice {
     fn neighbours(self, shape: &Shape) -> Vec<Self> {
-        let Self { unit, threshold, leak, rung, more } = self;
+        let Self { unit, threshold, leak, rung, more, bias } = self;
         let with = |threshold_by: i16, leak_by: i8, rung_by: i8, more_by: i16, unit_by: f64| {
             let rung = rung.saturating_add_signed(rung_by).clamp(1, LARGEST_RUNG as u8);
             let room = MAX_POTENTIAL - shape.above * u16::from(rung);
@@ -132,6 +141,7 @@ impl Choice {
                 leak: leak.saturating_add_signed(leak_by).min(MAX_LEAK),
                 rung,
                 more: more + more_by,
+                bias,
             }
         };
         let wide = (threshold / 16).max(2) as i16;
@@ -153,6 +163,9 @@ impl Choice {
                 with(-1, 1, 0, 0, 1.0),
             ]);
         }
+        if shape.has_bias {
+            all.extend([Self { bias: bias + 1, ..self }, Self { bias: bias - 1, ..self }]);
+        }
         if shape.lift == 0 {
             all.extend([with(0, 0, 0, 1, 1.0), with(0, 0, 0, -1, 1.0), with(0, 0, 0, 4, 1.0)]);
         }
@@ -162,25 +175,26 @@ impl Choice {
 
 /// Returns neuron `at` in the chip's integers, with the parameters in `choice`.
 fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron {
-    let Choice { unit, threshold, leak, rung, more } = choice;
-    let rows = f64::from(shape.rows);
+    let Choice { unit, threshold, leak, rung, more, .. } = choice;
     let mut clipped = 0;
     let mut quantised = |weight: &f64| {
-        let rounded = (weight / unit).round();
-        clipped += usize::from(!(-8.0 * rows..=7.0 * rows).contains(&rounded));
-        rounded.clamp(-8.0 * rows, 7.0 * rows) as i16
+        let held = shape.held(weight / unit);
+        clipped += usize::from(f64::from(held) != (weight / unit).round());
+        held
     };
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights = layer.weights[at].iter().chain(own).map(&mut quantised).collect();
-    let bias = quantised(&layer.bias[at]);
-    let own_leaks =
-        own_leaks(layer, at, shape, choice).saturating_add(more.into()).clamp(0, 255) as u16;
+    let drift = shape.share.map_or(0.0, |leaks| leaks.drift(leak, rung));
+    let bias = quantised(&(layer.bias[at] + (f64::from(choice.bias) - drift) * unit));
+    let own_leaks = own_leaks(layer, at, shape, choice)
+        .saturating_add(more.into())
+        .clamp(0, i32::from(MAX_POTENTIAL)) as u16;
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns the number of leaks that only neuron `at` receives after a spike. If spikes reset the potential to 0, these
-/// leaks bring the potential back to 0 after other events of the step have moved it. If spikes subtract the threshold,
-/// these leaks make up for the difference between the chip's reset and the subtraction.
+/// Returns how many leak events are sent to neuron `at` alone after it has fired. If spikes reset the potential to 0,
+/// later events of the step move the potential, and these leaks bring the potential back to 0. If spikes subtract the
+/// threshold, these leaks make up for the difference between the chip's reset and a subtraction.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {
@@ -197,12 +211,9 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     }
     // After a spike, the whole rungs in the excess over the threshold remain. Leaks before that have acted on it as on
     // a potential far below 0.
-    let late = if layer.reset == Reset::SubtractLate {
-        f64::from(threshold) * (1.0 / keep.max(0.1) - 1.0)
-    } else {
-        0.0
-    };
-    let passed = if shape.spacing > 0 { (1.0 - keep) * above } else { 0.0 };
+    let late =
+        if layer.reset == Reset::SubtractLate { f64::from(threshold) * (1.0 - keep) } else { 0.0 };
+    let passed = if shape.share.is_some() { (1.0 - keep) * above } else { 0.0 };
     ((above - passed + rung / 2.0 - late) / leak).round().max(0.0) as i32
 }
 
