@@ -7,15 +7,16 @@ pub mod costs;
 pub mod emit;
 mod evolution;
 pub mod figures;
+mod guided;
 mod kinds;
 mod listed;
 pub mod problem;
 pub mod report;
 mod request;
-mod screen;
 pub mod search;
 mod space;
 mod strategy;
+mod surrogate;
 pub mod stretch;
 
 pub use bounds::Bound;

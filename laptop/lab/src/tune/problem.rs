@@ -339,7 +339,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Returns the mean square error that counts: that of all samples, or that of the worst flight.
-    fn mean_square(&self, tally: &Tally) -> f64 {
+    pub(super) fn mean_square(&self, tally: &Tally) -> f64 {
         match self.over {
             Over::Mean => tally.squares / tally.samples as f64,
             Over::Worst => tally.worst,

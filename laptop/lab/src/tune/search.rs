@@ -7,7 +7,7 @@
 use super::Bound;
 use super::bounds::bounds;
 use super::problem::{Goal, Problem, Scored, front};
-use super::screen::{Around, Screen};
+use super::guided::Guided;
 use super::space::{Role, Space};
 use super::strategy::Strategy;
 use catalogue::run::{Asked, Piece, Value};
@@ -187,53 +187,17 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Searches settings for a goal in rounds, until `until` settings have been scored in the whole search.
-    ///
-    /// A round first searches on the screen, which is cheaper than all stretches and allows more points than settings
-    /// may be scored. Then the round scores the points that are best on the screen and, if the screen is only a part of
-    /// the stretches, points around the best of these.
+    /// Searches for settings for `goal` until the whole search has scored `until` settings, or no new ones are found.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
-        let mut screen = Screen::new(self.problem, space, goal);
-        let mut best: Option<(Vec<f64>, f64)> = None;
-        let (start, mut before) = (self.found.evaluated, 0);
-        let later = successors(Some(ROUNDS[ROUNDS.len() - 1] * LONGER), |end| Some(end * LONGER));
-        for (end, round) in ROUNDS.into_iter().chain(later).zip(0_u64..) {
-            if self.found.evaluated >= until || self.is_over() {
-                return;
-            }
-            let seed = seed.wrapping_add(round << 32);
-            let (count, last) = (end - before, until.min(start + end));
-            let around = if screen.is_part() { count / 3 } else { 0 };
-            let points = screen.round(seed, count - around, &|| self.is_late());
+        let mut guided = Guided::new(self.problem, space, goal, seed);
+        while self.found.evaluated < until && !self.is_over() {
+            let points = guided.ask(until - self.found.evaluated);
             if points.is_empty() {
-                // Every point of the space was scored.
                 return;
             }
-            for batch in points.chunks(BATCH) {
-                if self.found.evaluated >= last || self.is_over() {
-                    return;
-                }
-                let batch = &batch[..batch.len().min(last - self.found.evaluated)];
-                let options: Vec<Asked> = batch.iter().map(|point| space.options(point)).collect();
-                let scored = self.try_all(&options);
-                screen.compare(scored.iter().flatten());
-                for (point, own) in batch.iter().zip(&scored) {
-                    let value = own.as_ref().map_or(NONE, |own| self.problem.value(goal, own));
-                    if best.as_ref().is_none_or(|(_, least)| value < *least) {
-                        best = Some((point.clone(), value));
-                    }
-                }
-            }
-            if let (Some(from), true) = (&best, around > 0) {
-                let mut search = Around::new(seed, from.clone());
-                while self.found.evaluated < last && !self.is_over() {
-                    let points = search.ask(space, last - self.found.evaluated);
-                    let values = self.tried(space, goal, points);
-                    search.tell(values);
-                }
-                best = Some(search.best);
-            }
-            before = self.found.evaluated - start;
+            let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
+            let scored = self.try_all(&options);
+            guided.tell(points, &scored);
         }
     }
 
