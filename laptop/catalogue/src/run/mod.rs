@@ -18,7 +18,6 @@ mod resolve;
 mod rust;
 mod sample_type;
 mod settings;
-mod sweep;
 mod value;
 mod words;
 
@@ -35,7 +34,6 @@ pub use resolve::{Known, Resolve, missing};
 pub use rust::{Constant, Counted, Rust, lengthened, state};
 pub use sample_type::{Fixed32, SampleType};
 pub use settings::Settings;
-pub use sweep::{LANES, Rule, sweep};
 pub use value::{SET, Value};
 pub use words::{Given, Spell, Spelled, Worded, Words, joined, quoted};
 
@@ -168,13 +166,6 @@ pub trait Build: Entry {
         None
     }
 
-    /// Compares several values of one parameter in one pass over pieces of a signal; returns the spikes and squared
-    /// errors of each. The values are thresholds, or factors of the filter if there is no threshold; that in the
-    /// settings is ignored. `None` if each value would need a pass.
-    fn swept(_: &Settings, _: &[Piece], _: &[f64; LANES]) -> Option<[(usize, f64); LANES]> {
-        None
-    }
-
     /// The scheme as a Rust constant: its type in the crate, the type's further arguments, and its constructor, as
     /// [`Rust::filled`] takes them.
     const CONSTANT: Option<[&str; 3]> = None;
@@ -299,16 +290,6 @@ pub trait RunTime: Sync {
         most: usize,
     ) -> Option<Outcomes>;
 
-    /// Compares several values of one parameter in one pass over pieces of a signal; returns the spikes and squared
-    /// errors of each. The values are thresholds, or factors of the filter if there is no threshold; that in the
-    /// settings is ignored. `None` if each value would need a pass.
-    fn swept(
-        &self,
-        settings: &Settings,
-        pieces: &[Piece],
-        values: &[f64; LANES],
-    ) -> Option<[(usize, f64); LANES]>;
-
     /// Writes the scheme as a Rust constant.
     ///
     /// # Errors
@@ -378,15 +359,6 @@ impl<T: Build + Sync> RunTime for T {
         most: usize,
     ) -> Option<Outcomes> {
         T::outcomes(settings, pieces, range, most)
-    }
-
-    fn swept(
-        &self,
-        settings: &Settings,
-        pieces: &[Piece],
-        values: &[f64; LANES],
-    ) -> Option<[(usize, f64); LANES]> {
-        T::swept(settings, pieces, values)
     }
 
     fn constant(&self, settings: &Settings) -> Result<Constant> {

@@ -88,8 +88,8 @@ pub(crate) struct Tune {
     /// Count the error of the log on which it is largest, instead of the error over all logs
     #[arg(long, help_heading = "Search")]
     worst_flight: bool,
-    /// Stop after this many seconds in total, and keep the best settings so far, which then depend on the machine's
-    /// speed; Ctrl-C stops too
+    /// Stop after this many seconds in total, and keep the best settings found by then. With this limit, the result
+    /// depends on the machine's speed. Ctrl-C stops the search too
     #[arg(long, value_parser = lab::input::above_zero, help_heading = "Search")]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel

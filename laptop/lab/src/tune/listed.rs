@@ -17,9 +17,9 @@ const PASSES: usize = 4_000_000_000;
 /// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
 /// limit keeps a search with a small budget short. In a search with a large budget, [`PASSES`] is the smaller limit.
 const PASSES_A_SETTING: usize = 200_000;
-/// Number of settings below which the budget does not shorten the list.
+/// Minimum number of settings by which the list's length is chosen. A search with fewer settings lists as many outcomes.
 const FEW_SETTINGS: usize = 300;
-/// Number of ranges around good thresholds in which the outcomes are listed again, more finely.
+/// Maximum number of ranges around good thresholds in which the outcomes of further thresholds are listed.
 const NEIGHBOURHOODS: usize = 24;
 /// Number of combinations of integer parameters that are listed before the search checks again whether to stop.
 const COMBINATIONS: usize = 8;
@@ -31,10 +31,11 @@ const MOST_SCORED: usize = 1000;
 type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
-    /// Lists the outcomes of the threshold for every combination of integer parameters, and scores the best of them
-    /// until `until` settings have been scored in the whole search. Returns whether the search is over: false if the
-    /// scheme cannot list its outcomes, if the user fixed a parameter that the list would choose, or if points around
-    /// the best outcomes may be better, because the codec rounds and the list does not.
+    /// Lists the number of spikes and the error at all thresholds, for every combination of integer parameters. Scores
+    /// the best of these outcomes with the codec, until the whole search has scored `until` settings. Returns whether
+    /// the search is over. The search goes on if the scheme cannot list outcomes, if the user fixed the threshold, the
+    /// step, the factor or the start value, or if settings close to the best outcomes may be better, because the codec
+    /// rounds and the list does not.
     pub(super) fn exactly(&mut self, space: &Space, until: usize) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];

@@ -5,7 +5,6 @@ mod bounds;
 mod chance;
 pub mod costs;
 pub mod emit;
-mod evolution;
 pub mod figures;
 mod guided;
 mod kinds;
@@ -16,8 +15,8 @@ mod request;
 pub mod search;
 mod space;
 mod strategy;
-mod surrogate;
 pub mod stretch;
+mod surrogate;
 
 pub use bounds::Bound;
 pub use costs::Costs;

@@ -338,7 +338,7 @@ impl<'a> Problem<'a> {
         excess
     }
 
-    /// Returns the mean square error that counts: that of all samples, or that of the worst flight.
+    /// Returns the mean square error that the search reduces: over all samples, or on the worst flight.
     pub(super) fn mean_square(&self, tally: &Tally) -> f64 {
         match self.over {
             Over::Mean => tally.squares / tally.samples as f64,
@@ -346,8 +346,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Returns the value of scored settings for a goal. A smaller value is better. Settings that break a limit are
-    /// worse than all settings that break none.
+    /// Rates scored settings by how well they reach a goal, and returns the rating. A smaller rating is better.
+    /// Settings that break a limit have larger ratings than all settings that break none.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, .. } = scored.tally;
         let squares = self.mean_square(&scored.tally) * samples as f64;
@@ -388,7 +388,7 @@ impl<'a> Problem<'a> {
 
 /// Smallest result of [`Problem::value`] for settings that break a limit. Settings that break no limit have smaller
 /// results.
-const NOT_ALLOWED: f64 = 1e12;
+pub(super) const NOT_ALLOWED: f64 = 1e12;
 
 /// Returns the largest number of spikes in `samples` samples at which the efficiency is at least `efficiency` percent.
 /// Corrects rounding: the efficiency of a whole number of spikes gives exactly this number again.

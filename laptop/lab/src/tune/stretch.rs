@@ -37,24 +37,6 @@ impl Stretch {
         Self { values, rate: recording.rate, scored, flight: 0 }
     }
 
-    /// Returns the `length` samples around `middle` as a stretch; fewer near an end. Scored are those of them that are
-    /// scored here. Returns `None` if none is.
-    pub(super) fn window(&self, middle: usize, length: usize) -> Option<Self> {
-        let start = middle.saturating_sub(length / 2);
-        let values = self.values.get(start..(start + length).min(self.values.len()))?.to_vec();
-        let inside = |own: &Range<usize>| {
-            own.start.saturating_sub(start)..own.end.saturating_sub(start).min(values.len())
-        };
-        let scored: Vec<Range<usize>> =
-            self.scored.iter().map(inside).filter(|own| !own.is_empty()).collect();
-        (!scored.is_empty()).then_some(Self {
-            values,
-            rate: self.rate,
-            scored,
-            flight: self.flight,
-        })
-    }
-
     /// Returns each range of samples that are scored.
     pub fn scored_values(&self) -> impl Iterator<Item = &[f64]> {
         self.scored.iter().filter_map(|own| self.values.get(own.clone()))
