@@ -28,14 +28,14 @@ pub enum ChipError<B, P = Infallible> {
     NotGated,
     /// The chip's activity is gated, so the chip takes no events.
     Gated,
-    /// The chip did not answer after the driver had let it run: reset the chip first.
-    /// [`ReckOn::sample`](super::ReckOn::sample) returns this error if the chip is between samples; then no reset is
-    /// needed.
+    /// The driver let the chip run, but the chip failed the check that it runs: reset the chip first.
+    /// [`ReckOn::sample`](super::ReckOn::sample) also returns this error, for a chip between two samples; such a chip
+    /// needs no reset.
     NotStarted,
-    /// The driver has no neuron with which to check that the chip runs. The check is a time step of one neuron. Before
-    /// it, the driver moves the neuron's potential by the leak, so that the time step moves the potential back. But
-    /// every neuron learns, has reached its threshold, or would leave the range of potentials at this move. The chip is
-    /// still gated, and nothing was changed.
+    /// The driver found no neuron that is fit for the check that the chip runs. The check is a time step of one neuron.
+    /// The driver first moves the neuron's potential away from 0 by the leak, so that the time step moves the potential
+    /// back. A neuron is unfit if it learns, if it has reached its threshold, or if its potential would leave its
+    /// range. The chip is still gated, and nothing was changed.
     NoProbe,
     /// The chip keeps sending outputs and does not come to rest. It must be at rest before it is gated; see
     /// [`open_loop`](super::Running::open_loop). [`ReckOn::started`](super::ReckOn::started) returns this error if the

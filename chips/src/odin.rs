@@ -20,15 +20,16 @@ pub type Odin<D, P> = OdinChip<OdinInput, D, P>;
 pub type OdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
     Network<OdinInput, IN, N, OUT>;
 
-/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory; the bits that the fields name are counted
-/// from 0 within these. The driver does not support the chip's Izhikevich neurons.
+/// A leaky integrate-and-fire neuron of ODIN. It takes 128 bits of memory, numbered 0 to 127; the text of each field
+/// names the field's bits. The driver does not support the chip's Izhikevich neurons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdinNeuron {
-    /// Potential at which the neuron fires and returns to 0, 1 to 255. Bits 9 to 16.
+    /// Threshold, 1 to 255. A neuron whose potential reaches the threshold fires, and its potential returns to 0. Bits
+    /// 9 to 16.
     pub threshold: u8,
-    /// Amount by which a time step lowers the potential, 0 to 127. Bits 1 to 7; bit 8 is 1 unless the amount is 0.
+    /// Amount, 0 to 127, by which a time step lowers the potential. Bits 1 to 7; bit 8 is 1 unless the amount is 0.
     pub leak: u8,
     /// The potential, which saturates at 0 and 255. Bits 70 to 77.
     pub potential: u8,
@@ -53,7 +54,7 @@ impl OdinNeuron {
 /// threshold and below the third. The spike weakens the synapse if the potential is low, and the calcium is at least
 /// the first threshold and below the second.
 ///
-/// The bits that the fields name are counted from 0 within the neuron's 128 bits of memory.
+/// A neuron takes 128 bits of memory, numbered 0 to 127; the text of each field names the field's bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -276,8 +277,8 @@ impl Input for OdinInput {
         Some(OdinNeuron { potential: before, ..*neuron })
     }
 
-    /// Encodes a signed weight as the 4 bits of a synapse, without its sign. Sets the mapping bit, with which the
-    /// synapse acts, unless the weight is 0.
+    /// Encodes a signed weight as the 4 bits of a synapse, which do not contain the sign. If the weight is not 0, sets
+    /// the mapping bit, which enables the synapse.
     fn weight_bits<B, P>(weight: i8) -> Result<u8, ChipError<B, P>> {
         in_range("weight", weight.into(), -7, 7)?;
         Ok(if weight == 0 { 0 } else { 8 | weight.unsigned_abs() })

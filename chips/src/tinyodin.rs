@@ -28,10 +28,10 @@ pub type TinyOdinNetwork<const IN: usize, const N: usize, const OUT: usize> =
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TinyOdinNeuron {
-    /// Potential at which the neuron fires and returns to 0, 1 to 2047. (Memory that was never written may hold 0; a
-    /// neuron with threshold 0 fires at every event.)
+    /// Threshold, 1 to 2047. A neuron whose potential reaches the threshold fires, and its potential returns to 0.
+    /// (Memory that was never written may hold threshold 0, with which a neuron fires at every event.)
     pub threshold: u16,
-    /// Amount by which a time step moves the potential towards 0, 0 to 127.
+    /// Amount, 0 to 127, by which a time step moves the potential towards 0.
     pub leak: u8,
     /// The potential, which saturates at -2048 and 2047.
     pub potential: i16,

@@ -49,8 +49,9 @@ pub enum InputBank {
 
 /// The register addresses and masks of a chip of the Xylo family.
 ///
-/// Checked only against the sources of `rockpool`: `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for
-/// A2. Both sources poll for the end of a time step as [`step`](Xylo::step) does.
+/// The maps in this crate were checked against two sources of the vendor's library `rockpool`, and against no chip:
+/// `syns65302/reg.py` for Audio 3, `syns61201/xa2_devkit_utils.py` for A2. Both sources poll for the end of a time step
+/// as [`step`](Xylo::step) does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -89,7 +90,8 @@ impl XyloMap {
     };
 
     /// Xylo Audio A2: 8 outputs. Ask the vendor for `trigger`, the value that triggers a time step. The vendor's open
-    /// library `rockpool` does not contain this value: there `samna`, whose source is not public, triggers the step.
+    /// library `rockpool` does not contain this value: it leaves the trigger to the library `samna`, whose source is
+    /// not public.
     pub const fn a2(trigger: u32) -> Self {
         Self {
             input: 0x11,
@@ -111,8 +113,8 @@ impl XyloMap {
 ///
 /// - **Banks:** a step reads one of two banks of counts. [`set_next_input`](Self::set_next_input) asks the chip which
 ///   bank the next step reads, and writes the counts to that bank.
-/// - **Order:** set the counts, then run the step. While the chip runs a step the driver accepts no counts, and
-///   [`step`](Self::step) waits for the step without triggering a second one.
+/// - **Order:** set the counts, then run the step. While the chip runs a step, the driver accepts no counts. A call of
+///   [`step`](Self::step) then waits for the end of this step, and does not trigger a second one.
 /// - **Counts stay** in the chip. A step without new counts uses the old counts of the bank that it reads. To prevent
 ///   this, [clear](Self::clear_input) the counts, as the vendor's programs do.
 /// - **Faults:** the chip does not confirm writes, and the public sources do not say which registers can be read back.

@@ -72,7 +72,7 @@ impl Reading {
     /// recording if there is no such field.
     ///
     /// # Errors
-    /// Returns an error if there is no message, or if the message ends before its time.
+    /// Returns an error if there is no current message, or if its field `timestamp` cannot be decoded.
     pub fn time(&self) -> Result<i64> {
         let (topic, entry) = self
             .current_topic()

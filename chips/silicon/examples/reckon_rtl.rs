@@ -139,7 +139,8 @@ impl Both {
         self.spi(register, &[value], 1, false);
     }
 
-    /// Writes random values to the registers: some that networks use, and some that no network should have.
+    /// Writes random values to many registers, mostly values that a network could use. In one of four calls, also
+    /// writes a random word to a random register, as a fault.
     fn configure(&mut self) {
         let inputs = [1, 7, 15, 23, 40][self.below(5) as usize] + self.below(2);
         let neurons = [1, 3, 15, 17, 31][self.below(5) as usize] + u32::from(self.one_in(4));

@@ -1,10 +1,12 @@
-//! Answers the steps of a network as `spikewire network --live` does, but on tinyODIN's register-transfer code instead
-//! of the chip's model. Usage: `tinyodin_rtl SIMULATION NETWORK.rs NETWORK.bytes < STEPS`.
+//! Runs the steps of a network on tinyODIN's register-transfer code, and prints the outputs that fire in each step.
+//! (The command `spikewire network --live` does the same on the chip's model.)
 //!
-//! SIMULATION is the program that Verilator makes of the register-transfer code, driven by `rtl/tinyodin.cpp`. The
-//! network's two files are those that `spikewire network --compare step` writes. Each call of the driver changes pins
-//! and runs the clock as it does for the model. Thus both must answer with the same spikes after the same number of
-//! clock cycles.
+//! Usage: `tinyodin_rtl SIMULATION NETWORK.rs NETWORK.bytes < STEPS`.
+//!
+//! SIMULATION is a program that simulates the register-transfer code: Verilator builds it from this code and from
+//! `rtl/tinyodin.cpp`. The network's two files are those that `spikewire network --compare step` writes. For each call
+//! of the driver, this program changes pins and runs the clock exactly as the command does for the model. Therefore
+//! simulation and model must give the same spikes after the same number of clock cycles.
 
 use std::cell::RefCell;
 use std::fs;
@@ -165,7 +167,8 @@ impl DelayNs for Rtl {
     }
 }
 
-/// Returns the numbers in each list of the field `name` of the constant `STEPS`. A field that is a number has one list.
+/// Finds the line of the field `name` in `source`, and splits the field's value at each `[`. Returns the numbers in
+/// each part: a plain number gives one part, and each `[` one more.
 fn lists(source: &str, name: &str) -> Result<Vec<Vec<u16>>> {
     let start = format!("    {name}: ");
     let line = source.lines().find_map(|line| line.strip_prefix(&start)).ok_or(start.clone())?;

@@ -250,7 +250,8 @@ impl<K: Kind> AerPort for Port<Chip<K>> {
         self.call(|pins| pins.chip.set_reset(is_high))
     }
 
-    /// Reads `SCHED_FULL`. Unlike the other calls it takes no time, because a driver reads all pins at once.
+    /// Reads `SCHED_FULL`. Unlike the other calls, this call does not advance the chip's time, because a port can read
+    /// this pin together with the other pins.
     fn queue_full(&mut self) -> Result<Option<bool>, u64> {
         let pins = self.0.pins();
         Ok(pins.has_full_pin.then(|| pins.chip.is_full()))

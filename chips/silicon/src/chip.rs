@@ -34,9 +34,9 @@ pub trait Kind: Clone + Copy + Debug + Default + 'static {
     fn is_disabled(neuron: u128) -> bool;
     /// Returns whether a bistability event, which moves a weight by 1 towards 0 or 7, may change this synapse.
     fn is_plastic(synapse: u8, registers: &Registers) -> bool;
-    /// Returns whether the chip puts a spike from the queue on the output bus while it applies the spike to `neuron`.
-    /// Called only if the output bus carries the spikes from the queue, and
-    /// [`POPS_AFTER_OUTPUT`](Self::POPS_AFTER_OUTPUT) is false.
+    /// Returns whether the chip sends a spike from its queue to the output bus when it applies the spike to `neuron`.
+    /// (The chip applies the spike to one neuron after the other.) Called only if the output bus carries the spikes
+    /// from the queue, and [`POPS_AFTER_OUTPUT`](Self::POPS_AFTER_OUTPUT) is false.
     fn is_popped_at(neuron: u8, registers: &Registers) -> bool;
 }
 
@@ -54,7 +54,7 @@ pub enum Input {
     Queued(u8, u8),
 }
 
-/// The event that acts on a neuron, as the signals that the controller gives to the neuron.
+/// The signals that the controller gives to a neuron. They describe the event that acts on the neuron, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Drive {
     /// Whether an event acts on the neuron. False if the neuron is only read or written over SPI.
@@ -62,8 +62,8 @@ pub struct Drive {
     /// Whether the event is a time step from the input word [`Leak`](Input::Leak). False for a virtual leak of ODIN,
     /// which is a virtual event.
     pub is_leak: bool,
-    /// Bits of the input word of a virtual event: the weight for tinyODIN; the weight, the sign and whether the event
-    /// is a leak for ODIN. 0 for other events.
+    /// For a virtual event, bits of its input word; 0 for other events. On tinyODIN the bits are the weight. On ODIN
+    /// they are the weight, its sign, and a bit that makes the event a leak.
     pub virtual_bits: u8,
     /// The 4 bits of the synapse through which the event acts.
     pub synapse: u8,
@@ -251,7 +251,7 @@ impl<K: Kind> Chip<K> {
         self.queue.len()
     }
 
-    /// Returns whether the chip is gated. After a write to register 0 this changes only some clock cycles later, when
+    /// Returns whether the chip is gated. A write to register 0 changes the result only some clock cycles later, when
     /// the new value has passed the synchroniser to the chip's clock.
     pub fn is_gated(&self) -> bool {
         self.clocked.gate[1]

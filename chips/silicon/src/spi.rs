@@ -47,7 +47,7 @@ impl SpiSlave {
         is_register.then_some(Written { register: self.address as u16, value: self.shift_in })
     }
 
-    /// Lowers SCK; `neuron` and `synapses` are the last words that the memories read.
+    /// Lowers SCK. `neuron` and `synapses` are the words that the controller last read from the two memories.
     pub fn fall(&mut self, neuron: u128, synapses: u32) {
         let shifted = self.shift_out << 1 & 0xF_FFFF;
         match self.count {

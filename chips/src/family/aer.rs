@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use super::AerPort;
 use spikewire::Event;
 
-/// A phase of the 4-phase handshake of an input word. In an error it is the phase in which the chip did not answer in
+/// A phase of the 4-phase handshake of an input word. An error names the phase in which the chip did not answer in
 /// time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -142,8 +142,8 @@ impl<P: AerPort> Aer<P> {
         }
     }
 
-    /// Ends the handshake of the previous word, then puts `word` on the input bus. If this fails, `word` is not
-    /// pending.
+    /// Ends the handshake of the previous word, then puts `word` on the input bus. If the call returns an error, `word`
+    /// is not pending.
     pub(super) fn begin(
         &mut self,
         word: u32,
@@ -225,7 +225,7 @@ impl<P: AerPort> Aer<P> {
     }
 
     /// Advances the output bus's handshake by at most one edge of ACK: raises ACK after REQ rose, or lowers ACK after
-    /// REQ fell. Also counts a queue that became full.
+    /// REQ fell. Also counts an overflow if the chip's queue has become full since the last call.
     fn serve(&mut self, on_output: &mut impl FnMut(u8)) -> Result<(), P::Error> {
         if let Some(is_full) = self.port.queue_full()? {
             self.overflows = self.overflows.saturating_add((is_full && !self.is_full).into());

@@ -19,8 +19,8 @@ pub enum FormatError {
     Magic,
     /// The bytes contain a network for a different chip, or a flag that this version does not know.
     Chip,
-    /// The network has no neurons, or more than 256 neurons, inputs or rows of synapses. For a network for `ReckOn`,
-    /// this error can also mean that it has no inputs, no outputs, or more than 16 outputs.
+    /// The network has no neurons, or more than 256 neurons, inputs or rows of synapses. If the chip is `ReckOn`, this
+    /// error can also mean that the network has no inputs, no outputs, or more than 16 outputs.
     Size,
     /// The bytes or the buffer have the wrong length.
     Length {
@@ -29,7 +29,7 @@ pub enum FormatError {
         /// Length of the bytes or the buffer given.
         given: usize,
     },
-    /// A value of a neuron or a weight is out of its range, an output is not a neuron of the network, or two outputs
+    /// A weight or a field of a neuron is out of its range, an output is not a neuron of the network, or two outputs
     /// are the same neuron.
     Value,
 }

@@ -1,7 +1,7 @@
 //! The counters of a chip's driver.
 
-/// The driver's counters: of resets, of what was lost, dropped or skipped, of late events, and of events that were sent
-/// again. Each counter saturates at its largest value.
+/// The driver's counters. They count resets, overflows of the chip's queue, and the time steps, events, words and
+/// outputs that were late, sent again, skipped or lost. Each counter saturates at its largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -19,12 +19,12 @@ pub struct Counters {
     /// Number of events that were sent again after a reset, because no ACK had been seen for them. The chip may have
     /// taken such an event just before the reset; if the event was still in the chip's queue, it had no effect.
     pub repeated_events: u32,
-    /// Number of words passed to [`send`](super::Running::send) that were lost at a reset, because no ACK had been seen
-    /// for them.
+    /// Number of words from [`send`](super::Running::send) that a reset dropped. The driver had not seen an ACK for
+    /// these words.
     pub dropped_words: u32,
     /// Number of outputs lost at resets: the chip had raised REQ for the output, but the driver had not read it yet.
     pub lost_outputs: u32,
-    /// Number of times that the chip's queue was seen to become full; each time, any number of spikes between neurons
-    /// may be lost. Always 0 if the pin [`SCHED_FULL`](super::AerPort::queue_full) is not wired.
+    /// Number of times that the driver saw the chip's queue become full. Each time, any number of spikes between
+    /// neurons may be lost. Always 0 if the pin [`SCHED_FULL`](super::AerPort::queue_full) is not wired.
     pub overflows: u32,
 }

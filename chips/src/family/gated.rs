@@ -35,19 +35,21 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
     /// Writes the registers and lets the chip run.
     ///
     /// **Checks:** after each register the driver checks that chip and bus are in sync. It returns an error if a clock
-    /// pulse was lost or doubled. It does not notice two faults that cancel out within the frame of a register and its
-    /// check; such a pair may leave a wrong register or wrong potentials. Finally the driver sends a probe: a time step
-    /// of one neuron, which only a running chip acknowledges. If that neuron leaks, the driver first raises its
-    /// potential by the leak, so that the probe leaves the neuron as it was.
+    /// pulse was lost or doubled. It does not notice two faults that cancel out, if both lie between the start of the
+    /// frame that writes a register and the end of the check. Such a pair may leave a wrong register or wrong
+    /// potentials. Finally the driver sends a probe: a time step of one neuron, which only a running chip acknowledges.
+    /// If that neuron leaks, the driver first moves its potential away from 0 by the leak, so that the probe leaves the
+    /// neuron as it was.
     ///
     /// **Time:** 38 frames of 5 bytes for tinyODIN, 2.3 ms at an SCK of 656 kHz; 206 frames for ODIN. If the probed
-    /// neuron leaks from a potential other than 0, the call takes 17 more frames. The driver passes over neurons that a
-    /// time step would harm; each of them takes 4 (tinyODIN) or 16 (ODIN) more frames.
+    /// neuron leaks from a potential other than 0, the call takes 17 more frames. The driver skips each neuron that the
+    /// probe could not leave as it was, for example because the neuron learns. A skipped neuron takes 4 (tinyODIN) or
+    /// 16 (ODIN) more frames.
     ///
     /// # Errors
-    /// Returns an error if a value is out of its range. Returns [`NoProbe`](ChipError::NoProbe) if a time step would
-    /// harm every neuron. After these two errors the chip is still gated. Also returns an error if the bus or the port
-    /// failed, if memory reads back a wrong value, or if the chip does not answer; then reset the chip.
+    /// Returns an error if a value is out of its range. Returns [`NoProbe`](ChipError::NoProbe) if the driver would
+    /// have to skip every neuron. After these two errors the chip is still gated. Also returns an error if the bus or
+    /// the port failed, if memory reads back a wrong value, or if the chip does not answer; then reset the chip.
     pub fn run(self, registers: &I::Registers) -> Outcome<Running<'a, I, D, P>, D, P> {
         I::check_registers(registers)?;
         let chip = self.chip;
@@ -137,8 +139,8 @@ fn bytes_of<I: Input>(neuron: u8) -> impl Iterator<Item = Address> + Clone {
     (0..I::NEURON_BYTES).map(move |byte| Address::neuron(neuron, byte))
 }
 
-/// Chooses a neuron for the probe, which is a time step of that neuron alone, and returns its number. If the neuron
-/// leaks, first raises its potential by the leak, so that the probe leaves the neuron as it was.
+/// Chooses a neuron for the probe (a time step of this neuron alone), and returns its number. If the neuron leaks,
+/// first moves its potential away from 0 by the leak, so that the probe leaves the neuron as it was.
 fn prepare_probe<I: Input, D: SpiDevice, P: AerPort>(
     chip: &mut OdinChip<I, D, P>,
 ) -> Outcome<u8, D, P> {

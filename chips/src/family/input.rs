@@ -108,7 +108,7 @@ pub trait Input: Copy {
     /// Returns whether these registers open the loop, so that the spikes of neurons do not reach other neurons.
     fn is_open_loop(registers: &Self::Registers) -> bool;
 
-    /// Returns the maximum number of clock cycles that the chip takes to apply one spike to all neurons, without
-    /// waiting for outputs.
+    /// Returns the maximum number of clock cycles that the chip takes to apply one spike to all neurons in use. Not
+    /// included: the time in which outputs wait for their ACK.
     fn sweep_clocks(registers: &Self::Registers) -> u32;
 }

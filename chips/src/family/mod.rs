@@ -57,8 +57,8 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   it again.
 /// - **Waits:** the driver waits for the chip by reading pins. The argument `polls` of [`new`](Self::new) limits the
 ///   number of reads; after the last read, the driver returns an error.
-/// - **Pending words:** a word that the chip has not acknowledged when a wait ends stays pending. Every call that sends
-///   a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
+/// - **Pending words:** if a wait ends before the chip has acknowledged a word, the word stays pending. Every call that
+///   sends a word finishes the pending word first. [`Running::poll`] continues with the pending word; a reset drops it.
 /// - **Unsent events:** the driver keeps an event that [`Running::feed`] could not send. The next call of `feed` sends
 ///   this event first, even after a reset.
 /// - **Losses** are counted; see [`counters`](Self::counters).
@@ -68,7 +68,8 @@ pub use steps::{Steps, StepsLayer, StepsState};
 ///   queue. In open loop (the spikes go only to the output bus) a leak overtakes no spike.
 /// - In open loop with [`OutputSource::Queue`](super::OutputSource::Queue) the output bus carries the inputs, not the
 ///   neurons that fire.
-/// - A neuron in use with threshold 0, as in memory that was never written, fires at every event and every leak.
+/// - A neuron in use whose threshold is 0 fires at every event and every leak. Memory that was never written may hold
+///   such neurons.
 /// - An overflow of the queue is invisible unless [`AerPort::queue_full`] is wired.
 #[derive(Debug)]
 pub struct OdinChip<I: Input, D, P> {
@@ -103,9 +104,10 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Makes a driver for a chip that must be [reset](Self::reset) first. Every wait reads the pins up to `polls`
     /// times.
     ///
-    /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If polls are
-    /// faster, [`with_reads_per_clock`](Self::with_reads_per_clock) multiplies the number of polls. With fewer polls,
-    /// the wait for a slow word times out, and a later call must finish the word.
+    /// [`Input::MAX_CLOCKS`] polls suffice if each poll takes at least one clock cycle of the chip. If several polls
+    /// fit into one clock cycle, call [`with_reads_per_clock`](Self::with_reads_per_clock), which multiplies the number
+    /// of polls. With too few polls, the wait for a slow word times out. The word then stays pending, and a later call
+    /// must finish it.
     pub const fn new(device: D, port: P, polls: u32) -> Self {
         Self {
             wire: Wire { device },
@@ -132,8 +134,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     /// Sets the length of a time step to `step` µs. [`Running::feed`] and [`Running::advance`] then send a leak event
     /// for every `step` µs that pass. Without this setting they send no leak events.
     ///
-    /// Call [`Running::advance`] at least every 70 minutes. If a tick (a time stamp) is more than 70 minutes after the
-    /// previous tick, it seems to be earlier, and the driver sends no leak event.
+    /// Call [`Running::advance`] at least every 70 minutes. A tick is a time stamp in µs with 32 bits, which wraps
+    /// after 71.6 minutes. After a longer pause than 70 minutes the driver cannot tell how much time has passed, and
+    /// sends too few leak events or none.
     #[must_use]
     pub fn with_time_step(self, step: NonZeroU32) -> Self {
         Self { time: Some(Time::new(step)), ..self }
@@ -151,11 +154,12 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Pulses reset, which brings chip and bus into sync; then gates the chip, opens its loop, and checks that the chip
-    /// answers. The check needs a byte in the memory of neurons that is not 0. Therefore, if neuron [`Input::PROBED`]
-    /// was never written, this call disables it, which sets a bit.
+    /// answers. For the check, at least one bit in the parameters of neuron [`Input::PROBED`] must be 1. If all of them
+    /// are 0, as in a neuron that was never written, this call sets the bit that disables the neuron.
     ///
-    /// Spikes in the chip's queue are lost, and the pending word is dropped. If the pending word was an event of
-    /// [`Running::feed`] that the chip has not acknowledged, the driver keeps the event and sends it again.
+    /// Spikes in the chip's queue are lost, and the pending word (sent, but not acknowledged by the chip) is dropped.
+    /// If the pending word is an event of [`Running::feed`], the driver keeps the event, and the next call of `feed`
+    /// sends it again.
     ///
     /// # Errors
     /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.

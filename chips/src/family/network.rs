@@ -37,13 +37,13 @@ pub trait Describe<I: Input> {
     /// Returns the number of the output that carries the spikes of `neuron`; `None` if the neuron is not an output.
     fn output(&self, neuron: u8) -> Option<u16>;
 
-    /// Returns the chip's input for an event that a bank of encoders of this scheme sends, or `None` if the network has
-    /// no such input.
+    /// Returns the chip's input for an event of an encoder, or `None` if the network has no such input. The first
+    /// argument is the encoder's scheme.
     ///
-    /// An event with address `n` goes to input `n` of the network. A [signed](Code::IS_SIGNED) code, such as that of
-    /// step-forward, takes two inputs for each address: input `2 n` for [`Polarity::Up`], input `2 n + 1` for
-    /// [`Polarity::Down`]. Rate codes are signed, too, but never send [`Polarity::Down`], so that their odd inputs stay
-    /// silent.
+    /// An event with address `n` goes to input `n` of the network, unless the code of the scheme is
+    /// [signed](Code::IS_SIGNED). A signed code, such as that of step-forward, takes two inputs for each address: input
+    /// `2 n` for [`Polarity::Up`], and input `2 n + 1` for [`Polarity::Down`]. Rate codes are signed, too, but never
+    /// send [`Polarity::Down`]. Their odd inputs therefore stay silent.
     ///
     /// ```
     /// use spikewire_chips::{Describe, Inputs, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, neurons_from};
@@ -84,9 +84,10 @@ pub trait Describe<I: Input> {
         }
     }
 
-    /// Returns a callback for [`Running::poll`](super::Running::poll) and the other calls that report neurons that
-    /// fire. If the neuron is an output of the network, the callback passes an event to `sink`. The event has the time
-    /// `tick`, and its address is the number of the output. The callback ignores all other neurons.
+    /// Returns a callback for the argument `on_output` of [`Running::poll`](super::Running::poll) and of other calls.
+    /// These calls pass the number of each neuron that fires to the callback. If the neuron is an output of the
+    /// network, the callback passes an event to `sink`, with the time `tick` and the output's number as its address.
+    /// The callback ignores all other neurons.
     fn answers(&self, tick: Tick, mut sink: impl FnMut(Event)) -> impl FnMut(u8) {
         move |neuron| {
             if let Some(address) = self.output(neuron) {
@@ -140,7 +141,7 @@ pub enum Inputs<const IN: usize, const N: usize> {
 }
 
 impl<const IN: usize, const N: usize> Inputs<IN, N> {
-    /// Gives each input a row of synapses in which input `n` has this weight to neuron `n`, and 0 to all other neurons.
+    /// Connects input `n` to neuron `n` with this weight. Each input gets a row of synapses; its other weights are 0.
     #[must_use]
     pub const fn one_to_one(weight: i8) -> Self {
         let mut rows = [[0; N]; IN];

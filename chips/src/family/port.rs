@@ -5,16 +5,15 @@
 /// Write all data pins with one store (on an STM32, to BSRR) instead of pin by pin, so that the chip never sees a
 /// half-written word.
 ///
-/// | line | direction | |
+/// | line | direction | meaning |
 /// |---|---|---|
 /// | `AERIN_ADDR` | to the chip | the word of [`set_input`](Self::set_input): bit n on line n; 10 lines for tinyODIN, 17 for ODIN |
 /// | `AERIN_REQ`, `AERIN_ACK` | to the chip, from it | the handshake of a word |
 /// | `AEROUT_ADDR` | from the chip | the neuron that fires, eight lines |
 /// | `AEROUT_REQ`, `AEROUT_ACK` | from the chip, to it | the handshake of a neuron |
-/// | `RST` | to the chip | pulsed at the start, and where chip and bus may be out of sync |
+/// | `RST` | to the chip | reset, which [`OdinChip::reset`](super::OdinChip::reset) pulses |
 ///
-/// If a call fails, the driver assumes that the pins may or may not have changed, and repeats the call before it goes
-/// on.
+/// If a call fails, the driver does not know whether the pins have changed. It repeats the call before it goes on.
 pub trait AerPort {
     /// Error type of the port; `Infallible` for the microcontroller's own pins.
     type Error;

@@ -7,8 +7,9 @@ use super::{AerPort, ChipError, Counters, Gated, Input, OdinChip, Outcome};
 
 /// Number of clock cycles from the driver's ACK of an output until the chip continues, with a margin.
 const HANDSHAKE_CLOCKS: u32 = 32;
-/// Number of clock cycles that [`Running::quiesce`] allows for the handshakes of outputs; enough for more than a
-/// thousand outputs. `quiesce` adds this number to four times the longest time that the chip works without an output.
+/// Number of clock cycles that [`Running::quiesce`] allows for the handshakes of outputs: enough for more than a
+/// thousand outputs. `quiesce` waits until no output has come for a certain time. It gives up after four times that
+/// time, plus these clock cycles.
 const OUTPUT_CLOCKS: u32 = 1 << 15;
 
 /// A running chip: it takes events, and its memories cannot be accessed. After an error the chip still runs, unless the
@@ -38,8 +39,8 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Running<'a, I, D, P> {
         Ok(aer.finish(&mut on_output)?)
     }
 
-    /// Passes neurons that have fired to `on_output`, and continues with a pending word. Reads the pins only a few
-    /// times: call this often, because the chip stops while an output waits.
+    /// Passes neurons that have fired to `on_output`, and advances the handshake of a pending word. Reads the pins only
+    /// a few times, and does not wait. Call `poll` often, because the chip stops while an output waits.
     ///
     /// # Errors
     /// Returns an error if the port failed. No output is passed on twice.

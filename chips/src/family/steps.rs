@@ -5,17 +5,20 @@ use embedded_hal::spi::SpiDevice;
 
 use super::{AerPort, ChipError, Input, Outcome, Running};
 
-/// Describes how tinyODIN runs a time step of a network in which each neuron compares its potential with its threshold
-/// once a step, as in training. [`Running::step`] runs such a step. `Steps` belong to a [`Network`](super::Network) in
-/// open loop; the command `spikewire network` writes both.
+/// A description of the time steps of a network on tinyODIN. In each step, each neuron compares its potential with its
+/// threshold once, as in training. [`Running::step`] runs a step. A `Steps` belongs to a [`Network`](super::Network)
+/// whose loop is open; the command `spikewire network` writes both.
 ///
 /// While the inputs of a step arrive, all potentials are offset downwards, so that no neuron reaches its threshold.
-/// Then events on an extra row of weights raise the first layer. Each of these events raises the layer by one *rung*.
-/// After the last of these events the offset is gone, and the neurons above their thresholds have fired. Their spikes
-/// go to the next layer, which is raised in turn. Finally, events on a second extra row lower all neurons again. Leaks
-/// are sent between the lowering events. A leak moves the lowered potential towards 0, by a fixed amount. Leaks while
-/// the potentials are lowered by different amounts together reduce a potential by a share of its value, as in training.
-/// A neuron that fired may end above its reset value; leaks that only this neuron receives remove the excess.
+/// Then events on an extra row of weights raise the potentials of the first layer. Each event raises them by one
+/// *rung*. After the last of these events the offset is gone, and the neurons above their thresholds have fired. Their
+/// spikes go to the next layer, whose potentials are raised in turn. Finally, events on a second extra row lower the
+/// potentials of all neurons again.
+///
+/// Leaks are sent between the events that lower the potentials. Each leak moves a potential towards 0, by a fixed
+/// amount. The offset changes between the leaks, so that together they reduce a potential by a share of its value, as
+/// in training. A neuron that fired may end above its reset value. Further leaks, which only this neuron receives,
+/// remove the excess.
 ///
 /// ```
 /// use embedded_hal::{delay::DelayNs, spi::SpiDevice};
@@ -79,29 +82,32 @@ use super::{AerPort, ChipError, Input, Outcome, Running};
 /// 1. the inputs, and the bias if the network has one;
 /// 2. for each layer, its neurons onto the next layer (except for the last layer), and onto the layer itself if the
 ///    layer is recurrent;
-/// 3. for each layer, a row that raises it;
+/// 3. for each layer, a row that raises its potentials;
 /// 4. a row that lowers all neurons;
 /// 5. a row that raises all neurons, if [`lift`](Self::lift) is not 0.
 ///
-/// The neurons' initial potentials contain the offset.
+/// The initial potentials in the network must already be offset downwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps<'a> {
     /// Number of inputs. The bias (see [`has_bias`](Self::has_bias)) does not count.
     pub inputs: u16,
     /// Whether the network has a bias: one more input, numbered after the others, that fires in every step.
     pub has_bias: bool,
-    /// The rows of synapses of each input, and of each neuron whose spikes act on neurons: for each row, the number of
-    /// events that a spike sends on it. The weight of an input or neuron is the sum of the weights in its rows, each
-    /// times this number. With `&[8, 1]`, two rows of 4 bits hold weights from -72 to 63.
+    /// Numbers of events that one spike sends: one number for each row of synapses of an input or neuron. All inputs,
+    /// and all neurons whose spikes act on neurons, have the same number of rows. A spike acts with the sum of the
+    /// weights in its rows, each times the number of events for that row. With `&[8, 1]`, two rows of 4-bit weights
+    /// give weights from -72 to 63.
     pub rows: &'a [u16],
     /// The layers, from the input to the output. Their neurons are the chip's neurons from 0 on, in the same order.
     pub layers: &'a [StepsLayer],
-    /// Number of events that raise the potentials of each layer in a step. Each event raises them by one rung. At the
-    /// end of the step, the same number of events lowers the potentials of all neurons.
+    /// Number of events that raise the potentials of each layer in a step. Each event raises a potential by one *rung*:
+    /// the neuron's weight in the row that raises its layer. At the end of the step, the same number of events lowers
+    /// the potentials of all neurons, each by one rung.
     pub rungs: u16,
-    /// The leaks of all neurons: one list for each step. After the last list, the next step takes the first list again.
-    /// A list has one entry for each leak: the number of lowering events that the driver sends before this leak. The
-    /// entries are in ascending order.
+    /// Leaks that act on all neurons: one list for each step. After the last list, the next step takes the first list
+    /// again. The driver sends these leaks at the end of the step, among the [`rungs`](Self::rungs) events that lower
+    /// the potentials. A list has one entry for each leak: the number of these events, 0 to `rungs`, that the driver
+    /// has sent before the leak. The entries are in ascending order.
     pub leaks: &'a [&'a [u16]],
     /// Number of events that raise the potentials of all neurons before the leaks of [`own_leaks`](Self::own_leaks).
     /// After these leaks, the same number of events lowers the potentials again. With 0, these leaks are sent without
@@ -120,7 +126,7 @@ pub struct StepsLayer {
     pub loops: bool,
 }
 
-/// The state that a network in [`Steps`] has between two steps: 36 bytes.
+/// The state that [`Running::step`] keeps from one step to the next: 36 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepsState {
     /// The neurons that fired in the last step.
@@ -189,14 +195,22 @@ impl Steps<'_> {
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Runs one time step of a network. `inputs` are the numbers of the inputs that fire, in any order. A number that
-    /// is not an input of the network is dropped and [counted](super::Counters::unmapped_events). Neurons that fire are
-    /// passed to `on_output` immediately, each at most once in a step. These neurons belong to any layer;
-    /// [`Describe::answers`](super::Describe::answers) selects the outputs. Leaks are sent at the end of the step.
+    /// is not an input of the network is dropped and [counted](super::Counters::unmapped_events). Passes each neuron
+    /// that fires to `on_output` immediately, at most once in a step. This includes neurons of all layers;
+    /// [`Describe::answers`](super::Describe::answers) makes a callback that ignores all neurons except the outputs.
     ///
-    /// **Time:** each event takes the chip 2 clock cycles for every neuron in use, and 6 more. Each input or spike
-    /// takes as many events as [`rows`](Steps::rows) has in sum. Raising each layer takes [`rungs`](Steps::rungs)
-    /// events, and lowering all neurons takes `rungs` events once. Each leak takes one event. The chip still works on
-    /// the last event when the call returns.
+    /// **Time:** the chip takes 2 clock cycles for every neuron in use, and 6 more, for each event that acts on all
+    /// neurons. An event for one neuron takes less. The events of a step are:
+    ///
+    /// - for each input that fires, and for the bias: as many events as the sum of [`rows`](Steps::rows);
+    /// - for each neuron that fires: the same number for the next layer, if there is one; and if its own layer is
+    ///   recurrent, the same number again in the next step;
+    /// - for each layer: [`rungs`](Steps::rungs) events that raise potentials, and one event for one neuron;
+    /// - at the end: `rungs` events that lower all potentials, and one event for each of the [`leaks`](Steps::leaks);
+    /// - if a neuron fired and the network has [`own_leaks`](Steps::own_leaks): twice [`lift`](Steps::lift) events, and
+    ///   one event for one neuron for each own leak of a neuron that fired.
+    ///
+    /// When the call returns, the chip still works on the last event.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). The step is then incomplete and the chip's potentials are useless:
@@ -312,9 +326,9 @@ impl<I: Input, D: SpiDevice, P: AerPort, F: FnMut(u8)> Step<'_, '_, I, D, P, F> 
         Ok(())
     }
 
-    /// Sends a spike of an input or a neuron, on each of its rows of synapses as many times as the network's `rows`
-    /// say. `first` is the first row of all inputs, or of all neurons of the layer. `number` is the index of this input
-    /// or neuron among them.
+    /// Sends a spike of an input or a neuron. For each row of synapses of this input or neuron, `self.rows` has the
+    /// number of events to send. `first` is the first row of all inputs, or of all neurons of the layer. `number` is
+    /// the index of this input or neuron among them.
     fn source(&mut self, first: u16, number: u16) -> Outcome<(), D, P> {
         let rows = self.rows;
         let mut row = first.saturating_add(number.saturating_mul(rows.len() as u16));

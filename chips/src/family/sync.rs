@@ -41,17 +41,18 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         self.check_sync()
     }
 
-    /// Opens the gate, which lets the chip run. First reads a byte that does not exist, to protect the neurons' bytes:
-    /// if the gate is later shut while tinyODIN works, the chip overwrites a byte of each neuron that it has not
-    /// processed yet. The index of this byte is the one that was last accessed over SPI.
+    /// Opens the gate, which lets the chip run. First reads a byte that does not exist, to protect the neurons' bytes.
+    /// If the gate is later shut while tinyODIN works, the chip overwrites one byte in each neuron that it has not
+    /// processed yet: the byte with the index that SPI accessed last. After this read, the last index is one that no
+    /// neuron has, so that nothing is overwritten.
     pub(super) fn open(&mut self) -> Outcome<(), D, P> {
         self.read_byte(Address::nowhere())?;
         self.configure(GATE_ACTIVITY, 0)
     }
 
-    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`], and stores it as the beacon. Then
-    /// checks that chip and bus are in sync. If all these bytes are 0, the neuron was never written. This call then
-    /// disables the neuron, which makes one byte differ from 0.
+    /// Finds a byte that is not 0 among the parameters of neuron [`Input::PROBED`], and stores it as the [`Beacon`]. If
+    /// all parameters are 0, as in a neuron that was never written, first disables the neuron, which sets a bit in one
+    /// of the bytes. Checks that chip and bus are in sync.
     pub(super) fn find_beacon(&mut self) -> Outcome<(), D, P> {
         let last = I::NEURON_BYTES.saturating_sub(1);
         for byte in (0..=last).rev() {
@@ -72,8 +73,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
     }
 
     /// Checks that chip and bus are in sync. Changes a byte in the memory of synapses and reads it, then restores the
-    /// byte and reads it again. Between the two reads, reads a byte that is known not to be 0, if there is one, because
-    /// a chip that is out of sync sends 0. Returns an error if the chip runs, or after a lost or doubled clock pulse.
+    /// byte and reads it again. Between the two reads, reads the [`Beacon`] if one is stored: this byte is not 0, but a
+    /// chip that is out of sync sends 0. Returns an error if the chip runs, or after a lost or doubled clock pulse.
     pub(super) fn check_sync(&mut self) -> Outcome<(), D, P> {
         let value = match self.anchor {
             Some(value) => value,
@@ -162,7 +163,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Ok(bytes)
     }
 
-    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
+    /// Writes `value` to a byte of memory. Bits that are 1 in the mask `keep` keep their value.
     pub(super) fn put_byte(&mut self, address: Address, keep: u8, value: u8) -> Outcome<(), D, P> {
         self.expect_gated()?;
         if address == anchor() {
@@ -191,9 +192,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores the byte `value` at `address` as the beacon: a byte that is known not to be 0. Uses only bits of
-    /// parameters, which the chip does not change, and of these only the bits that are 1 in `mask`. Does nothing if all
-    /// these bits of `value` are 0, or if `address` is not in the memory of neurons.
+    /// Stores the byte `value` at `address` as the [`Beacon`]. The beacon leaves out bits that are 0 in `mask`. It also
+    /// leaves out bits outside a neuron's parameters, because the chip can change those bits. Does nothing if all other
+    /// bits of `value` are 0, or if `address` is not in the memory of neurons.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);
@@ -216,8 +217,8 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         }
     }
 
-    /// Converts an error of the bus. After such an error the driver refuses all calls until the next reset, because a
-    /// clock pulse may have been lost.
+    /// Passes on the result of a bus access, with its error as [`ChipError::Bus`]. After such an error the driver
+    /// refuses all calls until the next reset, because a clock pulse may have been lost.
     pub(super) fn heed<T>(&mut self, result: Result<T, D::Error>) -> Outcome<T, D, P> {
         result.map_err(|error| {
             self.state = State::NotReset;

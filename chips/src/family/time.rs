@@ -11,11 +11,13 @@ use spikewire::Tick;
 /// Maximum number of leak events that one call sends.
 const MAX_LEAKS: u32 = 255;
 
-/// Longest time by which a tick can be earlier than the last leak event, in µs (67 s). The 32-bit clock of ticks wraps:
-/// a tick that seems to be earlier by more than this is a future tick.
+/// Longest time by which a tick can be earlier than the last leak event, in µs (67 s). Because ticks wrap at 32 bits,
+/// every tick can be read as earlier or as later than this event. The driver reads a tick as earlier only if the
+/// difference is at most this time.
 const LATEST: u32 = 1 << 26;
 
-/// Returns the time from `last` to `now` in µs. Returns `None` if `now` is earlier than `last` by up to [`LATEST`].
+/// Returns the time from `last` to `now` in µs. Returns `None` if `now` is earlier than `last` by at most [`LATEST`];
+/// reads any other `now` as later.
 fn passed(last: Tick, now: Tick) -> Option<u32> {
     let passed = now.micros().wrapping_sub(last.micros());
     (passed < LATEST.wrapping_neg()).then_some(passed)
@@ -42,12 +44,12 @@ impl Time {
 
 impl<I: Input, D: SpiDevice, P: AerPort> Running<'_, I, D, P> {
     /// Sends the leak events that are due up to the time `now`. The first call sends none and only stores `now`. Leak
-    /// events also become due while the chip is gated, and the next call sends them. This works for less than 70
-    /// minutes between two calls.
+    /// events also become due while the chip is gated, and the next call sends them. Between two calls there must be
+    /// less than 70 minutes; see [`with_time_step`](super::OdinChip::with_time_step).
     ///
     /// A call sends at most 255 leak events. If more are due, the call drops the oldest ones and counts them as
-    /// [skipped](super::Counters::skipped_steps). Such a drop can change potentials: 255 leaks of 1 do not always bring
-    /// a 12-bit potential to 0.
+    /// [skipped](super::Counters::skipped_steps). Potentials may then be farther from 0 than they should be: 255 leaks
+    /// of 1 bring a potential of 300 to 45, although more leaks would bring it to 0.
     ///
     /// # Errors
     /// Returns the errors of [`send`](Self::send). After an error, the next call sends the leak events that this call

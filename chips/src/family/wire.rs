@@ -24,8 +24,9 @@ impl Address {
         Self::neuron(255, 0x7F)
     }
 
-    /// Returns the address of the byte with the synapse from `pre` to `post`. The address has bit fields for `byte`,
-    /// `pre` and `post / 8`, from high to low: a byte holds two synapses, and a 32-bit word holds four bytes.
+    /// Returns the address of the byte with the synapse from `pre` to `post`. A byte holds two synapses, and a 32-bit
+    /// word holds four bytes. The address has three bit fields, from high to low: the byte's index in its word, `pre`,
+    /// and `post / 8`.
     pub(super) fn synapse(pre: u8, post: u8) -> Self {
         let (pre, post) = (u32::from(pre), u32::from(post));
         Self(SYNAPSE | (post >> 1 & 3) << 13 | pre << 5 | post >> 3)
@@ -53,7 +54,7 @@ impl<D: SpiDevice> Wire<D> {
         self.write(register.into(), value)
     }
 
-    /// Writes the bits of a memory byte that are 0 in the mask `keep`. The other bits keep their value.
+    /// Writes `value` to a byte of memory. Bits that are 1 in the mask `keep` keep their value.
     pub(super) fn write_byte(
         &mut self,
         address: Address,
@@ -63,9 +64,9 @@ impl<D: SpiDevice> Wire<D> {
         self.write(WRITE | address.0, u32::from(keep) << 8 | u32::from(value))
     }
 
-    /// Reads a byte, which comes back as the last byte of the frame. The driver sends data in which every bit is 1; in
-    /// a read the chip ignores this data. If a lost or doubled clock pulse turns the read into a write, the data masks
-    /// all bits, so that memory does not change.
+    /// Reads a byte, which comes back as the last byte of the frame. Sends data in which every bit is 1. In a read the
+    /// chip ignores this data. If a lost or doubled clock pulse turns the read into a write, the chip takes part of
+    /// this data as the mask of the bits to keep: memory then keeps all bits.
     pub(super) fn read_byte(&mut self, address: Address) -> Result<u8, D::Error> {
         let mut frame = frame(READ | address.0, 0xF_FFFF);
         self.device.transfer_in_place(&mut frame)?;

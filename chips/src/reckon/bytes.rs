@@ -20,8 +20,8 @@ const ZERO: u8 = 2;
 /// | 1 | bit 0: the network is recurrent; bit 1: a neuron that fires returns to 0 |
 /// | 2, 2, 2 | numbers of neurons, inputs and outputs |
 /// | 1, 1, 1 | left shifts of the weights from inputs, between neurons and to outputs |
-/// | 1 | share of an output's potential that a step keeps, in units of 1/128 |
-/// | 2, 2 for each pair of neurons | share of a neuron's potential that a step keeps, in units of 1/32 768; threshold |
+/// | 1 | factor by which a step multiplies an output's potential, in units of 1/128 |
+/// | 2, 2 for each pair of neurons | factor by which a step multiplies a potential, in units of 1/32 768; threshold |
 /// | a row for each input | the weights to all neurons |
 /// | a row for each neuron | the weights to all neurons; left out if the network is not recurrent |
 /// | a row for each neuron | the weights to all outputs |

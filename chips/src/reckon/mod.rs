@@ -38,8 +38,8 @@ use wire::{Address, Wire};
 ///   was lost or doubled earlier.
 /// - **Undetected faults:** if one clock pulse is lost and another is doubled, chip and bus are in sync again
 ///   afterwards. Such a pair of faults may go unnoticed in three cases:
-///   1. One of the two faults lies in the frame that writes a register, or in the frame before. The register may then
-///      keep its old value or take a wrong one, or the chip may write a different register.
+///   1. One of the two faults lies in a frame that writes a register, or in the frame that precedes it. The register
+///      may then keep its old value or take a wrong one, or the chip may write a different register.
 ///   2. Both faults lie in the first bits of a frame that writes weights between neurons. The frame may then write a
 ///      register instead. The driver does not notice this if the memory already held the same weights.
 ///   3. The pair turns a read into a write while [`Programmed::load`] compares memory. [`Programmed::verify`] after the
@@ -53,18 +53,18 @@ use wire::{Address, Wire};
 /// clock cycles of the chip, and N more for each event.
 ///
 /// # What to know about the chip
-/// - After reset learning is on: at the first tick with `TARGET_VALID` the chip would wait for a target without end.
-///   Therefore [`Programmed::run`] always writes [`ReckOnSettings::learning`].
+/// - After a reset, learning is on. At the first tick with `TARGET_VALID` high, the chip would then wait forever for a
+///   target. Therefore [`Programmed::run`] always writes [`ReckOnSettings::learning`].
 /// - If a tick comes before the last step is done, the chip stops until a reset, although the pin `TIMING_ERROR_RDY`
 ///   then says ready. [`ReckOnSample::step`] waits for this pin before the tick. After the tick the pin is low for only
 ///   2 N + 4 clock cycles, which a driver that reads its pins rarely would miss. Therefore the driver always sets the
 ///   chip to send an answer in each step. The pin then stays low until the last byte of the answer is taken, and a step
 ///   without an answer is an error.
-/// - If `SAMPLE` falls while the chip learns, the chip goes on learning without end, through all weights. The setting
-///   to send an answer in each step, which the driver always makes, prevents this.
-/// - The chip processes neurons in pairs, up to the largest of the numbers of neurons, inputs and outputs. A pair that
-///   the network does not use fires at every step if its memory holds a threshold of 0. Therefore [`Programmed::load`]
-///   writes all 128 pairs.
+/// - If `SAMPLE` falls while the chip learns, the chip never stops learning, and goes through all weights. The driver
+///   prevents this, because it always sets the chip to send an answer in each step.
+/// - The chip processes neurons in pairs. If a network has more inputs or outputs than neurons, the chip processes as
+///   many neurons as there are inputs or outputs. A pair that the network does not use fires at every step if its
+///   memory holds a threshold of 0. Therefore [`Programmed::load`] writes all 128 pairs.
 /// - If the number of neurons is odd, the last neuron would never fire. Therefore the driver gives the chip a number
 ///   that is one higher.
 /// - If a frame announces more than one word for a register, the chip writes all of the words to that register.
@@ -194,7 +194,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         port.set_infer(false)
     }
 
-    /// Returns a chip that an earlier call left stopped, with its memories open to access.
+    /// Gives access to the memories of a chip that an earlier call left stopped.
     ///
     /// # Errors
     /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, or [`NotGated`](ChipError::NotGated)
@@ -210,8 +210,8 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// Returns a chip that an earlier call left running, between two samples.
     ///
     /// # Errors
-    /// Returns [`NotReset`](ChipError::NotReset), [`Gated`](ChipError::Gated) if the chip does not run, or
-    /// [`Busy`](ChipError::Busy) if it is within a sample.
+    /// Returns [`NotReset`](ChipError::NotReset) if the chip must be reset first, [`Gated`](ChipError::Gated) if the
+    /// chip does not run, or [`Busy`](ChipError::Busy) if the chip is within a sample.
     pub fn started(&mut self) -> Outcome<Started<'_, D, P>, D, P> {
         match self.state {
             State::NotReset => Err(ChipError::NotReset),

@@ -8,7 +8,7 @@ use crate::error::in_range;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnPair {
-    /// Share of the potential that a time step keeps, in units of 1/32 768: 28 672 (0.875) to 36 863 (1.125).
+    /// Factor by which a time step multiplies a potential, in units of 1/32 768: 28 672 (0.875) to 36 863 (1.125).
     pub keep: u16,
     /// Potential at which the two neurons fire, 1 to 32 767.
     pub threshold: i16,
@@ -27,7 +27,7 @@ pub struct ReckOnShared {
     /// Left shifts of the weights, 0 to 7 each. In this order: weights of inputs, of connections between neurons, of
     /// outputs.
     pub shifts: [u8; 3],
-    /// Share of an output's potential that a time step keeps, in units of 1/128.
+    /// Factor by which a time step multiplies an output's potential, in units of 1/128.
     pub keep: u8,
     /// Whether a neuron that fires returns to potential 0. If false, its threshold is subtracted from its potential.
     pub resets_to_zero: bool,

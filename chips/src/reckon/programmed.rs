@@ -24,9 +24,8 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
     /// Writes a network, and sets all pairs of neurons that the network does not use to [`REST`](ReckOnPair::REST).
     /// Reads everything back. Calls `progress` after each pair and each row of weights.
     ///
-    /// **Time:** two transfers of 8 bytes, a write and a read, for each 32-bit word. The pairs take 512 words, and the
-    /// weights take one word for every four. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at an
-    /// SCK of 1 MHz.
+    /// **Time:** two transfers of 8 bytes, a write and a read, for each 32-bit word. The pairs take 512 words, and four
+    /// weights take one word. 256 inputs, 256 neurons and 16 outputs take 68 608 transfers, 4.4 s at an SCK of 1 MHz.
     ///
     /// # Errors
     /// Returns an error if the network does not fit; nothing was written then. Also returns an error if the bus failed,

@@ -204,8 +204,9 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         if is_ready { Ok(()) } else { Err(ChipError::Unfinished) }
     }
 
-    /// Sends a tick, and waits until the chip has taken it. The chip must be set to send an answer after the tick: the
-    /// ready pin then stays low until the driver takes the answer.
+    /// Sends a tick, and waits until the ready pin is low, which shows that the chip has taken the tick. Use this
+    /// function only for ticks that the chip answers: the pin then stays low until the driver takes the answer, so that
+    /// the driver cannot miss the low level.
     fn tick(&mut self) -> Outcome<(), D, P> {
         self.port.set_tick(true).map_err(ChipError::Port)?;
         let is_taken = self.wait_ready(false, self.polls).map_err(ChipError::Port)?;

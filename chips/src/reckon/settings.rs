@@ -1,8 +1,8 @@
 //! The registers of `ReckOn` that set its answers and its learning.
 
-/// The kind of answer that the chip sends, and when the driver returns an answer. With every setting the chip sends an
-/// answer in each step, which proves that the chip has done the step. An answer is one byte for a label, or two bytes
-/// for the potential of each output.
+/// The setting of the chip's answers: a label (one byte) or the outputs' potentials (two bytes for each output). Also
+/// selects whether the driver returns an answer after every step, or only after the sample. With every setting the chip
+/// sends an answer in each step, to prove that it has done the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -48,10 +48,11 @@ pub enum ReckOnTask {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnLearning {
-    /// Whether the weights from inputs, between neurons and to outputs learn, in this order.
+    /// Whether weights learn. The three entries are for the weights from inputs, between neurons and to outputs, in
+    /// this order.
     pub learns: [bool; 3],
-    /// Number of extra fractional bits of the traces, 0 to 7 each. A trace is a measure of recent spikes, from which
-    /// weights learn. In this order: traces for the weights of inputs, of connections between neurons, of outputs.
+    /// Numbers of extra fractional bits of the traces, 0 to 7 each. The three entries are for the weights from inputs,
+    /// between neurons and to outputs, in this order. A trace is a measure of recent spikes, from which weights learn.
     pub traces: [u8; 3],
     /// Left shift of the learning signal, 0 to 15. (After this shift, the chip divides the signal by 4096.)
     pub signal: u8,
@@ -72,23 +73,23 @@ pub struct ReckOnLearning {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReckOnSettings {
-    /// The kind of answer that the chip sends, and when the driver returns answers.
+    /// The kind of the chip's answers, and whether the driver returns one after every step.
     pub answers: ReckOnAnswers,
     /// The kind of target from which the chip learns. [`Label`](ReckOnAnswers::Label) answers need
     /// [`Classification`](ReckOnTask::Classification).
     pub task: ReckOnTask,
-    /// The parameters of learning; `None` switches learning off. (After a reset, learning is on.)
+    /// The parameters of learning; `None` switches learning off. (A reset of the chip switches learning on.)
     pub learning: Option<ReckOnLearning>,
 }
 
 impl ReckOnSettings {
-    /// Settings without learning that return the outputs' potentials in each step.
+    /// Settings without learning: the driver returns the outputs' potentials after every step and after the sample.
     pub const POTENTIALS: Self = Self {
         answers: ReckOnAnswers::PotentialsEachStep,
         task: ReckOnTask::Regression,
         learning: None,
     };
-    /// Settings without learning that return a label for each sample.
+    /// Settings without learning: the driver returns a label after the sample.
     pub const LABEL: Self =
         Self { answers: ReckOnAnswers::Label, task: ReckOnTask::Classification, learning: None };
 }

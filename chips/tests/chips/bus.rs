@@ -6,9 +6,9 @@ use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 /// is sent.
 #[derive(Debug)]
 pub(crate) struct Failing<D> {
-    /// The bus to which transactions are passed.
+    /// The device to which transactions are passed.
     pub(crate) device: D,
-    /// Number of transactions that succeed before one of them fails.
+    /// Number of transactions that succeed before the one that fails.
     pub(crate) left: usize,
 }
 

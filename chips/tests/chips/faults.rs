@@ -384,9 +384,10 @@ fn a_start_that_no_neuron_can_show_is_refused_and_changes_nothing() {
     assert!(gated.run(&OPEN).is_ok());
 }
 
-/// Accesses memory filled with different words, while one clock pulse is lost and another doubled, in either order.
-/// Tries every `stride`-th clock pulse as the first fault, and every later one as the second. Asserts that the access
-/// returns an error or that memory is right; returns the number of pairs tried.
+/// Writes a neuron or a synapse while one clock pulse is lost and another doubled, in either order. Tries every
+/// `stride`-th clock pulse as the first fault, and every later one as the second. Repeats all of this with three
+/// fillings of the memories. Asserts that the write returns an error or that memory is right; returns the number of
+/// pairs tried.
 fn pairs_within_an_access(stride: usize) -> usize {
     use ClockFault::{Doubled, Lost};
     let access = |words: (u32, u32), is_neuron: bool, faults: &[(u64, ClockFault)]| {

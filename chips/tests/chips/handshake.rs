@@ -1,5 +1,4 @@
-//! Tests of the frames on the SPI bus and their order, of handshakes, and of time steps, on the models of tinyODIN and
-//! ODIN.
+//! Tests on the models of tinyODIN and ODIN: the frames on the SPI bus and their order, handshakes, and time steps.
 
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;
@@ -24,8 +23,8 @@ const OPEN: TinyOdinRegisters = TinyOdinRegisters {
     last_neuron: 255,
 };
 
-/// Makes a board with a running chip, whose first `firing` neurons fire at every event, and a driver for the chip. A
-/// port call takes `clocks` clock cycles of the chip.
+/// Makes a board and a driver, and starts the chip. The first `firing` neurons fire at every event. A port call takes
+/// `clocks` clock cycles of the chip. The driver's waits end after `polls` pin reads.
 fn running(clocks: u32, polls: u32, firing: usize) -> (TinyBoard, Tiny) {
     let board = TinyBoard::new(4, clocks);
     let mut chip = TinyOdin::new(board.spi(), board.port(), polls);
@@ -72,9 +71,9 @@ impl<D: SpiDevice> SpiDevice for Recorder<D> {
 
 #[test]
 fn reads_per_clock_multiply_the_polls_of_every_wait() {
-    /// Sends a word to a chip that is gated, and therefore never acknowledges it. Returns the number of port calls that
-    /// the driver makes before it gives up. `reads` is the number of pin reads for each clock cycle of the chip, and
-    /// `polls` the limit that is multiplied by it.
+    /// Sends a word to a chip that is gated, and therefore never acknowledges the word. Returns the number of port
+    /// calls that the driver makes before it gives up. `polls` is the driver's limit of polls, and `reads` is the
+    /// number that multiplies this limit: the number of pin reads for each clock cycle of the chip.
     fn polls(reads: u32, polls: u32) -> u64 {
         let board = Board::<silicon::TinyOdin>::new(8, 1);
         board.pins().chip.neurons.fill(0x1000);
@@ -293,7 +292,8 @@ fn quiesce_waits_as_long_as_the_chip_may_work() {
     assert_eq!(waits(true, true), 4 * open + (1 << 15));
 }
 
-/// A port without a pin for `SCHED_FULL` cannot say whether the queue is full: the default returns `None`.
+/// A port without a pin for `SCHED_FULL` cannot tell whether the chip's queue is full. Its `queue_full`, which the
+/// trait provides, returns `None`.
 #[test]
 fn a_port_may_leave_the_full_pin_unwired() {
     let port = TinyBoard::new(4, 1).port();

@@ -26,7 +26,7 @@ fn frame<K: Kind>(board: &Board<K>, address: u32, data: u32) -> u8 {
     frame[4]
 }
 
-/// Makes a board with a chip that was reset and gated, and whose registers have these values.
+/// Makes a board, resets and gates its chip, and writes `registers`: pairs of a register's number and its value.
 fn gated<K: Kind>(ratio: u32, registers: &[(u32, u32)]) -> Board<K> {
     let board = Board::new(ratio, 1);
     board.pins().chip.set_reset(true);

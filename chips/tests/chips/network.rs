@@ -34,7 +34,7 @@ fn tiny(
     TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS)
 }
 
-/// Each neuron passes its input's spike on, so that the outputs are the events of the encoder.
+/// Each neuron fires at each event of its own input, so that the outputs are the events of the encoder.
 #[test]
 fn a_network_of_64_neurons_flies() {
     let board = TinyBoard::new(16, 1);

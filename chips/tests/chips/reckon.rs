@@ -448,8 +448,8 @@ impl ReckOnPort for FaultyPort<'_> {
     }
 }
 
-/// Begins a sample on a chip without a network. (The potentials in an answer of such a chip are those of 16 outputs.)
-/// Then sets faults with `set`, and returns the result of `act`.
+/// Begins a sample on a chip without a network, sets faults of the pins with `set`, and returns the result of `act` on
+/// the sample. Without a network, an answer with potentials has all 16 outputs.
 fn with_faults<T>(
     settings: &ReckOnSettings,
     set: impl Fn(&Lines),
@@ -478,7 +478,8 @@ fn a_line_that_stays_as_it_is_ends_the_handshake() {
     assert_eq!(stuck, Err(Error::Handshake(Phase::Release)));
 }
 
-/// An answer that has neither two bytes for each of 16 outputs nor one byte for a label is an error.
+/// An answer with potentials must have two bytes for each of 16 outputs, and a label must have one byte. Any other
+/// length is an error.
 #[test]
 fn an_answer_of_the_wrong_length_is_an_error() {
     let answer = |settings, bytes| {

@@ -9,8 +9,8 @@ use silicon::reckon::{Board, Port, ReckOn as Model, Spi};
 use spikewire_chips::{ChipError, ReckOn, ReckOnNetwork, ReckOnPair, ReckOnSettings, ReckOnShared};
 
 type Chip = ReckOn<Spi, Port>;
-/// A way to compare two chips. For each chip, the second function makes further calls of the driver; then the first
-/// function returns the content to compare.
+/// A way to compare two chips. The first function returns the content of a chip. The second function is called before,
+/// and makes further calls of the driver.
 type Comparison = (fn(&Model) -> (Vec<u32>, Vec<u128>), fn(&mut Chip) -> Outcome<()>);
 type Outcome<T> = Result<T, ChipError<ErrorKind, u64>>;
 
@@ -40,8 +40,9 @@ fn network_content(chip: &Model) -> (Vec<u32>, Vec<u128>) {
     (whole_content(chip).0, own.chain(rows).chain(outputs).collect())
 }
 
-/// Fills a chip's memories with `words`, plans `faults`, and calls `access`. Returns the result, the content of the
-/// chip afterwards, and the number of SPI clock pulses that the access took.
+/// Fills a chip's memories with `words`, plans `faults`, and calls `access`, then `confirm` if `access` succeeded.
+/// Returns the value of `access` or the first error; the content of the chip afterwards, as `view` reads it; and the
+/// number of SPI clock pulses that `access` took.
 fn run_access<T>(
     words: u128,
     faults: &[(u64, ClockFault)],
@@ -84,8 +85,8 @@ const LOADED: u64 = 512 + 1 + 256 + 256;
 
 /// Compares all registers and memories, immediately after the access.
 const AT_ONCE: Comparison = (whole_content, |_| Ok(()));
-/// Compares all registers with those of a run without faults, and the words of memory that `verify` checks. `verify`
-/// comes first: it returns an error if a fault made a write of a read, and so changed the memory.
+/// Compares all registers, and the words of memory that `verify` checks. Calls `verify` before the comparison: it
+/// returns an error if a fault turned a read into a write that changed one of these words.
 const VERIFIED: Comparison = (network_content, |chip| chip.programmed()?.verify(&NETWORK));
 
 const WORDS: [u128; 3] = [0, u128::MAX, 0x8765_4321_0FED_CBA9_A5A5_3C3C_1234_5678];
@@ -99,11 +100,14 @@ fn differences(a: &(Vec<u32>, Vec<u128>), b: &(Vec<u32>, Vec<u128>)) -> Vec<(usi
     both.filter(|(_, (a, b))| a != b).map(|(at, (a, b))| (at, a, b)).collect()
 }
 
-/// Makes an access many times, each time with a pair of faults: one lost and one doubled clock pulse. Tries `some`
-/// random pairs, whose faults are less than `reach` clock pulses apart. If `all_in_first` is set, also tries all pairs
-/// within the first frame. Leaves out pairs with a fault in a frame that writes a register, or in the frame before;
-/// `is_register` returns whether the frame with a given number writes a register. Asserts that each access returns an
-/// error or has the same effect as without faults. Returns the number of pairs tried.
+/// Makes an access many times, each time with a pair of faults: one lost and one doubled clock pulse. Asserts that each
+/// access returns an error, or has the same result and effect as an access without faults. `comparison` selects the
+/// registers and memories that are compared. Returns the number of accesses with faults.
+///
+/// Draws `some` random pairs of clock pulses for each of [`WORDS`]; the two pulses are less than `reach` pulses apart.
+/// If `all_in_first` is set, also takes all pairs of pulses within the first frame of the access. Leaves out pairs that
+/// have a fault in a frame that writes a register, or in the frame that precedes such a frame. `is_register` returns
+/// whether the frame with a given number writes a register.
 fn pairs<T: PartialEq + std::fmt::Debug>(
     (some, all_in_first): (usize, bool),
     reach: u64,
@@ -187,9 +191,9 @@ fn a_weight_that_is_read_is_not_written_where_it_ends() {
     assert!(result.is_err());
 }
 
-/// A fault that the driver cannot notice must do no harm. The header of a read of neurons loses its first bit, so that
-/// the chip writes the potential of an output instead. The read returns 0, which is also the correct word. The
-/// potential must stay 0.
+/// A fault that the driver cannot notice must do no harm. A read of neurons loses the first bit of its header, so that
+/// the chip takes the read for a write of an output's potential. The driver gets 0, which is also the correct word. The
+/// outputs' potentials must still be 0.
 #[test]
 fn a_word_of_neurons_that_is_read_moves_no_output() {
     // All words are written, the sync is checked, and the first word is read.

@@ -16,8 +16,8 @@ struct RandomNetwork {
     neurons: u16,
 }
 
-/// Returns a random weight that depends only on the arguments. `kind` is 0 for weights from inputs, 1 between neurons,
-/// and 2 to outputs.
+/// Returns a random weight that depends only on the arguments. `kind` is 0 for weights from inputs, 1 for weights
+/// between neurons, and 2 for weights to outputs.
 fn weight(kind: u64, from: u16, to: u16) -> i8 {
     let place = kind << 32 | u64::from(from) << 16 | u64::from(to);
     Pcg32::seed_from_u64(place).next_u32() as i8
@@ -164,9 +164,9 @@ fn sample<'a, 'b>(
     Ok(((answers, fired), started))
 }
 
-/// Calls of the port that take up to 26 clock cycles must not change the answers. With up to 10 neurons, the ready pin
-/// is low for at most that time in each step, so that the driver may miss it. With up to 25 neurons, this is so only at
-/// the first tick of a sample.
+/// Calls of the port that take up to 26 clock cycles must not change the answers. Such calls may be too slow to see
+/// that the ready pin is low. With up to 10 neurons, this can happen in every step, because the pin is low for at most
+/// 26 clock cycles. With 11 to 25 neurons, this can happen only at the first tick of a sample.
 #[test]
 fn pins_that_are_read_seldom_change_no_answer() {
     for neurons in [1, 2, 3, 5, 8, 10, 11, 12, 16, 20, 24, 25, 26, 32, 64, 256] {

@@ -21,8 +21,9 @@ type TinyBoard = Board<silicon::TinyOdin>;
 type Tiny = TinyOdin<silicon::Spi<silicon::TinyOdin>, silicon::Port<silicon::TinyOdin>>;
 type Error = ChipError<embedded_hal::spi::ErrorKind, u64>;
 
-/// Number of SPI clock pulses in eight frames. A lost and a doubled pulse that are closer than this may cancel out
-/// before the driver checks. Such a pair can go unnoticed, because registers cannot be read back.
+/// Smallest distance between a lost and a doubled pulse in a schedule: eight frames, in SPI clock pulses. Two such
+/// faults that are closer may cancel out before the driver checks that chip and bus are in sync. The driver may then
+/// not notice a wrong register, because registers cannot be read back.
 const CANCELLING: u64 = 320;
 /// Mask of the bits that hold a neuron's potential.
 const STATE: u128 = 0xFFF;
@@ -74,7 +75,7 @@ impl Random {
     }
 }
 
-/// The state of the chip that the caller of the driver expects.
+/// The expected state of the chip, which the test derives from its calls of the driver.
 struct Known {
     neurons: Vec<u128>,
     synapses: Vec<u32>,

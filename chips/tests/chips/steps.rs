@@ -1,5 +1,5 @@
-//! Tests of `Steps`, in which each neuron compares with its threshold once a step: the driver on tinyODIN's model
-//! against plain arithmetic.
+//! Tests of `Steps`: time steps in which each neuron compares its potential with its threshold once. The tests run
+//! random networks with the driver on tinyODIN's model, and compare the spikes with those of plain arithmetic.
 
 use proptest::prelude::*;
 use silicon::Board;
@@ -13,12 +13,13 @@ use spikewire_chips::{
 struct Neuron {
     threshold: i32,
     leak: i32,
-    /// Amount by which an event that raises the neuron (a rung) changes its potential.
+    /// The neuron's rung: the amount by which each event that raises the layer raises this neuron's potential.
     rung: i32,
     /// Number of leaks that act only on this neuron, at the end of each step in which it fires.
     own: u16,
-    /// Weights from the previous layer: [`Net::rows`] weights from its first neuron, then as many from its second
-    /// neuron, and so on. Contains no weights from the bias or from the neuron's own layer.
+    /// Weights from the previous layer or, in the first layer, from the inputs. Each sender has one weight for each
+    /// entry of [`Net::rows`]; the weights of the first sender come first. Contains no weights from the bias or from
+    /// the neuron's own layer.
     weights: Vec<i8>,
     bias: Vec<i8>,
     own_weights: Vec<i8>,
@@ -29,12 +30,13 @@ struct Neuron {
 struct Net {
     inputs: usize,
     has_bias: bool,
-    /// For each row of synapses of an input or neuron, the number of events that a spike sends on it.
+    /// Numbers of events that one spike sends: one number for each row of synapses of the input or neuron that spikes.
     rows: Vec<u16>,
     layers: Vec<(bool, Vec<Neuron>)>,
-    /// Number of rungs by which each potential on the chip is lower than in the reference, between steps.
+    /// Number of rungs (see [`Neuron::rung`]) by which the chip keeps each potential below that of the reference
+    /// between two steps.
     below: u16,
-    /// Number of rungs by which each threshold on the chip is higher than in the reference.
+    /// Number of rungs by which each threshold on the chip lies above that of the reference.
     above: u16,
     leaks: Vec<Vec<u16>>,
     lift: u16,
@@ -46,8 +48,8 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
 }
 
 impl Net {
-    /// Runs a step and returns the neurons of each layer that fire. `before` holds the neurons of each layer that
-    /// fired in the previous step.
+    /// Runs a step. Returns the neurons that fire, as one list for each layer. `before` holds these lists of the
+    /// previous step.
     fn step(&mut self, step: usize, inputs: &[u16], before: &[Vec<u16>]) -> Vec<Vec<u16>> {
         let [below, above, lift] = [self.below, self.above, self.lift].map(i32::from);
         let rows = &self.rows;
@@ -158,8 +160,8 @@ impl Net {
     }
 }
 
-/// The network in the form that the driver loads: without recurrent weights, and with every row of synapses as the row
-/// of an input. The second field is the number of rows.
+/// The network in the form that the driver loads: each row of synapses is described as the row of an input, and there
+/// are no recurrent weights. The second field is the number of rows.
 struct Rows<'a>(&'a Net, u16);
 
 impl Describe<TinyOdinInput> for Rows<'_> {

@@ -124,8 +124,8 @@ fn before_a_time_step_a_neuron_of_odin_was_higher() {
     assert_eq!(before(OdinNeuron { learning: Some(learning), ..neuron(0) }), None);
 }
 
-/// Checks the numbers and values of the registers, and whether they open the loop. Also checks the number of clock
-/// cycles that tinyODIN takes to apply one spike to all neurons in use.
+/// Checks the number and the value of each register that the driver writes, and the result of `is_open_loop`. Also
+/// checks the number of clock cycles that tinyODIN takes to apply one spike to all neurons in use.
 #[test]
 fn registers_are_those_of_the_documentation() {
     fn written<I: Input>(registers: &I::Registers) -> Vec<(u16, u32)> {

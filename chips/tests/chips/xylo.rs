@@ -6,7 +6,8 @@ use proptest::prelude::*;
 use spikewire::{Bins, Event, Polarity, Tick};
 use spikewire_chips::{ChipError, InputBank, Registers, Xylo, XyloMap, pack_counts};
 
-/// Registers of a chip that is done after `busy` reads of its status, and whose outputs 0, 2 and 31 fired.
+/// Registers of a chip. From the read with number `busy` on, they show that the time step is done. Outputs 0, 2 and 31
+/// fired (on an A2, which has 8 outputs, 0 and 2).
 #[derive(Debug, Default)]
 struct Chip {
     accesses: Vec<(char, u16, u32)>,

@@ -23,7 +23,8 @@ pub(crate) enum Encoding {
     Signed,
     /// An unsigned number of variable length, seven bits in each byte.
     Unsigned,
-    /// A 14-bit two's complement number of variable length, seven bits in each byte. The decoded number is negated.
+    /// A signed number. The frame holds the negative of the number, in 14-bit two's complement. The 14 bits are stored
+    /// like an [`Unsigned`](Self::Unsigned) number.
     Negative14,
     /// Up to eight numbers. The first byte has one bit for each number. The numbers whose bit is 1 follow; the others
     /// are 0 and take no bytes. A single number is stored without the first byte.

@@ -229,9 +229,13 @@ impl Session {
 
     /// Turns a frame of the main loop into a message. Keeps the frame for the prediction of later frames.
     ///
+    /// A frame continues another frame if its time and its loop iteration are not lower, and are higher by less than
+    /// [`LONGEST_JUMP`]. A frame is good if it continues the last good frame, or if there is none yet. A full frame that
+    /// does not continue the last good frame is kept in `doubted`. The next full frame is good if it continues the
+    /// doubted frame.
+    ///
     /// # Errors
-    /// Returns [`Fault::Odd`] if the time or the loop iteration is lower than in the last good frame, or higher by
-    /// [`LONGEST_JUMP`] or more. A full frame is valid all the same if it continues the full frame in `doubted`.
+    /// Returns [`Fault::Odd`] if the frame is not good.
     fn main(&mut self, frame: Vec<i32>, is_full: bool) -> Result<Frame, Fault> {
         let mut numbers = self.header.full.widened(&frame);
         let mut time = numbers[self.time];

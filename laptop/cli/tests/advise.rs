@@ -87,8 +87,8 @@ fn a_loop_is_advised_no_code_that_is_late_or_falls_behind() {
     refused(&unknown, "", &["--loop-bandwidth needs the rate of x"]);
 }
 
-/// One scheme is advised for both channels, although tuning them separately would give different schemes or different
-/// numbers of spikes a sample. The flight file written by `advise` is accepted by `encode` and `emit`.
+/// `advise` ranks schemes for two channels together, by bytes a second. In the simulated flights, none of these schemes
+/// lost the drone. `encode` and `emit` accept the flight file that `advise` writes.
 #[test]
 fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
     let row = |sample: u32| {

@@ -294,8 +294,8 @@ fn a_reset_by_subtraction_is_corrected_for_reckon() {
 }
 
 /// The Python example `on_chip.py` trained this network in tinyODIN's arithmetic. In at least 99 % of the steps in
-/// which an output fires, the same outputs fire on the chip as in double precision. Only the chip's potentials have a
-/// lower bound, -2048.
+/// which an output fires, the same outputs fire on the chip as in double precision. The potentials on the chip
+/// have a lower bound, -2048, and those in double precision have none.
 #[test]
 fn a_network_trained_in_the_chips_arithmetic_loses_little_on_the_chip() {
     let network = peers("on_chip.json").display().to_string();

@@ -31,16 +31,18 @@ use std::time::{Duration, Instant};
 /// that cause 80°.
 const PHASE: f64 = 20.0;
 
-/// Largest share of a log's samples at which the signal may change by more than a step code can follow: the decoded
-/// value moves by at most one threshold a sample. In the flights of `docs/loop.md`, the drone flies well at a share of
-/// 0.9 %. At a share of 3.9 %, the code loses steps, and the drone flips.
+/// Largest share of steep samples with which a step code is advised for a control loop. A sample is steep if the signal
+/// has changed by more than one threshold since the sample before. The decoded value cannot follow, because it moves by
+/// at most one threshold a sample. In the flights of `docs/loop.md`, the drone flies well if 0.9 % of the samples are
+/// steep. If 3.9 % are steep, the code loses steps, and the drone flips.
 const STEEP: f64 = 0.02;
 
 /// Smallest sample rate with which a control loop works, as a multiple of the loop's bandwidth. The Nyquist rate, twice
 /// the bandwidth, is too small.
 const FEWEST: f64 = 4.0;
 
-/// Returns the largest latency, in samples, that a loop of `bandwidth` Hz tolerates at `rate` samples a second.
+/// Returns the largest latency, in samples, that a control loop tolerates. `bandwidth` is the loop's bandwidth in Hz,
+/// and `rate` is the number of samples a second.
 fn borne(bandwidth: f64, rate: f64) -> f64 {
     (PHASE / 360.0 * rate / bandwidth).floor()
 }
@@ -56,15 +58,16 @@ pub struct AdviseRequest {
     pub max_rmse: Option<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
-    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. A
-    /// code is not advised if its latency is too long for the loop, or if it cannot keep up with the signal.
+    /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. If
+    /// the bandwidth is given, a code with too long a latency for the loop is not advised. Neither is a code whose
+    /// decoded value changes too slowly to follow the signal.
     pub loop_bandwidth: Option<f64>,
-    /// Percentage of frames that the link loses, 0 to 10. If `loop_bandwidth` is given, some codes are excluded from
-    /// the advice. These are the codes with which a simulated drone crashed or strayed far when as many frames were
-    /// lost.
+    /// Percentage of frames that the link loses, 0 to 10. If `loop_bandwidth` is given, a code is not advised if a
+    /// simulated drone crashed or strayed far with the code while the link lost 1 % of the frames. For a percentage
+    /// above 1, the code is also not advised if the drone crashed while the link lost 10 % of the frames.
     pub frame_loss: f64,
-    /// Name of the processor core that will run the codecs, such as `M4F`. Instruction counts must have been measured
-    /// on it.
+    /// Name of the processor core that will run the codecs, such as `M4F` for a Cortex-M4F. A core on which the codecs'
+    /// instructions were not counted is an error.
     pub core: String,
     /// Number of settings to score for each scheme and channel, 1 or more.
     pub evaluations: usize,
@@ -106,14 +109,15 @@ pub struct Advice {
     /// The reason that no scheme is advised; `None` if a scheme is advised.
     objection: Option<String>,
     max_rmse: f64,
-    /// The schemes that reach the allowed RMSE. The advised scheme comes first.
+    /// The schemes that stay within the allowed RMSE and break no limit. The advised scheme comes first.
     reaching: Vec<Candidate>,
-    /// For each scheme that misses the allowed RMSE or breaks a limit, its name and the reason.
+    /// The schemes that miss the allowed RMSE or break a limit, each by name and with the reason.
     others: Vec<String>,
-    /// The schemes among `others` with which a simulated drone flew badly. They are the same for every channel.
+    /// The entries of `others` whose schemes were left out because a simulated drone flew badly with them. All channels
+    /// have the same entries here.
     #[serde(skip)]
     unflown: Vec<String>,
-    /// Whether a search stopped before it had scored all its settings.
+    /// Whether the search for good settings of a scheme in `reaching` was cut short, by the time limit or by the user.
     is_cut_short: bool,
     /// Largest latency that the control loop tolerates, in samples. `None` if the bandwidth of the loop is unknown.
     loop_latency: Option<f64>,
@@ -156,9 +160,9 @@ impl Filtered {
 
 /// The outcome of tuning one scheme on one channel.
 enum Tuning {
-    /// Settings within the allowed RMSE.
+    /// Settings that reach the allowed RMSE and keep all limits.
     Reached(Box<Candidate>),
-    /// The reason that no settings are within the allowed RMSE: a text to be put after the scheme's name.
+    /// The reason that the scheme is excluded: a text to be put after the scheme's name.
     Missed(String),
 }
 
@@ -174,8 +178,8 @@ struct Candidate {
 /// Describes each recording, tunes all schemes on it, and ranks the schemes that suit the recording.
 ///
 /// # Errors
-/// Returns an error if a recording is too short for a part of it to be held out, or if a field of the request is
-/// invalid.
+/// Returns an error if a field of the request is invalid, or if a recording is too short to be cut into a part for
+/// tuning and a held-out part.
 pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
     if request.evaluations == 0 {
         return Err(RequestKind::NotAboveZero.of(Given::new("evaluations", 0)));
@@ -267,9 +271,11 @@ impl Advice {
         })
     }
 
-    /// Decides whether a scheme suits the recording. Tunes the scheme briefly. Adds it to `reaching` if the settings
-    /// found are within the allowed RMSE, and otherwise to `others`, with the reason. A scheme with which the simulated
-    /// drone flew badly is not tuned. It is added to `unflown` and `others`.
+    /// Tunes a scheme briefly, and decides whether it suits the recording. A scheme that suits is added to `reaching`,
+    /// with its settings. A scheme that does not suit is added to `others`, with the reason.
+    ///
+    /// If a loop bandwidth is given, a scheme with which a simulated drone flew badly is not tuned. Such a scheme is
+    /// added to `unflown` and to `others`.
     fn consider(
         &mut self,
         request: &AdviseRequest,
@@ -296,7 +302,7 @@ impl Advice {
         Ok(())
     }
 
-    /// Tunes a scheme briefly, while the parameters in `fixed` keep their values.
+    /// Tunes a scheme within `budget`. The parameters in `fixed` keep their values.
     fn tuned(
         &self,
         request: &AdviseRequest,
@@ -305,7 +311,8 @@ impl Advice {
         fixed: &Asked,
         budget: &Budget,
     ) -> Result<Tuning> {
-        /// Factor by which the RMSE on held-out blocks may exceed the allowed RMSE, because blocks differ by chance.
+        /// Largest RMSE on held-out blocks, as a multiple of the allowed RMSE. It is above 1 because blocks differ by
+        /// chance.
         const MARGIN: f64 = 1.25;
         let filtered = self.filter(scheme, request.sample);
         let own;
@@ -379,7 +386,7 @@ impl Advice {
         Filtered::new(filter, sample, self.look.rate?)
     }
 
-    /// Returns the tuned settings of a scheme, if they reach the allowed RMSE.
+    /// Returns the tuned settings of a scheme. Returns `None` if the scheme misses the allowed RMSE or breaks a limit.
     fn row(&self, scheme: Scheme) -> Option<&Row> {
         let own = self.reaching.iter().find(|own| own.scheme == Some(scheme));
         own.map(|own| &own.row)
@@ -508,8 +515,9 @@ impl Advice {
     }
 }
 
-/// Returns the number of bytes that a trial's events take on the crate's link, if each frame is sent once it is full. A
-/// scheme whose decoder needs keyframes sends one after every `keyframe_every` samples.
+/// Returns the number of bytes that a trial's events take as frames of `spikewire`'s link. Each frame is sent once it
+/// is full. If the scheme's decoder needs keyframes, the bytes include a keyframe every `keyframe_every` samples.
+/// `rate` is the number of samples a second.
 ///
 /// # Errors
 /// Returns an error if the link cannot express the rate or the events.

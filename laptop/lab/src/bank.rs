@@ -15,11 +15,11 @@ pub struct Bank {
 }
 
 impl Bank {
-    /// Makes a codec for each channel, in the state in which a recording begins. A stochastic code gets a separate
+    /// Makes a codec for each channel, ready for the first sample of a recording. A stochastic code gets a separate
     /// stream of random numbers for each channel.
     ///
     /// # Errors
-    /// Returns an error if a parameter is invalid, or if there are too many neurons in all.
+    /// Returns an error if a parameter is invalid, or if all channels together have more than 65 536 neurons.
     pub fn new(scheme: Scheme, channels: &[Settings]) -> Result<Self> {
         let neurons = match channels.first() {
             Some(settings) => scheme.shape(settings)?.neurons,

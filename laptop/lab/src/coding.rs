@@ -105,8 +105,8 @@ impl Coding {
         Ok(coding)
     }
 
-    /// Checks the parameters by building a codec for each channel. Skips the check if the options or a recording must
-    /// still give a parameter. An error does not contain a line of the file: the caller adds the line.
+    /// Checks the parameters by building a codec for each channel. Skips the check if a parameter is still missing, and
+    /// will come from the options or from a recording. The caller adds the line of the file to an error.
     fn built_alone(&self) -> Result<()> {
         let Self { scheme, sample, asked } = self;
         let is_open = |own: &Parameter| {

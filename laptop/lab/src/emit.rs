@@ -29,7 +29,7 @@ pub fn toml(coding: &Coding, comments: &[String]) -> Result<String> {
     Ok(emit::toml(comments, coding.scheme, &settings(coding)?))
 }
 
-/// Completes a coding's parameters with defaults. Returns an error if a parameter must be found in a signal.
+/// Completes a coding's parameters with defaults. Returns an error if a parameter can only be derived from a signal.
 fn settings(coding: &Coding) -> Result<Settings> {
     let Coding { scheme, sample, asked } = coding;
     let past = vec![0.0; scheme.looks_back(asked)];
@@ -232,7 +232,7 @@ spikewire_c::codecs! {
 ";
 
 const HEADER: &str = "\
-//! Writes the header: `cargo run --features header --bin header DIRECTORY`.
+//! Writes the library's C headers: `cargo run --features header --bin header DIRECTORY`.
 
 #[allow(improper_ctypes_definitions)]
 #[path = \"../codecs.rs\"]
@@ -253,13 +253,14 @@ fn main() -> std::io::Result<()> {
 
 const FLIGHTS: &str = "\
 @MODULES@
-/// Descriptions of the flights, from which the headers are written.
+/// Functions that describe the flights, one for each flight. A flight is the scheme and the channels of a sender. The
+/// program `header` writes the C headers from the descriptions.
 #[allow(dead_code)] // the library itself does not ask
 pub static FLIGHTS: &[fn() -> spikewire_c::Flight] = &[@ALL@];
 ";
 
 const FLIGHT_HEADER: &str = "\
-//! Writes the headers: `cargo run --features header --bin header DIRECTORY`.
+//! Writes the library's C headers: `cargo run --features header --bin header DIRECTORY`.
 
 #[allow(improper_ctypes_definitions)]
 #[path = \"../flights/mod.rs\"]

@@ -31,8 +31,8 @@ pub fn encode_flight(
     encode_to(&open, &input, (scheme, sample, &asked), format, output)
 }
 
-/// Encodes channels of a recording to a log in `format`, or to a table of spikes if `None`. The output is opened last,
-/// once recording and parameters are known to be valid.
+/// Encodes channels of a recording. Writes a log in `format`, or a table of spikes if `format` is `None`. The output is
+/// opened last, once the recording and the parameters are known to be valid.
 ///
 /// Returns the output, which the caller must finish, and notes for the user, a line each.
 ///
@@ -61,7 +61,7 @@ pub(crate) struct Start<'a> {
     pub names: Vec<&'a str>,
     /// Whether the samples have times.
     pub is_timed: bool,
-    /// Number of samples at the start of the recording from which the usual time between samples was measured.
+    /// Number of samples in the first part of the recording. The usual time between samples was measured in this part.
     pub first: usize,
     /// Function that reads the whole recording, and returns the smallest and largest sample of each channel.
     pub ranges: &'a dyn Fn() -> Result<Vec<(f64, f64)>>,

@@ -33,7 +33,7 @@ pub struct Error {
 pub struct Place {
     /// Name of the file as the user gave it, or `standard input`.
     pub file: Option<String>,
-    /// The spot in the file.
+    /// The line or other spot in the file. `None` if the fault is not tied to one spot.
     pub spot: Option<Spot>,
 }
 
@@ -165,13 +165,13 @@ impl Error {
         self
     }
 
-    /// Records `parameter` as the setting at fault.
+    /// Adds `parameter` to the error, as the setting at fault. Replaces an earlier one.
     #[must_use]
     pub fn about(self, parameter: Given) -> Self {
         Self { parameter: Some(parameter), ..self }
     }
 
-    /// Makes the error of a file that cannot be opened.
+    /// Makes the error for a file that cannot be opened.
     pub(crate) fn open(file: impl Into<String>, error: io::Error) -> Self {
         Self { parameter: None, place: Place::of(file), kind: Box::new(ErrorKind::Open(error)) }
     }

@@ -144,8 +144,8 @@ pub fn rounding(settings: &Settings) -> Option<String> {
     (!words.is_empty()).then(|| format!("in {}, {}", settings.sample, words.join(", ")))
 }
 
-/// Adds the likely reason to an error about settings: `sample` is too coarse for the steps from sample to sample in
-/// `values`. Returns the error unchanged if `sample` is fine enough.
+/// Adds a likely reason to an error about settings: the sample type is too coarse for the differences between
+/// consecutive values. Returns the error unchanged if the sample type is fine enough.
 pub fn explained(error: Error, sample: SampleType, values: &[f64]) -> Error {
     match Resolution::of(sample, values).lost() {
         Some(why) => {

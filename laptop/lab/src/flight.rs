@@ -31,8 +31,8 @@ impl Coding {
     }
 }
 
-/// Makes a [`Flight`] of tuned channels. `rows` gives the name, the scheme and the settings of each channel. The
-/// samples have the type `sample`, and there are `rate` of them a second. The flight sends 20 keyframes a second.
+/// Makes a [`Flight`] from the results of tuning. `rows` gives the name, the scheme and the settings of each channel.
+/// `sample` is the sample type, and `rate` is the number of samples a second. The flight sends 20 keyframes a second.
 ///
 /// # Errors
 /// Returns an error if there are no channels, or if their schemes differ. Returns an error if the channels differ in a
@@ -100,8 +100,8 @@ pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
     own
 }
 
-/// A source of samples that are prepared as in the flight's sender: converted to the sensor's counts, and then
-/// filtered.
+/// A source of samples. It converts the samples to the sensor's counts, and then filters them, as the flight's sender
+/// does.
 pub(crate) struct Sampled<'a> {
     flight: &'a Flight,
     source: Box<dyn Source>,

@@ -36,10 +36,11 @@ pub struct ChannelSummary {
     /// Percentage of samples that are clipped. A sample is clipped if it has the lowest or the highest value and
     /// belongs to a run of three or more equal samples.
     pub clipped: f64,
-    /// Lowest and highest sample in the quiet windows, which [`resting`](Self::resting) defines. `None` if all windows
-    /// are quiet, or if none is.
+    /// Lowest and highest sample in the quiet windows, in which the drone is taken to rest. [`resting`](Self::resting)
+    /// defines quiet windows. `None` if all windows are quiet, or if no window is quiet.
     pub rest: Option<[f64; 2]>,
-    /// Lowest and highest sample in the windows that are not quiet. `None` if all windows are quiet, or if none is.
+    /// Lowest and highest sample outside the quiet windows, where the drone is taken to fly. [`resting`](Self::resting)
+    /// defines quiet windows. `None` if all windows are quiet, or if no window is quiet.
     pub flight: Option<[f64; 2]>,
     /// Percentage of windows of 64 samples in which the channel is quiet. A window is quiet if its standard deviation
     /// is at most four times the fifth percentile of all windows' standard deviations.
@@ -230,7 +231,8 @@ fn clipped(values: &[f64], min: f64, max: f64) -> f64 {
     100.0 * runs.sum::<usize>() as f64 / values.len() as f64
 }
 
-/// Returns the frequency, as a share of the sample rate, below which 99 % of the power around the mean lies.
+/// Returns the bandwidth, as a share of the sample rate: 99 % of the signal's power lies below this frequency. The mean
+/// of the signal does not count as power.
 fn bandwidth(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let around: Vec<f64> = values.iter().map(|own| own - mean).collect();

@@ -4,9 +4,8 @@
 use crate::brief::short;
 use catalogue::run::SampleType;
 
-/// Limit on the rounding error of a sample type. The error is the mean change that rounding to the type causes in a
-/// step from sample to sample, as a share of the mean step. A sample type whose error exceeds the limit is said to lose
-/// the steps.
+/// Largest rounding error with which a sample type is fine enough for a column. Rounding the samples to the type
+/// changes the steps from sample to sample. The rounding error is the mean change of a step, divided by the mean step.
 const PART: f64 = 0.1;
 
 /// Statistics of the steps from sample to sample in a column, and of the errors that rounding to a sample type causes
@@ -43,8 +42,8 @@ impl Resolution {
         }
     }
 
-    /// Measures the steps from sample to sample in a whole column. Also measures how much rounding to the sample type
-    /// `sample` changes these steps.
+    /// Measures the steps from sample to sample in a whole column. Also measures the errors that rounding to the sample
+    /// type causes in these steps.
     pub fn of(sample: SampleType, values: &[f64]) -> Self {
         let mut own = Self::new(sample);
         own.observe(values);
@@ -90,8 +89,9 @@ impl Resolution {
         })
     }
 
-    /// Returns a text that names other sample types, in which rounding causes little error in the steps from sample to
-    /// sample. If there are no such types, the text says so.
+    /// Returns a text for the user that names other sample types, if they are fine enough for the column. If none is
+    /// fine enough, the text says so. If `f32` would be fine enough after a constant is subtracted from all values, the
+    /// text names that constant.
     pub fn holders(&self) -> String {
         let names: Vec<String> = [self.single(), self.fixed()]
             .into_iter()
@@ -135,8 +135,8 @@ impl Resolution {
         finest.into_iter().flatten().find(|own| self.is_fine(own.step()))
     }
 
-    /// Returns whether rounding to multiples of `step` leaves the column's changes from sample to sample nearly as they
-    /// are. On average, rounding alters a change by a third of `step`. To be safe, the check assumes half of `step`.
+    /// Returns whether rounding to multiples of `step` hardly alters the column's changes from sample to sample. On
+    /// average, rounding alters a change by a third of `step`. To be safe, the check assumes half of `step`.
     fn is_fine(&self, step: f64) -> bool {
         step / 2.0 * self.steps as f64 <= PART * self.moved
     }

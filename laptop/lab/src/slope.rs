@@ -15,14 +15,14 @@ pub struct Slope {
     scheme: &'static str,
     /// Whether the code can follow the signal: no change from one sample to the next exceeds the threshold.
     follows: bool,
-    /// Number of changes from one sample to the next that exceed the threshold.
+    /// Number of samples at which the signal changes by more than the threshold.
     steps_above_threshold: usize,
     /// `steps_above_threshold` as a share of the samples.
     part: f64,
     /// Largest slope that the code can follow: the threshold times the sample rate, or the threshold if the rate is
     /// unknown.
     fastest: f64,
-    /// Largest slope of the signal, per second or, if the sample rate is unknown, per sample.
+    /// Largest slope of the signal, per second. If the sample rate is unknown, the slope is per sample.
     steepest: f64,
     /// Unit of time of `fastest` and `steepest`: `second` or `sample`.
     per: &'static str,

@@ -11,8 +11,9 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// Makes a timeline without known times. Samples before the first known time and after the last known time will be
-    /// spaced by `rate`, in samples a second.
+    /// Makes a timeline without known times. `rate` is the usual sample rate, in samples a second. It gives the times
+    /// of samples before the first known time and after the last. If `rate` is `None`, these samples get the nearest
+    /// known time.
     pub fn new(rate: Option<f64>) -> Self {
         Self { step: rate.map_or(0.0, |rate| 1e6 / rate), before: None, ahead: VecDeque::new() }
     }
@@ -24,7 +25,7 @@ impl Timeline {
         }
     }
 
-    /// Returns the number of known times that belong to samples after the one last passed to [`at`](Self::at).
+    /// Counts the samples whose time is known and that come after the sample last passed to [`at`](Self::at).
     pub fn ahead(&self) -> usize {
         self.ahead.len()
     }

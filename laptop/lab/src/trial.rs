@@ -34,8 +34,8 @@ pub struct Recording {
 impl Recording {
     /// Makes a recording of evenly spaced samples, which must be finite.
     pub fn of(name: String, values: Vec<f64>, rate: Option<f64>) -> Self {
-        /// Longest time between two samples that does not count as a gap, as a multiple of the usual time.
-        /// [`Clock::new`] requires this limit. Here the limit has no effect, because the samples have no times.
+        /// Limit on the time from one sample to the next, as a multiple of the usual time. A longer time counts as a
+        /// gap. [`Clock::new`] needs this limit, but it has no effect here, because the samples have no times.
         const STEPS: f64 = 1.5;
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
@@ -115,7 +115,7 @@ impl Recording {
         }
     }
 
-    /// Returns notes for the user on the recording.
+    /// Returns notes on the recording, to be shown to the user.
     pub fn notes(&self) -> Vec<Words> {
         let mut notes = self.notes.clone();
         if self.rejected > 0 {
@@ -149,8 +149,8 @@ fn between(mut bounds: Vec<usize>, samples: usize) -> Vec<Range<usize>> {
     bounds.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-/// Shifts the times of the segments such that each segment follows the one before: its earliest time comes `period`
-/// after the latest time of the segment before. The first segment keeps its times. All times are in µs.
+/// Shifts the times of each segment to close the gaps between segments. The earliest time of a segment is set to the
+/// latest time of the preceding segment plus `period`. The first segment keeps its times. All times are in µs.
 fn in_a_row(times: &[i64], segments: &[Range<usize>], period: i64) -> Vec<i64> {
     let mut all: Vec<i64> = Vec::with_capacity(times.len());
     let mut latest: Option<i64> = None;
@@ -170,7 +170,7 @@ pub struct Trial {
     pub scheme: Scheme,
     /// The values of all parameters of the scheme.
     pub settings: Settings,
-    /// Numbers of neurons and sub-timesteps.
+    /// Number of neurons, and number of sub-timesteps into which a sample is divided.
     pub shape: Shape,
     /// Latency of the code: the number of samples by which the encoder's output lags behind its input.
     pub latency: usize,

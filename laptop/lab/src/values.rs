@@ -1,5 +1,5 @@
-//! Decodes link frames (packets of events from a sender) to values in any sample type. The receiver is the one that
-//! also runs on boards.
+//! Decodes link frames (packets of events from a sender) to values in any sample type. The decoding is done by
+//! [`Receiver`], which also runs on boards.
 
 use crate::Result;
 use crate::events::{Held, Item, Known, LinkTally, Values};
@@ -20,17 +20,17 @@ const FEWER: usize = 64;
 /// Maximum number of events in one sample, over all channels.
 const EVENTS: usize = 1 << 14;
 
-/// A function to which the receiver is passed. The receiver decodes link frames to values.
+/// The caller's function, to which [`with_receiver`] passes the finished receiver.
 type Then<'a> = Box<dyn FnOnce(Box<dyn Values + '_>) -> Result<()> + 'a>;
 
-/// Properties of a link's sender besides its schemes.
+/// Facts about the sender that a receiver uses in addition to the schemes: sub-timesteps, fingerprint and clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Link {
     /// Length of a sub-timestep in µs. `None` if the code does not divide samples into sub-timesteps.
     pub slot_ticks: Option<u32>,
-    /// Fingerprint that the sender's frames carry. If `None`, the receiver computes the fingerprint from the channels'
-    /// schemes. If the number of channels is not known, the receiver tries numbers of channels until one gives the
-    /// fingerprint in the frames.
+    /// Fingerprint (hash of the parameters) that the sender's frames carry. If `None`, the receiver computes the
+    /// fingerprint from the channels' schemes. If the receiver does not know the number of channels, it tries each
+    /// number from 1 up, until the computed fingerprint equals the one in the frames.
     pub fingerprint: Option<Fingerprint>,
     /// Largest deviation of the sample period from its nominal length, in parts per million. If `None`, the receiver
     /// uses its default.
@@ -155,7 +155,7 @@ impl<S: Sample> Visit<S> for Boxed {
 }
 
 /// A scheme whose decoders start from the value `start`. If `start` is `None`, they start from the scheme's own initial
-/// value. Serves only for decoding.
+/// value. Only the decoders are used, never the encoders.
 struct Started<P: Scheme> {
     scheme: P,
     /// Whether the channel exists. False for the placeholders that fill the array after the last channel.
@@ -227,8 +227,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     channels: usize,
     /// Number of neurons of each channel.
     neurons: usize,
-    /// Whether each channel has a value. If keyframes resynchronize the code, all channels have a value from the start.
-    /// Otherwise, a channel has a value from its first event on.
+    /// Whether the decoded values of each channel are passed on. If keyframes resynchronize the code, the values of all
+    /// channels are passed on from the start. Otherwise, a channel's values are passed on from its first event.
     has_fired: [bool; N],
     /// End of the sample to which the last received event belongs: one sample period after the event's tick.
     end: Option<Tick>,
@@ -241,12 +241,12 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     /// Number of decoded values that were dropped because their channel does not exist. This number does not include
     /// events beyond the receiver's `N` channels, which the receiver counts itself.
     outside: u64,
-    /// Length of a sub-timestep in µs; 0 if there are none.
+    /// Length of a sub-timestep in µs; 0 if the length was not given.
     slot_ticks: u32,
     /// Fingerprint (hash of the parameters) of the sender, if the caller gave it.
     known: Option<Fingerprint>,
-    /// Fingerprint (hash of the parameters) of each channel's scheme. The list has a single fingerprint if all channels
-    /// have the same scheme and the number of channels is unknown.
+    /// Fingerprint (hash of the parameters) of each channel's scheme. A list of one fingerprint stands for any number
+    /// of channels with the same scheme.
     schemes: Vec<Fingerprint>,
     /// Whether any decoded value so far was known to equal the encoder's value.
     has_exact: bool,
@@ -254,10 +254,12 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Returns the frame with its keyframes in the decoders' sample type. The decoders use one type for all fixed-point
-    /// types of a width, so this type may differ from the sender's. If it does, keyframes of the sender's type get the
-    /// decoders' type. A keyframe that arrives in the decoders' type is then wrong: it gets the sender's type, so that
-    /// the receiver counts it as a misfit (a thing that does not fit the scheme).
+    /// Relabels the sample type of a frame's keyframes for the receiver, which accepts only the decoders' type.
+    ///
+    /// The decoders use one type for all fixed-point types of a width, so their type may differ from the sender's. Then
+    /// there are two cases. Keyframes labelled with the sender's type are correct. They get the decoders' type, and the
+    /// receiver accepts them. Keyframes labelled with the decoders' type are wrong, because the sender has another
+    /// type. They get the sender's type, and the receiver rejects them and counts them as misfits.
     fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
         let ours = <P::Sample as Sample>::KIND;
         let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
@@ -290,12 +292,12 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
     }
 
     /// Converts the decoded values to items, and appends the items to `items`. The first `keyframes` values come from
-    /// keyframes. `before` says for each channel whether it was exact before the frame: the decoded value was known to
-    /// equal the encoder's value.
+    /// keyframes. A channel is exact if its decoded value is known to equal the encoder's value. `before` says for
+    /// each channel whether the channel was exact before the frame.
     ///
-    /// A channel may become exact in the middle of a frame. If keyframes resynchronize the code, the frame's values are
-    /// then marked exact. Otherwise, the channel's values are marked exact only from the next frame on, so that no
-    /// estimate is marked exact.
+    /// A channel may become exact in the middle of a frame. With a code that recovers by keyframes, all values of the
+    /// channel in this frame are marked exact. With any other code, the channel's values are marked exact from the next
+    /// frame on. Estimates from the first part of the frame are thus never marked exact.
     fn tell(&mut self, keyframes: usize, before: [bool; N], items: &mut Vec<Item>) {
         let after = self.exact();
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {

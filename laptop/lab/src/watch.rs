@@ -13,7 +13,7 @@ impl Watch<'_> {
     pub const NONE: Watch<'static> = Watch { is_stopped: &|| false, tell: &|_| () };
 }
 
-/// The progress of long work.
+/// A report on how much of a long task is done.
 #[derive(Clone, Debug, Default)]
 pub struct Progress {
     /// Number of units of work done, such as settings tried.

@@ -28,7 +28,8 @@ pub enum State {
     /// Waits for a sample to begin.
     #[default]
     Idle,
-    /// Applies spikes of neurons and inputs to neurons, before the next tick.
+    /// Waits for the next tick. Meanwhile the controller for events applies the spikes of inputs and neurons to all
+    /// neurons.
     Prop,
     /// Lets neurons leak and fire, after a tick.
     Step,
@@ -225,8 +226,8 @@ pub struct Outputs {
     pub data: u8,
     /// Level of `SPI_RDY`, which is high while SPI may access the memories.
     pub spi_ready: bool,
-    /// Level of `TIMING_ERROR_RDY`, which is high while the chip is ready for a tick. If register 23 is set, the level
-    /// is high after a tick that came too early.
+    /// Level of `TIMING_ERROR_RDY`. If register 23 is 0, the level is high while the chip is ready for a tick. If
+    /// register 23 is 1, the level is high from a tick that came too early until the next reset.
     pub error_or_ready: bool,
 }
 
@@ -413,7 +414,7 @@ impl ReckOn {
         &self.now.outputs
     }
 
-    /// Returns whether, since the last reset, a tick came before the previous step was done.
+    /// Returns whether a tick came too early since the last reset: before the previous step was done.
     pub const fn timing_error(&self) -> bool {
         self.now.timing_error
     }
@@ -460,8 +461,8 @@ impl ReckOn {
         }
     }
 
-    /// Returns the highest number of a neuron, an input or an output. In each time step, the counter `step_count` runs
-    /// from 0 to this number.
+    /// Returns the largest of three numbers: those of the last neuron, the last input and the last output. In each time
+    /// step, the counter `step_count` runs from 0 to the returned number.
     fn last_stepped(&self) -> u8 {
         self.last_neuron().max(self.last_input()).max(self.last_output())
     }
@@ -903,9 +904,10 @@ impl ReckOn {
         self.now = new;
     }
 
-    /// Advances the random generators that this clock cycle uses. A reset or a write of a seed instead sets the
-    /// generator's state; `prog` has the flags of the seeds that are written. `alpha` is the share of its potential
-    /// that a neuron keeps, in units of 1/32 768. `draws` selects the generators that learning uses.
+    /// Advances the random generators that the chip uses in this clock cycle. During a reset, sets all generators to
+    /// their initial states. If a seed is written, sets the generator of this seed; `prog` has one flag for each seed.
+    /// `alpha` is the factor by which a step multiplies a neuron's potential, in units of 1/32 768. `draws` selects the
+    /// generators that learning uses.
     fn random(&self, new: &mut Clocked, prog: u16, alpha: u32, draws: [bool; 3]) {
         let now = &self.now;
         let is_reset = now.resets[1];
@@ -942,7 +944,8 @@ impl ReckOn {
         }
     }
 
-    /// Advances the synchronisers, and applies a reset.
+    /// Advances the synchronisers, which take over the levels of the pins. During a reset, clears the synchronisers and
+    /// the states of the controllers.
     fn synchronise(&self, new: &mut Clocked) {
         let (now, pins) = (&self.now, &self.inputs);
         let shift = |bits: [bool; 2], pin| [pin, bits[0]];

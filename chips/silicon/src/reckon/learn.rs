@@ -3,7 +3,8 @@
 use super::chip::{Clocked, Pair, ReckOn, State};
 use super::lfsr::Bits;
 
-/// An access to a memory of weights: its address, and for a write the word and its mask.
+/// The access to a memory of weights in a clock cycle; `None` if there is no access. Contains the address and, for a
+/// write, the word to write and the mask of the bits that change.
 type Access = Option<(usize, Option<(u128, u128)>)>;
 
 /// The results of learning in one clock cycle.
@@ -13,7 +14,8 @@ pub(super) struct Learning {
     pub(super) input_weights: Access,
     pub(super) recurrent_weights: Access,
     pub(super) output_weights: Access,
-    /// Whether the weights from inputs, between neurons and to outputs use random numbers in this clock cycle.
+    /// For each kind of weights, whether it uses random numbers in this clock cycle: weights from inputs, between
+    /// neurons, and to outputs.
     pub(super) draws: [bool; 3],
     slope: i8,
     signal: i16,
@@ -30,8 +32,8 @@ struct Move<'a> {
 }
 
 impl Move<'_> {
-    /// Returns the new word of weights, and a mask of the weights that change. For the index of a weight in the word,
-    /// `likely` returns a measure of how likely the weight is to rise (if positive) or to fall (if negative), and
+    /// Returns the new word of weights, and a mask of the weights that change. `likely` takes the index of a weight in
+    /// the word. It returns a measure of how likely this weight is to rise (if positive) or to fall (if negative), and
     /// whether the weight may change at all.
     fn apply(&self, likely: impl Fn(usize) -> (i32, bool)) -> (u128, u128) {
         let (mut data, mut mask) = (0, 0);
@@ -226,8 +228,8 @@ impl Learning {
         self.neuron
     }
 
-    /// Advances the counters of learning. Stores the slope and the learning signal of the current neuron, in its place
-    /// among sixteen neurons.
+    /// Advances the counters of learning. Stores the slope and the learning signal of the current neuron; the chip
+    /// holds these values for sixteen neurons at a time.
     pub(super) fn clock(&self, chip: &ReckOn, new: &mut Clocked, next: State) {
         let now = &chip.now;
         let only_outputs = chip.register(9) == 4;
@@ -260,8 +262,12 @@ impl Learning {
 }
 
 /// Returns a measure of how likely a weight is to change, and whether the weight may change at all. The measure is
-/// positive if the weight would rise, and negative if the weight would fall. `n` is 0 for weights from inputs, 1 for
-/// weights from neurons. `lane` is the index of the receiving neuron among sixteen.
+/// positive if the weight would rise, and negative if the weight would fall.
+///
+/// `n` is 0 for a weight from an input, and 1 for a weight from a neuron. `trace` is the trace of this input or neuron
+/// (a measure of its recent spikes). `lane` is the index of the receiving neuron among the sixteen neurons of a word of
+/// weights. `is_valid` tells whether `TARGET_VALID` is high. `is_regularised` tells whether weights of this kind also
+/// change to limit how often neurons fire.
 fn likely(
     chip: &ReckOn,
     n: usize,

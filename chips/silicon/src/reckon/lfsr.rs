@@ -27,8 +27,8 @@ impl Lfsr {
         self.state = state & ((1 << self.width) - 1);
     }
 
-    /// Returns the position that bit `bit` of the state has in the generator's sequence. Position 0 is the first bit of
-    /// this clock cycle.
+    /// Returns the position of bit `bit` of the state in the generator's sequence. Position 0 is the first bit that the
+    /// generator produces in this clock cycle; earlier bits have negative positions.
     fn place(&self, bit: i32) -> i32 {
         match (self.bits, bit) {
             (_, bit) if bit < self.tap => bit,

@@ -116,7 +116,8 @@ impl SpiSlave {
         (if is_first { read } else { self.shift_out }) >> 31 == 1
     }
 
-    /// Raises SCK, with MOSI at `bit`. Writes a register if its word is complete.
+    /// Raises SCK, with MOSI at `bit`. If this bit completes the word for a register, writes the register, unless the
+    /// chip's reset is high (`is_reset`).
     pub(super) fn rise(&mut self, bit: bool, is_reset: bool) {
         let word = self.shift_in << 1 | u32::from(bit);
         let is_register = self.header >> 28 == 0 && self.count & 31 == 31 && self.count >> 5 != 0;

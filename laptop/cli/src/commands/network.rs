@@ -100,8 +100,8 @@ pub(crate) struct Network {
     #[arg(long, value_name = "FILE")]
     bytes: Option<PathBuf>,
     /// After the conversion, run the network on the chip's model, step by step. Each line of standard input is a step:
-    /// the numbers of the inputs that fire. Each line of output answers a step: the number of clock cycles that the
-    /// chip took, and the numbers of the outputs that fired. The Rust file is not written unless -o is given
+    /// the numbers of the inputs that fire. Each line of output answers a step: how many clock cycles the chip took,
+    /// and the numbers of the outputs that fired. The Rust file is not written unless -o is given
     #[arg(long)]
     live: bool,
 }
@@ -246,8 +246,8 @@ pub(crate) fn run(options: &Network) -> Result<()> {
 }
 
 /// Simulates the network step by step, for `--live`. Each line of standard input is a step: the numbers of the inputs
-/// that fire. Each line of output answers a step: the number of clock cycles, and the numbers of the outputs that
-/// fired.
+/// that fire. Each line of output answers a step: how many clock cycles the chip took, and the numbers of the outputs
+/// that fired.
 fn live(network: &dyn OnChip, inputs: usize) -> Result<()> {
     let (mut answers, mut line) = (Output::to(None)?, String::new());
     let step = |line: io::Result<String>| -> lab::Result<_> {

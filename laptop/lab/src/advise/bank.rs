@@ -21,8 +21,8 @@ use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 /// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
 
-/// Default time between keyframes, in seconds. Used unless the scheme serves a control loop and its simulated flights
-/// had keyframes. A receiver that joins late waits for a keyframe up to this long.
+/// Default time between keyframes, in seconds. A receiver that joins late waits up to this long for a keyframe. If the
+/// request has a control loop, a scheme whose simulated flights had keyframes keeps the time of those flights instead.
 const KEYFRAMES: f64 = 1.0;
 
 /// The advice on all channels together.
@@ -106,7 +106,8 @@ impl BankAdvice {
         Ok(all)
     }
 
-    /// Returns the advised flight, if there is one.
+    /// Returns the advised scheme and channels, in the form of a file `flight.toml`. Returns `None` if no scheme is
+    /// advised.
     pub fn flight(&self) -> Option<&Flight> {
         self.banks.first().map(|bank| &bank.flight)
     }

@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The results of the simulated flights, as JSON. `verdicts.json` is a symbolic link to the file in `laptop/loop`,
-/// because a source package contains only files of its own directory.
+/// The results of the simulated flights, as JSON. `verdicts.json` is a symbolic link to the file of the same name in
+/// `laptop/loop`, because a source package contains only files of its own directory.
 const FIGURES: &str = include_str!("verdicts.json");
 
-/// The parameters with which the schemes flew, as JSON. The file is a symbolic link, as `verdicts.json` is.
+/// The parameters of the schemes in the simulated flights, as JSON. `banks.json` is a symbolic link to the file of the
+/// same name in `laptop/loop`.
 const FOUND: &str = include_str!("banks.json");
 
 /// Largest attitude error with which a scheme counts as fit to fly, as a multiple of the error without a code.
@@ -64,13 +65,13 @@ static BANKS: LazyLock<BTreeMap<String, Flown>> = LazyLock::new(|| {
     serde_json::from_str::<Figures>(FIGURES).map(|figures| figures.banks).unwrap_or_default()
 });
 
-/// The verdict of the simulated flights on a scheme, and the settings of these flights.
+/// The outcome of the simulated flights with a scheme, and the settings of these flights.
 #[derive(Debug, Serialize)]
 pub struct Verdict {
     /// The reason not to fly the scheme on a link that loses 1 % of the frames. `None` if the scheme is fit to fly.
     pub objection: Option<String>,
-    /// Attitude error with the code divided by the attitude error without a code, averaged over several drones and
-    /// controllers. `None` if no such pair of errors is known.
+    /// Ratio of two attitude errors of the simulated drone: the error with the code, divided by the error without a
+    /// code. The ratio is averaged over several drones and controllers. `None` if no drone has both errors.
     pub beside: Option<f64>,
     /// Corner frequency of the low-pass before the code, in Hz; `None` without a low-pass.
     pub low_pass: Option<f32>,

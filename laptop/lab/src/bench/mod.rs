@@ -1,5 +1,5 @@
-//! The benchmark of the paper: measures the efficiency and error of each code, for the signals of the paper's Tables I
-//! and II. All signals of one duration form a case.
+//! The benchmark of the paper *A toolbox for neuromorphic perception in robotics*. It measures the efficiency and error
+//! of each code, for the signals of the paper's Tables I and II. All signals of one duration form a case.
 
 pub mod paper;
 mod recipe;
@@ -18,7 +18,7 @@ use statistics::Statistics;
 /// Maximum number of signals in a case of the benchmark. A case runs all schemes on signals of one duration.
 pub const MOST_TESTS: usize = 1_000_000;
 
-/// The results of one case, over all its signals and for each scheme.
+/// The results of one case: for each scheme, the statistics over all signals of the case.
 pub struct CaseResult {
     /// Duration of the signals, in seconds.
     pub seconds: usize,
@@ -28,8 +28,8 @@ pub struct CaseResult {
     pub rmse: [Statistics; COLUMNS],
 }
 
-/// Runs the first `cases` cases, with `tests` signals in each, and passes each signal's number of samples to `tick`.
-/// Each signal has its own random generator, which makes the results independent of the number of cores.
+/// Runs the first `cases` cases, with `tests` signals in each. After each signal, calls `tick` with the signal's number
+/// of samples. Each signal has its own random generator, which makes the results independent of the number of cores.
 pub fn run(cases: usize, tests: usize, seed: u64, tick: impl Fn(u64) + Sync) -> Vec<CaseResult> {
     let cases = CASES.iter().take(cases).enumerate();
     cases.map(|(case, &seconds)| run_case(case, seconds, tests, seed, &tick)).collect()

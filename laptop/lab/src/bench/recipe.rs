@@ -1,5 +1,6 @@
-//! Runs each scheme over a signal in the same way as the toolbox, the program that the paper's authors published. The
-//! parameters, the start values, and the treatment of the first spike and the last sample are the toolbox's.
+//! Runs each scheme over a signal as the toolbox of the paper *A toolbox for neuromorphic perception in robotics* does.
+//! The parameters and start values are those of the toolbox. The first spike and the last sample are treated as in the
+//! toolbox.
 
 use spikewire::population::{Gaussian, Slots};
 use spikewire::rate::{BsaToolbox, Hough, Taps, ThresholdHough};
@@ -28,7 +29,8 @@ const HOUGH: Hough<f32, 15> = Hough::new(Taps::triangular(1.0));
 const THRESHOLD_HOUGH: ThresholdHough<f32, 15> = ThresholdHough::new(Taps::triangular(1.0), 0.85);
 const BETA: f32 = 1.5;
 
-/// Runs all schemes over a signal, in the order of the columns.
+/// Runs all schemes over a signal. The results have the order of the columns of the paper's tables. The two results for
+/// Gaussian receptive fields follow.
 ///
 /// # Panics
 /// Panics if the signal is shorter than a window, or constant. The benchmark's signals are neither.
@@ -55,7 +57,7 @@ fn try_run(signal: &[f32]) -> Result<[Outcome; COLUMNS], ConfigError> {
     ])
 }
 
-/// Runs the scheme temporal contrast. The encoder is primed with an extra sample before the signal. From the extra
+/// Runs temporal contrast over a signal. The encoder is primed with an extra sample before the signal. From the extra
 /// sample to the first sample, the signal changes by as much as from the first to the second. Decoding starts from 0,
 /// and each spike moves the value by two thresholds.
 fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, ConfigError> {
@@ -68,8 +70,8 @@ fn contrast(signal: &[f32], calibration: &Calibration<f32>) -> Result<Outcome, C
     Ok(step_outcome(signal, &scheme, &before, 0.0))
 }
 
-/// Runs the scheme moving window. Before the run, the encoder's window is filled with the first samples of the signal.
-/// Decoding starts from the value of the first sample.
+/// Runs the moving-window scheme over a signal. Before the run, the encoder's window is filled with the signal's first
+/// samples. Decoding starts from the value of the first sample.
 fn moving_window(signal: &[f32]) -> Outcome {
     let window = signal.get(..WINDOW).unwrap_or_default();
     step_outcome(signal, &MOVING_WINDOW, window, first(signal))
@@ -109,7 +111,7 @@ where
 }
 
 /// Runs a rate code as the paper's toolbox does. The toolbox's loops end one sample early, and thus never read the last
-/// sample. The code of the last sample is therefore always `last`.
+/// sample. The last sample therefore always gets the spike `last`.
 fn rate_but_last<P>(signal: &[f32], scheme: &P, last: Spike) -> Outcome
 where
     P: Start<Sample = f32, Code = Spike, Output = Option<Spike>>,

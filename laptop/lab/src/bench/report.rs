@@ -7,10 +7,10 @@ use serde::Serialize;
 use serde_json::{Value, json as object};
 use std::fmt::Write;
 
-/// Largest difference between a measured mean and the paper's mean that counts as agreement, in standard errors.
+/// Tolerance for the difference between a measured mean and the paper's mean, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
-/// Largest difference between a measured standard deviation and the paper's that counts as agreement, as a share of the
-/// paper's standard deviation.
+/// Tolerance for the difference between a measured standard deviation and the paper's, as a share of the paper's
+/// standard deviation.
 const DEVIATION_PART: f64 = 0.15;
 
 /// A measured cell, and the paper's figures for it.
@@ -97,8 +97,8 @@ pub fn print(cases: &[CaseResult]) -> String {
     text
 }
 
-/// Returns the largest difference from the paper's mean that would still count as agreement in some cell, as a share of
-/// the paper's mean. Also returns the name of this cell.
+/// Finds the cell with the largest tolerance. The tolerance of a cell is the largest difference from the paper's mean
+/// that counts as agreement. Returns the tolerance as a share of the paper's mean, and the name of the cell.
 fn unseen(cases: &[CaseResult]) -> (f64, String) {
     let all = [&EFFICIENCY, &RMSE].into_iter().flat_map(|table| {
         cells(table, cases).into_iter().zip(cases).flat_map(|(row, case)| {

@@ -31,7 +31,7 @@ impl Waveform {
     }
 }
 
-/// Draws a number from 0 up to, but not including, 1.
+/// Returns a uniformly distributed random number that is at least 0 and less than 1.
 fn uniform(generator: &mut ChaCha8Rng) -> f64 {
     (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }

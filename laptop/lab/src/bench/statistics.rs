@@ -1,4 +1,4 @@
-//! Mean and standard deviation of a measured figure over the tests of a case.
+//! Mean and standard deviation of a figure, such as the error of a code, that was measured on many test signals.
 
 use serde::Serialize;
 

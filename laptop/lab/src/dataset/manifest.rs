@@ -16,8 +16,9 @@ use std::time::UNIX_EPOCH;
 pub(super) const MANIFEST: &str = "manifest.jsonl";
 /// Name of the file with the settings of a data set.
 const SETTINGS: &str = "dataset.json";
-/// Names of the directories of spike files (`EVENTS`) and of sample files (`VALUES`).
+/// Name of the directory with the files of spikes.
 pub(super) const EVENTS: &str = "events";
+/// Name of the directory with the files of samples.
 pub(super) const VALUES: &str = "values";
 
 /// The part of a data set to which a flight belongs: the part for training or the part for testing.
@@ -94,12 +95,12 @@ impl Row {
         }
     }
 
-    /// Records the reason `why` the log was refused, and the kind of that reason.
+    /// Marks the log as refused. `why` is the reason, as a text for the user, and `kind` is the kind of reason.
     pub(super) fn refuse(&mut self, kind: &str, why: String) {
         (self.refused, self.refused_kind) = (Some(why), Some(kind.to_owned()));
     }
 
-    /// Computes the hash of the log.
+    /// Computes the SHA-256 of the log, and stores it in the row.
     ///
     /// # Errors
     /// Returns an error if the log cannot be read, or can be read only once.
@@ -162,7 +163,8 @@ impl File {
     /// Reads the length and the modification time of a log.
     ///
     /// # Errors
-    /// Returns an error if the log is missing, or if it is not a regular file. A pipe can be read only once.
+    /// Returns an error if the log is missing, or if it is not a regular file. Pipes are refused because they can be
+    /// read only once.
     pub(super) fn of(log: &Path) -> Result<Self> {
         let mut own = Self { bytes: 0, modified_us: 0 };
         for file in files(log)? {
@@ -315,8 +317,9 @@ impl Manifest {
     }
 }
 
-/// Assigns each flight to training or testing, by a hash of the content of a log. The flights with the smallest hashes
-/// are for testing. Copies of one log count as one flight.
+/// Assigns each flight to training or testing. A flight is one log, or all logs of one directory. The hash of a flight
+/// is computed from the smallest SHA-256 of its logs. The flights with the smallest hashes are for testing. `test` is
+/// their share of all flights, 0 to 1. Flights with the same hash count as one flight.
 fn split(rows: &mut [Row], test: f64, flights: Flights) {
     let flight = |row: &Row| match flights {
         Flights::Logs => row.sha256.clone(),
@@ -406,7 +409,8 @@ fn lock(file: &fs::File) -> io::Result<()> {
     Ok(flock(file, FlockOperation::NonBlockingLockExclusive)?)
 }
 
-/// Locks nothing. On systems other than Unix, the oldest Rust version that this crate supports has no file locks.
+/// Locks nothing. The standard library of the oldest supported Rust version cannot lock files, and the crate `rustix`
+/// can lock files only on Unix.
 #[cfg(not(unix))]
 fn lock(_: &fs::File) -> io::Result<()> {
     Ok(())

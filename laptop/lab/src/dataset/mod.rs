@@ -41,8 +41,8 @@ pub struct Request {
     pub code: Code,
     /// Options for reading the logs. An option that does not apply to a kind of log is ignored for logs of that kind.
     pub channel: ChannelOptions,
-    /// Channels to read from logs of certain kinds. A kind may have several entries. The entries are tried in order
-    /// until the log contains all channels of an entry.
+    /// Channels to read from logs of certain kinds. A kind may have several entries, which are tried in order for each
+    /// log. The first entry whose channels are all in the log is used.
     pub channels_of: Vec<ChannelsOf>,
     /// Directory of the data set.
     pub output: PathBuf,
@@ -175,8 +175,9 @@ pub fn run(request: &Request, tell: &mut dyn FnMut(&Progress)) -> Result<Outcome
 
 /// A data set that is being completed. Its directory is locked, which keeps other runs out.
 ///
-/// [`run`] does all the work in one process. To share the work between processes, call [`Request::encode`] in any of
-/// them for each log of [`left`](Self::left), and [`add`](Self::add) the rows here.
+/// [`run`] does all the work in one process. Several processes can also share the work. One process holds the `Run`.
+/// Every process calls [`Request::encode`] for some of the logs in [`left`](Self::left), and gets a row for each. The
+/// process with the `Run` passes all rows to [`add`](Self::add), and calls [`finish`](Self::finish) at the end.
 pub struct Run {
     request: Request,
     manifest: Manifest,
@@ -217,8 +218,8 @@ impl Run {
         self.manifest.add(row)
     }
 
-    /// Splits the flights into training and test flights, and sorts the manifest by log. Returns the counts of the
-    /// requested logs.
+    /// Splits the data set into training and test data, and sorts the rows of the manifest by the logs' paths. All logs
+    /// of a flight (see [`Flights`]) are on the same side of the split. The result counts only the requested logs.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.
@@ -323,8 +324,8 @@ impl Request {
         }))
     }
 
-    /// Encodes a log to its files of spikes and samples, and returns its row of the manifest. The files replace those of
-    /// an earlier call for the same log once they are complete.
+    /// Encodes a log to its files of spikes and samples, and returns its row of the manifest. Once the new files are
+    /// complete, they replace the files of an earlier call for the same log.
     ///
     /// # Errors
     /// Returns an error if the file of spikes or of samples cannot be written.
@@ -369,7 +370,9 @@ impl Request {
         last.map_or(Ok(()), Err)
     }
 
-    /// Returns the options for reading a log, without options that do not apply to its kind.
+    /// Returns the options for reading the log at `log`. `kind` is the format of a flight log, and `None` for a table.
+    /// Removes options that are for other formats. If `names` is given, chooses the columns of these names. Otherwise,
+    /// if the code is a flight, chooses the columns of the flight's channels.
     fn input(&self, log: &Path, kind: Option<Kind>, names: Option<&[String]>) -> InputOptions {
         let mut channel = self.channel.clone();
         let own;

@@ -21,12 +21,16 @@ use std::sync::Arc;
 
 /// Name of the column that holds the times.
 pub(super) const TIME: &str = "time_us";
-/// Keys of a Parquet file's metadata. The value of `HEADER` is the header of the spikes: the scheme and its settings.
-/// The values of `GAP` and `RATE` are arguments of [`Clock::new`](crate::input::Clock::new). The value of `FIRST` is
-/// the number of times in the argument `first_times`.
+/// Metadata key of a Parquet file. The value is the header of the spikes: the scheme and its settings.
 pub(super) const HEADER: &str = "spikewire";
+/// Metadata key of a Parquet file. The value is the number of samples at the start of the log whose times were passed
+/// to [`Clock::new`](crate::input::Clock::new).
 pub(super) const FIRST: &str = "spikewire.first";
+/// Metadata key of a Parquet file. The value is the argument `steps` of [`Clock::new`](crate::input::Clock::new): a
+/// step longer than this multiple of the usual step is a gap.
 pub(super) const GAP: &str = "spikewire.gap";
+/// Metadata key of a Parquet file. The value is the sample rate in Hz that the user gave. The file lacks the key if no
+/// rate was given.
 pub(super) const RATE: &str = "spikewire.rate";
 
 /// Number of bytes in a row group. Each file that is being written keeps one row group in memory.
@@ -49,7 +53,7 @@ pub(super) struct Parts {
     neurons: u16,
     /// Time between samples in µs at the rate in the header; 0 if the rate is unknown.
     period: u64,
-    /// For each finite sample whose events are not complete yet, the index and the time in µs.
+    /// Index and time (in µs) of each finite sample whose events are not complete yet.
     pending: VecDeque<(u64, i64)>,
     /// Number of finite samples before the first one in `pending`.
     first_pending: u64,
@@ -215,8 +219,8 @@ struct Part {
     file: SerializedFileWriter<Pipe>,
 }
 
-/// Bytes that the Parquet writer has produced, before they go to the output. The Parquet writer must be `Send`, and the
-/// output is not.
+/// A buffer between the Parquet writer and the output. The Parquet writer accepts only sinks that are `Send`, and
+/// `Output` is not `Send`.
 #[derive(Default)]
 struct Pipe(Vec<u8>);
 
@@ -314,7 +318,7 @@ fn column(name: &str, physical: Physical, logical: Option<LogicalType>) -> Resul
     Ok(column.build()?)
 }
 
-/// Returns `name` or, if a column has this name already, `name` with a number appended.
+/// Returns `name`, with a number appended if `taken` already contains `name`. Adds the result to `taken`.
 fn apart(name: &str, taken: &mut HashSet<String>) -> String {
     let numbered = (2..).map(|number| format!("{name}_{number}"));
     let name = std::iter::once(name.to_owned()).chain(numbered).find(|own| !taken.contains(own));

@@ -13,9 +13,9 @@ const TABLES: [&str; 8] = ["csv", "tsv", "txt", "jsonl", "ndjson", "npy", "npz",
 /// Endings of the names of compressed files.
 const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
-/// Finds the logs, including tables, in the given files, directories and patterns. Returns the logs' full paths, sorted
-/// and without repetitions, and the number of files in the directories that are neither logs nor tables. A file that is
-/// given by name always counts as a log.
+/// Finds the logs, including tables, in the given files, directories and patterns. A file that is given by name or that
+/// matches a pattern always counts as a log. Files in directories that are neither logs nor tables are passed over.
+/// Returns the logs' full paths, sorted and without repetitions, and the number of files passed over.
 ///
 /// # Errors
 /// Returns an error if a file is missing, if a pattern is invalid, or if a directory cannot be read.

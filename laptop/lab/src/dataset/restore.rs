@@ -112,8 +112,9 @@ impl Part {
         columns.iter().position(|own| own.name() == name)
     }
 
-    /// Rebuilds the clock with which the log was encoded. The rate and the limit of gaps come from the file's metadata.
-    /// The times of the first samples come from the file's table.
+    /// Rebuilds the clock with which the log was encoded. The metadata of the file give the sample rate, and the
+    /// multiple of the usual step above which a step in time counts as a gap. The table of the file gives the times of
+    /// the first samples.
     fn clock(&self, is_timed: bool) -> Result<Clock> {
         let number = |key| self.about(key).and_then(|own| own.parse::<f64>().ok());
         let first = number(FIRST).ok_or_else(|| other("no number of first samples"))? as usize;

@@ -13,7 +13,7 @@ pub(super) struct Reader<D> {
     hooks: Hooks<D>,
 }
 
-/// Functions that [`Reader`] calls on a decoder `D`. Each format has its own.
+/// Functions that [`Reader`] calls on the decoder `D` of a format. They differ from format to format.
 pub(super) struct Hooks<D> {
     /// Returns an error if the bytes that the decoder has read are not of its format.
     pub check: fn(&D) -> Result<()>,
@@ -60,8 +60,9 @@ pub(super) struct Writer<E, D> {
 }
 
 impl<E: EventFormat, D: EventDecoder> Writer<E, D> {
-    /// Makes a writer that starts with `header`. `encoder` and `decoder` must be of the same format. If `drops` is
-    /// true, events that the format cannot express are dropped and counted. Otherwise, such an event causes an error.
+    /// Makes a writer that starts with `header`. The decoder reads back the encoder's bytes, so both must be of the
+    /// same format. If `drops` is true, events that the format cannot express are dropped and counted. Otherwise, such
+    /// an event causes an error.
     pub(super) fn new(encoder: E, decoder: D, header: &'static [u8], drops: bool) -> Self {
         Self { encoder, decoder, header, drops, events: 0, omitted: Omitted::default() }
     }

@@ -150,8 +150,8 @@ fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item
     Ok(Item::Event(Event { tick, address, polarity }))
 }
 
-/// Parses a comment, given without its `#`, that stands for an item: a keyframe, a heartbeat, a loss or a restart.
-/// Returns `None` for any other comment.
+/// Parses a comment that holds an item: a keyframe, a heartbeat, a loss or a restart. Returns `None` for any other
+/// comment. `note` is the comment without its `#`.
 fn note_item(note: &str) -> Result<Option<Item>> {
     let (key, value) = note.split_once('=').unwrap_or((note, ""));
     let text = || value.to_owned();
@@ -200,7 +200,7 @@ fn name_of(kind: SampleKind) -> String {
     }
 }
 
-/// Writes a table of events or, if `values` holds a sample type, of decoded values of that type.
+/// A writer of a table of events. If `values` holds a sample type, the table holds decoded values of that type instead.
 pub(super) struct Writer {
     values: Option<SampleType>,
     has_begun: bool,
@@ -228,8 +228,8 @@ impl Writer {
         self.line.push(b',');
     }
 
-    /// Appends a number to the line. Writes the fewest digits from which the sample type reads back exactly the same
-    /// value.
+    /// Appends a value to the line, as the shortest text that can be parsed to exactly the same value. The text of an
+    /// `f32` sample must be parsed as `f32`, and any other text as `f64`.
     fn value(&mut self, value: f64) {
         let mut digits = zmij::Buffer::new();
         let text = match self.values {

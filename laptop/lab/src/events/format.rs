@@ -15,7 +15,8 @@ use std::str::FromStr;
 /// An event format and its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// The frames of `spikewire::link`.
+    /// Link frames (packets of events from a sender), the format of `spikewire::link`. The [`Coding`] matters only to a
+    /// writer.
     Link(Coding),
     /// The format of eDVS event cameras, with the encoding of the events' times.
     Edvs(Edvs, EdvsTime),
@@ -171,8 +172,8 @@ impl<'a> Settings<'a> {
         Ok(Self(pairs.collect::<Result<_, _>>()?))
     }
 
-    /// Removes the pair of `key`, and returns its value. The value is a decimal number, or a hexadecimal number that
-    /// starts with `0x`. Returns `otherwise` if the key is missing.
+    /// Removes the pair with the key `key`, and returns the pair's value. The value is a decimal number, or a
+    /// hexadecimal number that starts with `0x`. Returns `otherwise` if the key is missing.
     fn number<N: TryFrom<u32>>(&mut self, key: &str, otherwise: N) -> Result<N> {
         let Some(place) = self.0.iter().position(|pair| pair.0 == key) else {
             return Ok(otherwise);

@@ -1,4 +1,4 @@
-//! Reads and writes the frames of the crate's link.
+//! Reads and writes frames of `spikewire`'s link: packets of events from a sender.
 
 use super::{EventReader, EventWriter, Item, LinkTally, Tally};
 use crate::Result;
@@ -12,10 +12,10 @@ pub trait Values {
     /// each event. Any other code gives a value for each sample, once the time of the sample is over.
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>);
 
-    /// Appends the values of the last sample. Call it after the last frame.
+    /// Appends the values of the last sample to `items`. Must be called after the last frame.
     fn finish(&mut self, items: &mut Vec<Item>);
 
-    /// Adds the decoders' counts to the link's counts in `tally`.
+    /// Sets the counts in `tally` that come from decoding, such as the number of keyframes of a wrong sample type.
     fn count(&self, tally: &mut LinkTally);
 
     /// Returns the reason that a channel's value is not exact, or `None` if the value is exact.
@@ -111,7 +111,7 @@ fn take(
     tally.impossible += u64::from(!events.is_complete());
 }
 
-/// Writes link frames, each as long as possible.
+/// A writer of link frames. It puts as many keyframes and events as fit into each frame.
 pub(super) struct Writer {
     framer: Framer,
     coding: Coding,
@@ -119,12 +119,13 @@ pub(super) struct Writer {
     keyframes: Vec<Keyframe>,
     /// Tick of the latest keyframe. An empty frame that reports a loss or a restart carries this tick.
     tick: Tick,
-    /// Number of sender restarts so far. It is also the number of the current session.
+    /// Number of the current session, from 0. A restart of the sender begins a new session if the current one has
+    /// frames.
     starts: u32,
-    /// Whether no frame has been written since the latest start of the sender.
+    /// Whether the next frame is the first one after the latest start of the sender.
     is_fresh: bool,
     events: Vec<Event>,
-    /// Whether no frame has been written since the latest loss or restart. The next frame reports the loss or restart.
+    /// Whether the next frame is the first one after a loss or restart, and thus reports the loss or restart.
     owes_mark: bool,
 }
 
@@ -185,7 +186,8 @@ impl Writer {
     }
 }
 
-/// Passes items to `put`, which adds them to a frame, until the frame is full. Returns the number of items added.
+/// Fills a frame with items. The function `put` adds one item to the frame, and fails if the frame is full. Returns the
+/// number of items added.
 fn fitting<T>(items: &[T], put: impl FnMut(&T) -> Result<(), LinkError>) -> usize {
     items.iter().map(put).take_while(Result::is_ok).count()
 }

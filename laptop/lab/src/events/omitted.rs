@@ -9,7 +9,7 @@ pub(super) struct Omitted {
     dropped: u64,
     retimed: u64,
     furthest: u32,
-    /// Number of items left out that are not events: keyframes, heartbeats and losses.
+    /// Number of omitted keyframes, heartbeats and losses.
     others: u64,
 }
 
@@ -19,8 +19,8 @@ impl Omitted {
         self.dropped += 1;
     }
 
-    /// Records the time of a written event. Counts the event if the format changed its time. `event` is the event's own
-    /// time, and `read` is the time that a reader gets from the file.
+    /// Compares the time `event` of a written event with the time `read` that a reader gets from the file. Counts the
+    /// event if the times differ, and records the largest difference.
     pub(super) fn observe_time(&mut self, read: Tick, event: Tick) {
         self.retimed += u64::from(read != event);
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());
@@ -31,8 +31,8 @@ impl Omitted {
         self.others += u64::from(item != Item::Restart);
     }
 
-    /// Formats the counts as notes for the user. The note on dropped events says that the format has no `what` for
-    /// them. An example of `what` is `key`.
+    /// Formats the counts as notes for the user. The note on dropped events contains `what` in the text `no {what} for
+    /// them`, for example `no key for them`.
     pub(super) fn notes(self, what: &str) -> Vec<String> {
         let Self { dropped, retimed, furthest, others } = self;
         let all = [

@@ -11,7 +11,8 @@ use std::io::Write;
 pub struct Stream<'a> {
     reader: Box<dyn EventReader + 'a>,
     writer: Box<dyn EventWriter>,
-    /// The tick that is subtracted from all ticks to make the output start at 0, if requested.
+    /// Shift of the output's ticks. If the caller wants the output to start at 0, the first tick is subtracted from all
+    /// ticks.
     zero: Zero,
     items: Vec<Item>,
     bytes: u64,
@@ -169,8 +170,8 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Returns a text that gives the number of written bytes, `bytes`, and the mean number of bytes for an event or
-    /// value.
+    /// Returns a text for the user: how many bytes were written in total, and for each event or value on average.
+    /// `bytes` is the total.
     pub fn written(&self, bytes: u64) -> String {
         match self.count() {
             0 => format!("{bytes} bytes written"),

@@ -13,11 +13,11 @@ pub struct Tally {
     pub is_cut: bool,
     /// Number of ticks of more than 32 bits.
     pub long_ticks: u64,
-    /// Counts of a reader of link frames; `None` for other formats.
+    /// Counts kept by the reader of link frames; `None` for other formats.
     pub link: Option<LinkTally>,
 }
 
-/// Counts of a reader of link frames (packets from a sender): received frames, losses, faults and contents.
+/// Counts kept by a reader of link frames (packets from a sender): received frames, losses, faults and contents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkTally {
     /// Number of frames that arrived whole.
@@ -32,7 +32,8 @@ pub struct LinkTally {
     pub repeated: u64,
     /// Number of frames in which the sender reports that it lost events before the frame.
     pub after_loss: u64,
-    /// Number of times that the sender started.
+    /// Number of times that the sender started or restarted. The start before the first received frame counts only if
+    /// that frame is the first one after the start.
     pub restarts: u64,
     /// Number of keyframes received.
     pub keyframes: u64,
@@ -46,19 +47,19 @@ pub struct LinkTally {
     pub unused_keyframes: u64,
     /// Comparison of the keyframes with the values decoded just before each keyframe.
     pub held: Held,
-    /// The reason that no decoded value is exact (known to equal the sender's value). `None` if a value is exact, or
-    /// if no values are decoded.
+    /// The reason that no decoded value is exact (known to equal the sender's value). `None` if at least one value is
+    /// exact, or if no values are decoded.
     pub withheld: Option<Withheld>,
 }
 
-/// Comparison of each keyframe with the value that the decoder held just before the keyframe. Only codes whose decoder
-/// should already hold the keyframe's value are compared.
+/// Comparison of keyframes with the values that the decoders held just before. In some codes, a keyframe repeats the
+/// value that the decoder already holds. A difference then shows a fault. Keyframes of other codes are not compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
     /// Number of keyframes that were compared. A keyframe is compared if the decoder's value before the keyframe was
     /// exact (known to equal the sender's value).
     pub compared: u64,
-    /// Number of compared keyframes that differed from the exact value.
+    /// Number of compared keyframes that differed from the decoder's value.
     pub contradicted: u64,
 }
 

@@ -13,7 +13,7 @@ pub struct Events {
     pub notes: Vec<String>,
 }
 
-/// Reads all events from bytes in a format, given by name: `es`, `evt2`, `link`, `edvs:e2`…
+/// Reads all events from bytes. `format` is the name of the bytes' format, such as `es`, `evt2`, `link` or `edvs:e2`.
 ///
 /// # Errors
 /// Returns an error if the format is unknown, or if the bytes belong to a different format.
@@ -37,8 +37,8 @@ pub fn read_events(bytes: &[u8], format: &str) -> Result<Events> {
     Ok(Events { events: items.iter().filter_map(event).collect(), notes })
 }
 
-/// Writes events as bytes of a format, given by name. Returns the bytes, and notes on items that the format could not
-/// hold.
+/// Writes events as bytes. `format` is the name of the bytes' format, such as `evt2`. Returns the bytes, and notes on
+/// items that the format could not hold.
 ///
 /// # Errors
 /// Returns an error if the format is unknown, or if it cannot express an event.

@@ -12,7 +12,8 @@ use spikewire_cameras::frame::{DynamicFrameEncoder, Intensity};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Number of greys, which are the first colours of the palette. The three colours of the events panels follow.
+/// Number of greys in the palette, at the indexes 0 to 252. The indexes 253 to 255 are the colours of events and of
+/// the background.
 const GREYS: u16 = 253;
 const UP: u8 = 253;
 const DOWN: u8 = 254;
@@ -162,8 +163,9 @@ impl Preview {
     }
 }
 
-/// Returns the colours as bytes of red, green and blue. The greys come first. Dark ink for pixels that became brighter,
-/// red for pixels that became darker, and white follow in this order.
+/// Returns the colours of the palette, three bytes each: red, green and blue. The palette begins with the greys, from
+/// black to white. Three colours of the events panels follow: dark ink for pixels that became brighter, red for pixels
+/// that became darker, and white for the background.
 fn palette() -> Vec<u8> {
     let greys = (0..GREYS).flat_map(|grey| [(grey * 255 / (GREYS - 1)) as u8; 3]);
     greys.chain([0x2b, 0x2f, 0x36, 0xc2, 0x3b, 0x4e, 0xff, 0xff, 0xff]).collect()

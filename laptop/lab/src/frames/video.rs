@@ -38,7 +38,7 @@ impl Rate {
         (frames > 0 && seconds > 0).then_some(Self { frames, seconds })
     }
 
-    /// Returns the time in µs of the frame of index `frame`, counted from 0.
+    /// Returns the time in µs of a frame. `frame` is the frame's index, and frame 0 has time 0.
     pub fn micros(self, frame: u64) -> u64 {
         (u128::from(frame) * 1_000_000 * u128::from(self.seconds) / u128::from(self.frames)) as u64
     }

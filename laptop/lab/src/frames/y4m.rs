@@ -1,7 +1,7 @@
-//! Reads the brightness of YUV4MPEG2 videos, in full range: black is 0 and white 255.
+//! Reads the brightness of YUV4MPEG2 videos, from 0 for black to 255 for white.
 //!
-//! Grey videos are read as full range, and colour videos as limited range, 16 to 235, unless a colour video's header
-//! says `XCOLORRANGE=FULL`.
+//! In a grey video, and in a colour video whose header says `XCOLORRANGE=FULL`, the stored values already have this
+//! range. In other colour videos, the stored values range from 16 for black to 235 for white, and are expanded.
 
 use super::FramesKind;
 use super::video::{Rate, Video};
@@ -34,8 +34,8 @@ impl<R: Read> Read for Counting<R> {
 /// A reader that first yields the bytes of the header, which are in memory, and then the bytes of the frames.
 type Whole<R> = Chain<Cursor<Vec<u8>>, Counting<R>>;
 
-/// Reads the header. Checks width and height, because the decoder multiplies them without a check for overflow. Returns
-/// a reader of the header and the frames.
+/// Reads the header, and checks width and height, because the decoder multiplies them without a check for overflow.
+/// Returns a reader of the whole video, which yields the header once more before the frames.
 fn header<R: Read>(mut reader: Counting<R>, name: &str) -> Result<Whole<R>> {
     let mut header = Vec::new();
     while !header.ends_with(b"\n") && header.len() < LONGEST_HEADER {
@@ -65,7 +65,7 @@ pub(super) struct Y4m<R: Read> {
     size: (u16, u16),
     /// Number of bytes read so far.
     bytes: Rc<Cell<u64>>,
-    /// Number of bytes up to the end of the last frame read.
+    /// Offset in the video, in bytes, at which the latest frame ends. Before the first frame, the end of the header.
     end: u64,
     index: u64,
     frames: Option<u64>,

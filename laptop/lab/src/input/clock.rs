@@ -82,7 +82,7 @@ const RESTART: f64 = 10.0;
 /// Factor by which the sample rate must rise or fall before the change is reported.
 const JUMP: f64 = 1.5;
 
-/// The number of findings of one kind, such as gaps, with the first few of them.
+/// The findings of one kind, such as gaps: the number of findings, and the first few findings.
 #[derive(Clone, Debug)]
 struct Listed<T> {
     count: u64,
@@ -165,7 +165,7 @@ impl Clock {
         self.span.map_or(0, |(first, last)| last.saturating_sub(first))
     }
 
-    /// Adds the next times, in µs, and returns the unusual steps among them.
+    /// Adds the times of the next samples, in µs. Returns the unusual steps from one time to the next.
     pub fn observe(&mut self, times: &[i64]) -> Vec<Step> {
         let mut steps = Vec::new();
         for &time in times {
@@ -210,9 +210,9 @@ impl Clock {
         steps
     }
 
-    /// Measures the sample rate of the latest run of steps. Records a change of rate if both the median and the mean of
-    /// the steps have changed. A gap changes only the mean. Steps that alternate between two lengths change only the
-    /// median.
+    /// Measures the sample rate over the latest [`RUN`] steps. Records a change of rate only if both the median and the
+    /// mean of these steps have changed. A gap changes only the mean. Steps that alternate between two lengths change
+    /// only the median. Neither is a change of rate.
     fn end_run(&mut self) {
         let (Some((median, samples)), [first, .., last]) = (usual_step(&self.run), &*self.run)
         else {
@@ -296,11 +296,11 @@ fn is_disordered(times: &[i64]) -> bool {
     back > FEW && back * 10 > steps(|pair| pair[1] != pair[0])
 }
 
-/// Returns the median of the steps forward, in µs, and the mean number of samples for each step forward. A mean
-/// below 2 is returned as 1.
+/// Returns the usual step in µs, and the mean number of samples in a batch. A batch is a run of samples with equal
+/// times. The usual step is the median of the steps forward. The mean is the number of all steps, divided by the number
+/// of steps forward. If the quotient is below 2, the samples do not come in batches, and the mean is returned as 1.
 ///
-/// Returns `None` if no step goes forward. Also returns `None` if the mean is 2 or more and fewer than three steps go
-/// forward.
+/// Returns `None` if no step goes forward, or if samples come in batches and fewer than three steps go forward.
 fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
     const FEWEST: usize = 3;
     let steps = times.windows(2).map(|pair| pair[1].saturating_sub(pair[0]));

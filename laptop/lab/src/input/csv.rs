@@ -31,7 +31,7 @@ pub(super) struct Table {
     rows: Rows,
     /// Number of comment lines below the header.
     comments: Rc<Cell<u64>>,
-    /// A note for the user on what was left out at the end of a truncated table.
+    /// A note that tells the user which bytes were left out at the end of a truncated table.
     cut: Rc<Cell<Option<String>>>,
     ahead: VecDeque<ByteRecord>,
     /// The current row.
@@ -65,7 +65,7 @@ struct Time {
 }
 
 impl Table {
-    /// Opens a table that is CSV text, JSON lines or an array of `NumPy`.
+    /// Opens a table that can be read from a stream: CSV text, JSON lines or a single `NumPy` array.
     ///
     /// # Errors
     /// Returns an error if the input holds no table, or if the table lacks a requested column.
@@ -248,7 +248,7 @@ impl Table {
         self.time = Some(time);
     }
 
-    /// Returns the fields of a column in the rows that are examined first.
+    /// Returns the fields of a column in the first rows, which were read in advance to find the format of the times.
     fn first(&self, index: usize) -> Vec<&[u8]> {
         self.ahead.iter().filter_map(|record| record.get(index)).map(<[u8]>::trim_ascii).collect()
     }
@@ -316,7 +316,7 @@ impl Table {
 }
 
 impl Time {
-    /// Returns the time of a row, in ps. Returns `None` if a field of the time is invalid.
+    /// Returns the time of a row, in ps. Returns `None` if the row's text in a column of times is not a valid time.
     fn read(&self, record: &ByteRecord) -> Option<i128> {
         let field = |column: &Column| record.get(column.index).unwrap_or_default().trim_ascii();
         let time = self.reading.read(field(&self.column), self.has_decimal_commas)?;
@@ -379,8 +379,9 @@ struct Rows {
 }
 
 impl Rows {
-    /// Makes a reader of the rows in `start` and then in `input`. Comment lines are counted in `count`. `above` is the
-    /// number of lines that were added at the start of `start`, such as a header. The file itself has no such lines.
+    /// Makes a reader of the rows in `start`, followed by the rows in `input`. The reader counts comment lines in
+    /// `count`. `above` is the number of lines at the beginning of `start` that are not in the file, such as a header
+    /// that was added.
     fn new(
         start: Start,
         input: impl Read + 'static,
@@ -411,8 +412,8 @@ impl Rows {
         read.map_err(|error| unreadable(error, self.line(record)).at(file))
     }
 
-    /// Returns the number of the line at which `record`, the row read last, begins. The position that `record` stores
-    /// is of no use here: if comments precede the row, that position is where the comments begin.
+    /// Returns the number of the line at which the row in `record` begins. This row must be the row that was read last.
+    /// The position stored in `record` is not used: it counts comments above the row as part of the row.
     fn line(&self, record: &ByteRecord) -> u64 {
         let within = record.as_slice().split(|byte| *byte == b'\n').skip(1).count() as u64;
         let ends = within + u64::from(!self.is_of_windows);
@@ -441,8 +442,8 @@ impl<R: Read> Read for Comments<R> {
     }
 }
 
-/// Reads the first rows, from which the header and the format of the times are found. Sets the position of each record
-/// to the line at which its row begins.
+/// Reads the first rows, at most [`AHEAD`]. The caller finds the header and the format of the times in them. The
+/// position of each returned row is set to the line at which the row begins.
 fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
     let mut records = VecDeque::new();
     let mut record = ByteRecord::new();
@@ -501,7 +502,7 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
     }
 }
 
-/// Returns the columns of signals: all columns except that of the times and those that count rows, such as `index`.
+/// Returns the columns of signals: all columns except the column of times and the columns of counts, such as `index`.
 fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
     let is_signal = move |&(index, name): &(usize, &String)| {
         time.is_none_or(|time| time.index != index)

@@ -4,8 +4,8 @@ use std::cell::Cell;
 use std::io::{self, Read};
 use std::rc::Rc;
 
-/// A reader of the complete lines of an input. The reader leaves out a last line without a line end, and all bytes
-/// after an error in reading or decompressing.
+/// A reader of the complete lines of an input. The last line is left out if it has no line end. If the input cannot be
+/// read or decompressed to its end, the reader stops after the last complete line before the error.
 pub(super) struct WholeLines<R> {
     input: R,
     /// The bytes read. The bytes from `at` to `whole` belong to complete lines and are not passed on yet.

@@ -14,7 +14,7 @@ pub(super) struct Start {
     pub text: Vec<u8>,
     /// Offset in `text` of the first line that is not a comment.
     line: usize,
-    /// Offset in `text` of the line directly below the line at offset `line`.
+    /// Offset in `text` of the second line after the comments.
     next: usize,
 }
 
@@ -66,9 +66,9 @@ impl Start {
         }
     }
 
-    /// Returns the header if it stands in a comment. A comment is the header if it contains no number and has as many
-    /// fields as the line after the comments. This line must contain a number. Of several such comments, the last one
-    /// is the header. `asked` is the delimiter, if the user gave one.
+    /// Searches the comments for the header: the last comment that contains no number and has as many fields as the
+    /// line below the comments. Returns `None` if there is no such comment, or if the line below contains no number.
+    /// `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
@@ -84,8 +84,9 @@ impl Start {
     }
 }
 
-/// Returns whether the first row of a table holds samples rather than names. This is the case if the first row contains
-/// a number, and no text in the first row has a number below it in the second row.
+/// Returns whether the first row of a table holds samples rather than names. A row without numbers holds names. A row
+/// with a number holds samples, with one exception: if a text of the first row stands above a number of the second row,
+/// the text is the name of a column, and the first row holds names.
 pub(super) fn is_data(rows: &VecDeque<ByteRecord>, delimiter: u8) -> bool {
     let Some(first) = rows.front() else { return false };
     let is_number = |field: &[u8]| is_number(field, delimiter);

@@ -64,9 +64,9 @@ pub struct ChannelOptions {
     /// Columns of a table by name, such as `gyro_x`. The name `all` stands for all columns except times and counts. If
     /// the input is a log, each name is a field in the form `TOPIC.FIELD`.
     pub columns: Vec<String>,
-    /// Name of the column or field that holds the time: a column of a table, or a field of a log, such as
-    /// `header.stamp`. The default for a table is a column with a name that Betaflight, `ArduPilot`, PX4, ROS or pandas
-    /// uses for the time. The default for a message of a log is the time at which the message was recorded.
+    /// Name of the table's column or the log's field that holds the time, such as `header.stamp`. If `None`, the time
+    /// column of a table is recognised by its name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. If
+    /// `None`, each message of a log has the time at which the message was recorded.
     pub time: Option<String>,
     /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
     /// `stamp_ns`, or from the column's values.
@@ -81,10 +81,11 @@ pub struct ChannelOptions {
     pub fields: Vec<String>,
     /// Samples a second, for a recording without times.
     pub rate: Option<f64>,
-    /// Longest step between the times of two samples that does not count as a gap, as a multiple of the usual step.
+    /// Limit on the step between the times of consecutive samples, as a multiple of the usual step. A longer step
+    /// counts as a gap.
     pub gap: f64,
-    /// Whether rows in which a value is missing (empty, `NA`) or not finite are skipped and counted. Otherwise, such a
-    /// row is an error.
+    /// Whether incomplete rows are skipped and counted. A row is incomplete if one of its values is missing (empty,
+    /// `NA`) or not finite. If `false`, an incomplete row is an error.
     pub skip_non_finite: bool,
     /// Whether damaged files are accepted. A truncated or damaged log is then read without its damaged parts, and a
     /// truncated table is read up to its last complete line. Otherwise, damage is an error.
@@ -271,9 +272,11 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Returns the options with columns in the form `TOPIC.FIELD` replaced by a topic and its fields. Returns `None` if
-    /// there are no columns, if a column has a different form, or if the topics differ. Also returns `None` if these
-    /// options already choose a topic or a field.
+    /// Converts columns such as `TOPIC.FIELD` to a topic and fields of this topic. Returns a copy of the options with
+    /// the topic and fields in place of the columns.
+    ///
+    /// Returns `None` if the options choose no columns, if they already choose a topic or a field, if a column has no
+    /// dot, or if the columns are of different topics.
     fn named_by_topic(&self) -> Option<Self> {
         let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
         let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
@@ -291,8 +294,8 @@ impl InputOptions {
         Some(Self { channel, ..self.clone() })
     }
 
-    /// If the input is a table and no column was chosen, returns a copy of these options with all columns chosen.
-    /// Otherwise, returns an unchanged copy.
+    /// Returns a copy of these options. In the copy, all columns are chosen if the input is a table and these options
+    /// choose no column.
     ///
     /// # Errors
     /// Returns an error if the file cannot be opened.
@@ -311,7 +314,7 @@ impl InputOptions {
         self.input == Path::new("-")
     }
 
-    /// Returns the name that messages to the user give the input: its path, or `standard input`.
+    /// Returns the name of the input for messages to the user: its path, or `standard input`.
     pub fn name(&self) -> String {
         if self.is_stdin() { "standard input".to_owned() } else { self.input.display().to_string() }
     }

@@ -1,7 +1,7 @@
 //! Suggestions for a misspelt name.
 
-/// Returns the words that follow a misspelt name in a message. If there are at most eight valid names, the words list
-/// all names. Otherwise, the words list the three names that resemble `asked` most, and the number of all names.
+/// Returns a text that suggests valid names for the misspelt name `asked`. If there are at most eight valid names, the
+/// text lists all of them. Otherwise, the text lists the three names most like `asked`, and the number of all names.
 pub fn near<'a>(asked: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     const FEW: usize = 8;
     const MOST: usize = 3;

@@ -1,4 +1,5 @@
-//! Continues the times of 32-bit clocks that wrap around: after 71.6 minutes in µs, after 49.7 days in ms.
+//! Continues the times of 32-bit clocks that wrap around. A clock that counts µs wraps after 71.6 minutes, and a clock
+//! that counts ms after 49.7 days.
 
 use super::{Chunk, Source};
 use crate::Result;
@@ -7,10 +8,11 @@ use catalogue::run::Words;
 /// Ranges of 32-bit clocks, in µs: first for a clock that counts µs, then for a clock that counts ms.
 const RANGES: [i64; 2] = [1 << 32, 1000 << 32];
 
-/// Limit in µs on the time between the last sample before a wrap of the clock and the first sample after it. A wrap
-/// within the limit is recognised. [`STEPS`] may raise the limit.
+/// Longest time between two samples, in µs, for which a wrap of the clock between these samples is recognised.
+/// [`STEPS`] may raise this limit.
 const SECOND: i64 = 1_000_000;
-/// Smallest ratio of the limit to the latest step forward. After a long step, the limit is therefore above [`SECOND`].
+/// Multiple of the latest step forward in time. If this multiple is longer than [`SECOND`], it replaces [`SECOND`] as
+/// the limit.
 const STEPS: i64 = 4;
 
 /// Extends the times of a clock beyond its 32 bits.

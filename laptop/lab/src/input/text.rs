@@ -6,7 +6,7 @@ use crate::error::At;
 use flight_logs::Packing;
 use std::io::{self, Cursor, Read};
 
-/// Number of bytes at the start of a file from which the kind of the file is recognised.
+/// Number of bytes that are read from the start of a file to recognise the kind of the file.
 const HEAD: usize = 16;
 
 const PARQUET: &str = if cfg!(feature = "datasets") {

@@ -77,15 +77,15 @@ impl fmt::Display for TimeUnit {
 pub(super) enum Named {
     /// The times are in the given unit.
     In(TimeUnit),
-    /// The unit follows from the values. The given unit applies to whole numbers that are too small for times since
-    /// 1970.
+    /// The unit is guessed from the values. If these are whole numbers too small for times since 1970, the times are in
+    /// the given unit.
     Whole(TimeUnit),
     /// The column holds times only if its values are dates.
     Dates,
 }
 
-/// Interprets the name of a column, as exports of Betaflight, `ArduPilot`, PX4, ROS and pandas write it. Returns `None`
-/// if the name does not stand for times.
+/// Recognises a column of times by its name. Knows the names in exports of Betaflight, `ArduPilot`, PX4, ROS and
+/// pandas. Returns `None` if the name does not stand for times.
 pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
@@ -186,7 +186,8 @@ impl Reading {
         }
     }
 
-    /// Reads a time in ps; returns `None` if the field is not a time. Numbers may have a decimal comma if `has_commas`.
+    /// Reads a field, and returns its time in ps. Returns `None` if the field is not a time. If `has_commas` is true,
+    /// numbers may have a decimal comma.
     pub(super) fn read(self, field: &[u8], has_commas: bool) -> Option<i128> {
         let seconds = |whole: i64| i128::from(whole) * TimeUnit::S.picoseconds();
         match self {
@@ -214,9 +215,9 @@ pub(super) fn microseconds(picoseconds: i128) -> i64 {
     rounded.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// Converts a number from `unit` to ps. The field holds digits with or without a decimal point or, if `has_commas`, a
-/// decimal comma. All digits of a time stamp are used, while a float would keep only 15. Returns `None` if the field
-/// contains an exponent or any other character.
+/// Parses a number in `unit`, and converts it to ps. Keeps all digits down to 1 ps, while a float would keep only 15
+/// digits. The decimal sign is a point. If `has_commas`, a comma is a decimal sign as well. Returns `None` for a number
+/// in another form, such as one with an exponent, and for a number with more than 24 digits before the decimal sign.
 fn decimal(field: &[u8], unit: TimeUnit, has_commas: bool) -> Option<i128> {
     /// Maximum number of digits before the decimal point. The limit keeps the time in ps within 128 bits.
     const MOST: usize = 24;
@@ -267,8 +268,9 @@ fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
     }
 }
 
-/// Returns a note if the first times, in ps, are all equal, or if their usual step is shorter or longer than any flight
-/// recorder's.
+/// Returns a note for the user if the first times of a recording, in ps, are implausible. They are implausible if all
+/// are equal, or if their median step is below 1 ns or above 1 minute. A median step of 0 is allowed if some step is
+/// longer than 0.
 pub(super) fn implausible(times: &[i128]) -> Option<String> {
     const SHORTEST: f64 = 1e-3;
     const LONGEST: f64 = 60e6;
@@ -290,7 +292,8 @@ pub(super) fn implausible(times: &[i128]) -> Option<String> {
 mod tests {
     use super::{Named, Reading, TimeUnit, microseconds, of_given, of_name};
 
-    /// A column is read as times if its name consists of a word for a time and a unit. The tests of the command-line
+    /// Columns such as `gyro_ms` and `s` are not times: the first name lacks a word for a time, and the second is
+    /// nothing but a unit. A name with both, such as `time_us`, is a name of times. The tests of the command-line
     /// program cover the names in common exports.
     #[test]
     fn names_that_are_no_times() {

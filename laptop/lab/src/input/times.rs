@@ -1,5 +1,5 @@
-//! Summarises a recording's times, which come one by one: their length, rate and gaps, and the wraps of the recorder's
-//! clock.
+//! Summarises the times of a recording: duration, sample rate, gaps, and wraps of the recorder's clock. The times are
+//! added one by one.
 
 use super::{CHUNK, Clock, Rollover};
 

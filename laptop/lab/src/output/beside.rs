@@ -17,8 +17,9 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Deletes all unfinished files when the program is interrupted. The program must exit after this call. From now on, a
-/// thread that starts or finishes a file waits forever, so that no file appears after the deletion.
+/// Deletes all unfinished files. This function is for a program that is interrupted: the program must exit right after
+/// the call. A thread that starts or finishes a file after the call waits forever. No file thus appears after the
+/// deletion.
 pub fn abandon() {
     let files = unfinished();
     for file in files.iter() {
@@ -103,8 +104,8 @@ impl Write for Beside {
     }
 }
 
-/// Returns whether both paths lead to the same file, directly or through links. The path `-` for `input` stands for
-/// standard input.
+/// Returns whether both paths lead to the same file, directly or through links. If `input` is `-`, compares `output`
+/// with the file that is connected to standard input.
 pub(super) fn is_same(output: &Path, input: &Path) -> bool {
     if !fs::metadata(output).is_ok_and(|data| data.is_file()) {
         return false;

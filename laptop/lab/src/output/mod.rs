@@ -16,7 +16,8 @@ use std::io::BufWriter;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Standard output, a file that gets its final name once it is complete, or memory.
+/// A place to which output is written: standard output, a device, a file or memory. A file gets its final name once it
+/// is complete.
 pub struct Output {
     /// Name of the output in errors.
     name: String,
@@ -35,8 +36,8 @@ enum Place {
     Memory(Vec<u8>),
 }
 
-/// Checks that a table's name has an ending by which other programs recognise tables: `.csv`, `.txt` or none. A device
-/// may have any name. The error lists these endings, followed by the text `others`.
+/// Checks that a table's name ends in `.csv` or `.txt`, or has no ending, so that other programs recognise the table. A
+/// device may have any name. The error lists the allowed endings, followed by the text `others`.
 ///
 /// # Errors
 /// Returns an error if the path has a different ending.
@@ -150,7 +151,7 @@ impl Output {
         Ok(())
     }
 
-    /// Writes buffered bytes. If the output is a file, gives it its final name.
+    /// Writes buffered bytes. A file is then renamed from its temporary name to its final name.
     ///
     /// # Errors
     /// Returns an error if the output cannot be written.

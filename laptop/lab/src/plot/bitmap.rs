@@ -1,4 +1,4 @@
-//! Draws PNG pictures with tiny-skia, with the same strokes as the SVG.
+//! Draws PNG pictures with the crate `tiny-skia`. Lines have round joins, as in the SVG pictures.
 
 use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, DrawingBackend, DrawingErrorKind,

@@ -23,14 +23,15 @@ pub struct Panel {
 
 /// Font size of a panel's title, legible when the picture is as narrow as a phone.
 const TITLE: i32 = 22;
-/// Font size of the text that is not a panel's title, in pixels. The text is legible when the picture is as narrow as a
+/// Font size in pixels of all text except the titles of panels. The text is legible when the picture is as narrow as a
 /// phone.
 const TEXT: i32 = 19;
 const HEAD: i32 = 34;
 const LABELS: u32 = 84;
 /// Height of a line of the legend, in pixels.
 const LINE: i32 = 28;
-/// Lower end of the efficiency axis, in percent. Population codes with several spikes a sample have a lower efficiency.
+/// Efficiency at the lower end of the axis, in percent. It stands for 2 spikes a sample. Population codes with more
+/// spikes a sample are not drawn.
 const LOWEST: f64 = -100.0;
 /// Number of steps into which the efficiency axis is divided to compare schemes.
 const STEPS: usize = 400;
@@ -46,9 +47,9 @@ fn efficiency_at(step: usize) -> f64 {
 }
 
 impl Panel {
-    /// Returns the common front: for each step along the efficiency axis, the point of least error among all points
-    /// that have the step's efficiency or more. Each point has the scheme, the efficiency and the error. The entry is
-    /// `None` if no scheme reaches the step's efficiency.
+    /// Returns the common front, with one entry for each step along the efficiency axis. An entry holds the scheme, the
+    /// efficiency and the error of one point. This point has the least error among all points with at least the step's
+    /// efficiency. The entry is `None` if no scheme reaches the step's efficiency.
     fn front(&self) -> Vec<Option<(Scheme, f64, f64)>> {
         let best = |step| {
             let at = efficiency_at(step);
@@ -62,11 +63,12 @@ impl Panel {
     }
 }
 
-/// Returns the schemes that get a name and a colour, each with its colour. These are the schemes that form the largest
-/// shares of all channels' common fronts, the largest share first. At most as many schemes are returned as there are
-/// colours.
+/// Chooses the schemes that are drawn with a name and a colour, and gives each of them a colour. Counts how many points
+/// each scheme has on the common fronts of all channels. Returns the schemes with the most points, in descending order.
+/// Leaves out schemes with few points, and schemes for which no colour is left.
 pub(super) fn named(panels: &[Panel]) -> Vec<Named> {
-    /// A scheme gets a name and a colour only if it forms more than this share of the common fronts of all panels.
+    /// Limit on the share of a scheme in the points of all common fronts. A scheme whose share is at or below the limit
+    /// gets no name and no colour.
     const PART: f64 = 0.03;
     let mut shares: Vec<(Scheme, usize)> = Vec::new();
     for (scheme, ..) in panels.iter().flat_map(Panel::front).flatten() {
@@ -187,9 +189,9 @@ pub(super) fn draw<B: DrawingBackend>(
     Ok(())
 }
 
-/// Returns the efficiency and error at the point of the panel where the name of `scheme` is drawn. The common front has
-/// the least error of all schemes at each efficiency. The point is the middle of the part of this front that `scheme`
-/// forms. Only points with an efficiency of at least `left` percent count. Returns `None` if there are none.
+/// Returns the efficiency and error of the point at which the name of `scheme` is drawn. It is the middle one of the
+/// scheme's points on the common front, which [`Panel::front`] defines. Points with an efficiency below `left` percent
+/// are ignored. Returns `None` if no point remains.
 fn own_middle(panel: &Panel, scheme: Scheme, left: f64) -> Option<(f64, f64)> {
     let own = panel.front().into_iter().flatten().filter(|(own, ..)| *own == scheme);
     let points: Vec<(f64, f64)> =

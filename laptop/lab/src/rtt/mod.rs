@@ -113,7 +113,8 @@ mod tests {
         }
     }
 
-    /// Captures from a [`Fake`] board that returns `reads`. The capture is asked to stop after `stop` reads.
+    /// Captures from a [`Fake`] board. Read number `i` of the board gives the bytes `reads[i]`. The capture is asked to
+    /// stop after `stop` reads.
     fn run(reads: &[&'static [u8]], stop: usize) -> (Vec<u8>, Captured) {
         let (mut output, mut asked) = (Vec::new(), 0);
         let captured = capture(&mut Fake(reads.iter().copied().collect()), &mut output, || {

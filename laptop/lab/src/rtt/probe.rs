@@ -69,13 +69,13 @@ pub fn with_channel(
     use_it(&mut Probed { core, rtt, number: *number })
 }
 
-/// Formats an error and its causes with the messages of probe-rs, joined by colons.
+/// Formats an error of probe-rs: its message, followed by the messages of its causes, joined by colons.
 fn chain(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
-/// Returns a hint on why a probe may not be found.
+/// Returns the end of the error message for a debug probe that was not found. It names possible reasons.
 fn hint() -> &'static str {
     if cfg!(target_os = "linux") {
         "; is it plugged in, and may this user open it (udev rules of probe-rs)? CMSIS-DAP version 1 is not supported"

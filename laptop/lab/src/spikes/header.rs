@@ -22,8 +22,8 @@ pub struct Header {
     pub notes: Vec<(&'static str, String)>,
 }
 
-/// Lists the parameters of a scheme that a file of spikes holds only as notes. Decoding does not use these parameters,
-/// but the parameters that were derived from them.
+/// Returns the names of a scheme's parameters that decoding does not need, because other parameters are derived from
+/// them. A file of spikes holds these parameters as notes.
 pub fn unrecorded(scheme: Scheme) -> Vec<&'static str> {
     let parameters = scheme.info().parameters.iter();
     let is_note =
@@ -37,7 +37,8 @@ const VERSION: &str = "1";
 /// Maximum number of channels: the number of possible addresses.
 const MOST_CHANNELS: usize = 1 << 16;
 
-/// Keys of the notes in a header, besides the parameters in [`unrecorded`]. Decoding does not need the notes.
+/// Keys of the notes that a header of any scheme may have. Further notes depend on the scheme: [`unrecorded`] lists
+/// their keys. Decoding does not need the notes.
 const NOTES: [&str; 4] = ["column", "topic", "field", "latency"];
 
 impl Header {

@@ -12,7 +12,7 @@ pub(super) struct Mcap {
     chunk: Vec<u8>,
     /// For each message in the current chunk, the index of its topic, its time in ns, and its offset in the chunk.
     index: Vec<(usize, u64, u64)>,
-    /// For each finished chunk, the entry in the index that is written at the end of the file.
+    /// Index entries of the finished chunks, one for each chunk. They are written at the end of the file.
     chunks: Vec<Vec<u8>>,
     /// Number of messages on each topic.
     counts: Vec<u32>,

@@ -1,4 +1,5 @@
-//! Reads spikes from logs that this library or the paper's toolbox wrote.
+//! Reads spikes from logs of messages. The logs were written by this library, or by the toolbox that belongs to the
+//! paper *A toolbox for neuromorphic perception in robotics*.
 
 use super::recorder::{EVENT, HEADER};
 use super::{Header, Item, Spikes, SpikesKind};
@@ -22,8 +23,8 @@ pub struct Messages {
     /// Number of sub-timesteps (slots) of each sample.
     slots: usize,
     is_signed: bool,
-    /// Whether the log has a header, as in logs that this library wrote. In such a log, a message stands for a sample
-    /// that was not encoded if the message's field `input` is missing or NaN.
+    /// Whether the log has a header. Only logs that this library wrote have one. In such a log, the field `input` of a
+    /// message is missing or NaN if the message's sample was not encoded.
     has_header: bool,
     items: VecDeque<Item>,
 }
@@ -122,9 +123,9 @@ impl Spikes for Messages {
     }
 }
 
-/// Reads one spike of a message, at the index `place` from 0. `of` is the number of spikes in the message, or
-/// `usize::MAX` if unknown. If the message has one spike, the field `spike` is a number. If the message has several
-/// spikes, the field `spike` is an array. Returns `None` if `place` is beyond the last spike.
+/// Reads one spike of a message. `place` is the index of the spike, counted from 0. `of` is the number of spikes in the
+/// message, or `usize::MAX` if unknown. If the message has one spike, the field `spike` is a number. If the message has
+/// several spikes, the field `spike` is an array. Returns `None` if `place` is beyond the last spike.
 ///
 /// # Errors
 /// Returns an error if the message has no field `spike`.
@@ -265,7 +266,7 @@ mod tests {
     use super::Found;
 
     /// A log with the toolbox's scheme `gaussian_fields` is decoded as GRF over a lower range. The toolbox counts its
-    /// neurons from 0 in the formula of the centres, and this crate from 1. Thus each centre of the toolbox is lower, by
+    /// neurons from 0 in the formula of the centres, and this crate from 1. Thus each centre of the toolbox is lower by
     /// the distance between two neighbouring fields. For a log with the scheme `grf`, the range stays.
     #[test]
     fn the_toolbox_numbers_its_fields_from_0() {

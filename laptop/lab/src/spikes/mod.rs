@@ -40,8 +40,8 @@ pub trait Record {
     /// Returns an error if the file cannot hold the samples.
     fn observe(&mut self, chunk: &mut Chunk, steps: &[Step]) -> Result<()>;
 
-    /// Writes events. `decided` counts the finite samples, from the first one, whose events are complete after this
-    /// call. Later calls must only pass events of later samples.
+    /// Writes events. After this call, the events of the first `decided` finite samples are complete. Later calls must
+    /// pass only events of later samples.
     ///
     /// # Errors
     /// Returns an error if the spikes cannot be written.
@@ -65,10 +65,10 @@ pub trait Spikes {
     /// Returns an error if an item is invalid, or if the end of the file is missing.
     fn next(&mut self) -> Result<Item>;
 
-    /// Returns the place of the latest item in the file, to be named in an error.
+    /// Returns the place of the item that was read last. Errors name this place.
     fn place(&self) -> Place;
 
-    /// Returns notes for the user on the file. The notes are complete once the last item was read.
+    /// Returns notes on the file, to be shown to the user. The notes are complete once the last item was read.
     fn notes(&mut self) -> Vec<String> {
         Vec::new()
     }

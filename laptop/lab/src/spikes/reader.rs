@@ -39,7 +39,7 @@ pub enum Item {
     },
 }
 
-/// A reader of the spikes in a file, after its header.
+/// A reader of a file of spikes. It has already read the header, and reads the spikes below.
 pub struct Reader<R> {
     input: R,
     file: String,
@@ -199,7 +199,7 @@ impl<R: BufRead> Reader<R> {
         Ok(is_some)
     }
 
-    /// Makes an error of this kind at the current line.
+    /// Makes an error of the kind `kind`, with the current line as its place.
     fn refused(&self, kind: SpikesKind) -> Error {
         kind.at(Place::line(&self.file, self.number))
     }

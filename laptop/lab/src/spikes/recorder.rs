@@ -89,7 +89,8 @@ struct Pending {
     is_finite: bool,
 }
 
-/// First time in µs that a message cannot hold, because a message stores seconds in 32 bits.
+/// Limit on the time of a message, in µs. All times must be below this limit, because a message stores the seconds in
+/// 32 bits.
 const LATEST: u64 = (1 << 32) * 1_000_000;
 /// Topic of the first channel's spikes. The toolbox of the paper *A toolbox for neuromorphic perception in robotics*
 /// uses the same name.

@@ -18,7 +18,7 @@ pub(crate) struct Spyke {
     pub threshold: f32,
     /// The sample that was encoded.
     pub input: f32,
-    /// Name of the scheme in the toolbox that the module documentation names.
+    /// Name of the scheme, as the paper's toolbox spells it.
     pub scheme: &'static str,
     /// Time of the sample by the recording's clock. If the recording has no times, the time since the first sample.
     pub time: Duration,
@@ -85,7 +85,8 @@ impl Kind {
         }
     }
 
-    /// Returns the MD5 of the type's definition without comments, by which ROS 1 identifies the type.
+    /// Returns the MD5 checksum by which ROS 1 identifies the type. It is computed from the type's definition without
+    /// the comments.
     pub(crate) fn md5(self) -> &'static str {
         match self {
             Self::Spyke => "3fe7d788a9984f98947655b57e7a8ced",
@@ -96,8 +97,8 @@ impl Kind {
 }
 
 impl Spyke {
-    /// Encodes the message for ROS 1 or, as CDR, for ROS 2. CDR has a prefix of four bytes, aligns numbers to four
-    /// bytes, and ends strings with NUL.
+    /// Encodes the message as ROS 1 does if `format` is a bag, and as ROS 2 does if `format` is MCAP. ROS 2 uses the
+    /// encoding CDR, which has a prefix of four bytes, aligns numbers to four bytes, and ends strings with NUL.
     pub(crate) fn bytes(&self, kind: Kind, format: Format) -> Vec<u8> {
         let mut bytes = start(format);
         if kind == Kind::SpykeArray {

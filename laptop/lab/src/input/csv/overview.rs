@@ -11,7 +11,7 @@ use catalogue::run::Words;
 /// A summary of a CSV table.
 #[derive(Debug)]
 pub struct Summary {
-    /// The columns, except columns of times and counts.
+    /// The columns of signals: all columns except the column of times and columns of counts, such as `index`.
     pub columns: Vec<ColumnSummary>,
     /// Number of rows.
     pub rows: u64,

@@ -152,7 +152,7 @@ impl Channel {
         Ok(())
     }
 
-    /// Returns the error for a recording without samples. The topic is unknown, or it has no messages.
+    /// Returns the error for a recording without samples: either the log lacks the topic, or the topic has no messages.
     fn nothing(&self) -> Error {
         let topic = self.topic.clone();
         if self.plans.iter().any(Option::is_some) {
@@ -164,8 +164,9 @@ impl Channel {
     }
 }
 
-/// Appends the values of a message's fields to `values`, and returns the message's time in µs. A field in an array may
-/// be missing because the array is too short. The value of such a field is NaN.
+/// Appends the values of a message's fields to `values`, and returns the message's time in µs. If an array in the
+/// message is too short to have a chosen element, the element's value is NaN. If the message holds no time, `recorded`
+/// is used: the time in ns at which the message was recorded.
 fn read(
     topic: &Topic,
     plan: &Plan,
@@ -186,7 +187,7 @@ fn read(
     })
 }
 
-/// Returns the names of all numbers in a field that contains several, separated by commas.
+/// Lists the names of the numbers that a field contains, separated by commas.
 fn within(definition: &Definition, field: &str) -> String {
     let (numbers, _) = definition.names();
     let own: Vec<&str> =

@@ -42,7 +42,7 @@ struct Objects<R> {
     input: BufReader<R>,
     /// For each name, the index of its column.
     names: BTreeMap<String, usize>,
-    /// The first lines, which were read in advance for their names.
+    /// The first lines of the input. They were read in advance, to find the names of the columns.
     ahead: VecDeque<String>,
     line: String,
     number: u64,

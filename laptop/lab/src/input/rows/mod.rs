@@ -36,7 +36,7 @@ struct Lines<T> {
 }
 
 impl<T: Rows> Lines<T> {
-    /// Makes a reader whose text starts with a header line of these names.
+    /// Makes a reader whose CSV text starts with a header line. The header line holds `names`.
     fn new(names: impl IntoIterator<Item = String>, rows: T) -> Self {
         let mut text = Vec::new();
         for name in names {

@@ -20,7 +20,11 @@ pub(super) fn array(input: impl Read + 'static) -> Result<Box<dyn Read>> {
     Ok(Box::new(Lines::new(names, Arrays(vec![array]))))
 }
 
-/// Reads the arrays of an archive, which must have equal lengths, as the columns of a CSV table.
+/// Reads the arrays of an archive as one CSV table, which has the columns of all arrays.
+///
+/// # Errors
+/// Returns an error if the file is not an archive of arrays, if the archive is empty, or if the arrays have different
+/// lengths.
 pub(super) fn archive(file: File) -> Result<Box<dyn Read>> {
     const OTHER: &str = "a zip archive or a spreadsheet; export it as CSV";
     let no_archive = |error| odd(format!("{OTHER} ({error})"));
@@ -155,8 +159,9 @@ fn by_rows(mut input: impl Read, size: usize, columns: usize, rows: u64) -> Resu
     Ok(sorted)
 }
 
-/// Parses the header of an array. Returns the position of each number in a row, the length of a row in bytes, and the
-/// number of rows.
+/// Parses the header of an array. Returns the numeric fields of a row, the length of a row in bytes, and the number of
+/// rows. `name` is the array's name in an archive, or empty. The names of the fields begin with it. Returns `None` if
+/// the array has more than two dimensions, or a type that this module does not read.
 fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
     let (_, shape) = header.split_once("'shape':")?;
     let shape = shape.split_once('(')?.1.split_once(')')?.0;
@@ -217,7 +222,7 @@ fn layout(header: &str, name: &str) -> Option<(Vec<Field>, usize, u64)> {
     (!fields.is_empty()).then_some((fields, at, rows))
 }
 
-/// Arrays of equal length whose rows are joined to rows of one table.
+/// Arrays of equal length, read as one table. Each row of the table joins one row of every array.
 struct Arrays(Vec<Array>);
 
 impl Rows for Arrays {
