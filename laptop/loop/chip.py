@@ -1,11 +1,11 @@
-"""A chip in the loop: roll and pitch rates are controlled by a spiking network on tinyODIN's model, clock by clock.
+"""A chip in the loop: a spiking network on tinyODIN's model, clock by clock, holds attitude, rates and yaw of a drone.
 
-The wheel's position code makes the network's inputs: a spike says the rate of an axis, another the turn that is wanted.
-Spikes come back; those of the first half of an axis' neurons push one way, those of the second the other. Mahony's filter,
-attitude, yaw and mixer stay the cascade's.
+Six inertial channels and what is wanted come in as spikes of integrate-and-fire, one event after the other. What comes out
+is added up, each spike by what its neuron is worth: three angular accelerations for the mixer. Nothing else knows an attitude.
 
-`chip.py SPIKEWIRE` brings the network of `rate.nir` onto the chip by the laptop's program, flies all manoeuvres on it and prints
-a table.
+`chip.py SPIKEWIRE` brings the network of `attitude.nir` onto the chip by the laptop's program, flies all manoeuvres on it and
+prints a table. `chip.py` alone flies the graph in whole numbers with other seeds, in the other world, with other vibration and
+losses.
 """
 
 from __future__ import annotations
@@ -17,171 +17,256 @@ from pathlib import Path
 
 import nir
 import numpy as np
-import spikewire as sw
+from numba import njit
 
-import control
 import flight
-from codes import Coded, schemes
-from control import RATE, Control, F
-from manoeuvres import ALL, LESSON
+from attitude import ACCEL, ASK, DT, FADE, FAR, GYRO, LEAD, NETWORK, NEARBY, START, STEP, WANTED, Layout
+from banks import LEVEL
+from brushless import Brushless
+from control import Control, F
+from flight import Registers
+from manoeuvres import ALL, Manoeuvre
+from network_flies import LONG, Flown, check
+from network_pilot import Encoder, Networked
+from world import CRAZYFLIE, Drone, World
 
-#: What `imitate.py` has written.
-NETWORK = Path(__file__).with_name("rate.nir")
+#: What a spike of each signal is worth, in its unit times a sample: the number's steps, and those of a lean that the
+#: accelerometer moves by `network_pilot.FADES`.
+LEAN = 96.0
+THRESHOLD = np.array([*(step / DT for step in STEP), LEAN, LEAN, LEAN, *STEP, STEP[0] / DT], np.float32)
+#: The most spikes of a signal in a sample.
+MOST = 127
+#: Each manoeuvre is flown so often.
+SEEDS = range(100, 300, 100)
 
-AXES = 2
-#: Centres of a position: rad/s, dense about 0.
-CENTRES, RANGE = 63, 19.0
-#: Inputs of an axis: the rate's, then those of the turn that is wanted.
-INPUTS = 2 * CENTRES
-#: Neurons of an axis.
-NEURONS = 32
-#: What a spike of the network is worth, rad/s².
-WORTH = 60.0
-
-#: Neurons that return to 0, compare after each event, as they were trained, and are tuned on the whole lesson.
-HOW = "--live --reset zero --compare spike --no-held-out".split()
-
-POSITION = sw.Position(centres=(np.sinh(np.linspace(-3, 3, CENTRES)) / np.sinh(3) * RANGE).tolist())
+#: Neurons that return to 0 and compare after each event, as they stand in the graph.
+HOW = "--live --dt 1 --reset zero --fires above --compare spike --no-held-out".split()
 
 
-def events(rates, turns) -> list[list[int]]:
-    """What the chip hears of a sample, an event after the other: the rates, then the turns. A neuron hears one at a time."""
-    spikes = POSITION.encoder().encode(np.concatenate([rates[:AXES], turns[:AXES]])).argmax(axis=1).tolist()
-    return [[axis * INPUTS + kind * CENTRES + spikes[kind * AXES + axis] for axis in range(AXES)] for kind in range(2)]
+def events(counts: list[int]) -> list[int]:
+    """What the chip hears of a sample, an event after the other."""
+    heard = []
+
+    def hear(first: int, count: int) -> None:
+        heard.extend([first + (count < 0)] * abs(count))
+
+    for axis in range(3):
+        hear(GYRO + 2 * axis, counts[axis])
+    for axis in range(2):
+        hear(ACCEL + 2 * axis, counts[3 + axis])
+        far = round(counts[6 + axis] / NEARBY)
+        hear(FAR + 2 * axis, far)
+        hear(WANTED + 2 * axis, counts[6 + axis] - NEARBY * far)
+    hear(WANTED + 4, counts[8])
+    hear(LEAD, counts[9])
+    return [*heard, ASK, FADE, FADE + 1]
+
+
+class Network:
+    """The committed graph, in whole numbers."""
+
+    def __init__(self):
+        self.nodes = nir.read(NETWORK).nodes
+        self.inputs = self.nodes["weights"].weight.T.astype(int)
+        self.recurrent = self.nodes["recurrent"].weight.T.astype(int)
+        self.thresholds = np.ceil(self.nodes["neurons"].v_threshold).astype(int)
+        self.worth = self.nodes["worth"].weight
+        layout = Layout()
+        for own, laid_out in [(self.inputs, layout.inputs), (self.recurrent, layout.recurrent), (self.worth, layout.worth)]:
+            if not np.array_equal(own, laid_out):
+                raise SystemExit(f"{NETWORK.name} is not what attitude.py lays out")
 
 
 class Plain:
-    """The network in whole numbers, as it was trained: neurons that add up and start again at 0. Nothing of the chip's."""
+    """The network as it stands in the graph: neurons that add up and start again at 0. Nothing of the chip's."""
 
-    def __init__(self, weights: np.ndarray, threshold: int):
-        self.weights, self.threshold = weights, threshold
-        self.potentials = np.zeros(weights.shape[1])
+    def __init__(self, network: Network):
+        self.network = network
+        self.potentials = np.zeros(len(network.thresholds), int)
+        self.fired = [self.event(START)]
 
-    def step(self, events: list[list[int]]) -> np.ndarray:
+    def event(self, event: int) -> list[int]:
+        """The neurons that fire, in order."""
+        own = self.network
+        return follow(own.inputs[event], self.potentials, own.thresholds, own.recurrent).tolist()
+
+    def step(self, events: list[int]) -> np.ndarray:
         """How often each neuron fires in a sample."""
-        fired = np.zeros(len(self.potentials), int)
-        for event in events:
-            self.potentials = np.maximum(self.potentials + self.weights[event].sum(axis=0), -2048)
-            fires = self.potentials >= self.threshold
-            self.potentials[fires] = 0
-            fired += fires
-        return fired
+        self.fired = [self.event(event) for event in events]
+        return counted(self.fired, len(self.potentials))
+
+
+def counted(fired: list[list[int]], neurons: int) -> np.ndarray:
+    return np.bincount([neuron for each in fired for neuron in each], minlength=neurons)
+
+
+@njit(cache=True)
+def follow(row, potentials, thresholds, recurrent):
+    """An event, and the spikes that follow, each of which acts on all neurons before the next does."""
+    fired = [0 for _ in range(0)]
+    done = 0
+    while True:
+        for neuron in range(len(potentials)):
+            potential = min(max(potentials[neuron] + row[neuron], -2048), 2047)
+            if potential >= thresholds[neuron]:
+                potential = 0
+                fired.append(neuron)
+            potentials[neuron] = potential
+        if done == len(fired):
+            return np.array(fired, np.int64)
+        row = recurrent[fired[done]]
+        done += 1
 
 
 class Chip:
     """The network on tinyODIN's model, in a process of its own: an event in, the neurons that fire out."""
 
-    def __init__(self, program: str, lesson: list[list[int]]):
-        nodes = nir.read(NETWORK).nodes
-        self._plain = Plain(nodes["weights"].weight.T, nodes["neurons"].v_threshold)
-        with tempfile.NamedTemporaryFile("w", suffix=".txt") as steps:
-            steps.writelines(line(event) for event in lesson)
-            steps.flush()
-            command = [program, "network", str(NETWORK), steps.name, *HOW]
-            self._process = subprocess.Popen(
+    #: The chip's clocks of each sample, and the most of an event.
+    clocks: list[int] = []
+    longest = 0
+
+    def __init__(self, program: str, network: Network):
+        self.network, self.plain = network, Plain(network)
+        # What spikes are worth is the microcontroller's: the chip gets the graph without it.
+        graph = nir.read(NETWORK)
+        del graph.nodes["worth"]
+        graph.edges = [edge for edge in graph.edges if "worth" not in edge] + [("neurons", "output")]
+        graph.nodes["output"] = nir.Output({"output": np.array([len(network.thresholds)])})
+        with tempfile.TemporaryDirectory() as place:
+            path, lesson = Path(place) / "attitude.nir", Path(place) / "lesson.txt"
+            nir.write(path, graph)
+            lesson.write_text("".join(f"{event}\n" for event in [START, *range(START)]))
+            command = [program, "network", str(path), str(lesson), *HOW]
+            self.process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
             )
-            # The answer to nothing at all: by then the recording is read.
-            self.clocks: list[int] = []
-            self.step([[]])
-        self.clocks.clear()
+            # By the first answer, the files are read.
+            self.fired = self.ask([START])
+        self.compare(self.plain.fired)
 
-    def step(self, events: list[list[int]]) -> np.ndarray:
-        """How often each neuron fires in a sample."""
-        fired, clocks = np.zeros(AXES * NEURONS, int), 0
-        for event in events:
-            self._process.stdin.write(line(event))
-            self._process.stdin.flush()
-            answer = self._process.stdout.readline().split()
-            if not answer:
-                raise SystemExit(f"the chip ended: {self._process.stderr.read()}")
-            clocks += int(answer[0])
-            np.add.at(fired, [int(own) for own in answer[1:]], 1)
-        self.clocks.append(clocks)
-        if not np.array_equal(fired, self._plain.step(events)):
-            raise SystemExit(f"sample {len(self.clocks)}: the chip fires otherwise than the network that was trained")
-        return fired
+    def ask(self, events: list[int]) -> list[list[int]]:
+        """The neurons that fire of each event."""
+        self.process.stdin.write("".join(f"{event}\n" for event in events))
+        self.process.stdin.flush()
+        answers = [[int(word) for word in self.process.stdout.readline().split()] for _ in events]
+        if not all(answers):
+            raise SystemExit(f"the chip ended: {self.process.stderr.read()}")
+        clocks = [answer[0] for answer in answers]
+        Chip.clocks.append(sum(clocks))
+        Chip.longest = max(Chip.longest, *clocks)
+        return [answer[1:] for answer in answers]
 
-    def end(self) -> str:
-        """Ends the process, and returns what it has said of the network."""
-        return self._process.communicate()[1]
+    def compare(self, expected: list[list[int]]) -> None:
+        if self.fired != expected:
+            raise SystemExit(f"sample {len(self.clocks)}: the chip fires {self.fired}, the graph {expected}")
+
+    def step(self, events: list[int]) -> np.ndarray:
+        """How often each neuron fires in a sample; the graph's neurons must fire in the same events and order."""
+        self.fired = self.ask(events)
+        counts = self.plain.step(events)
+        self.compare(self.plain.fired)
+        return counts
+
+    def end(self) -> None:
+        self.process.communicate()
 
 
-def line(event: list[int]) -> str:
-    """An event for the program."""
-    return " ".join(map(str, event)) + "\n"
+class Held(Control):
+    """The cascade's mixer behind the network, and nothing else of the cascade.
 
-
-class Chipped(Control):
-    """The cascade, whose rates of roll and pitch a network controls.
-
-    `heard` keeps, by sample, rates, turns and what the cascade would have done about them, but for its derivative and its
-    integral: the network has no memory for these.
+    `heard` keeps, by sample, how many events came in; `fired`, how often each neuron fired. In a share `loss` of the samples
+    the sensor's spikes are lost.
     """
 
-    def __init__(self, network=None):
-        super().__init__(flight.RATE)
-        self.network, self.fired = network, 0
-        self.heard: list[list[float]] = []
+    def __init__(self, network: Plain | Chip, drone: Drone = CRAZYFLIE, loss: float = 0.0):
+        super().__init__(flight.RATE, drone)
+        self.network, self.encoder = network, Encoder(THRESHOLD, MOST)
+        self.loss, self.dice = loss, np.random.default_rng(1)
+        self.heard: list[int] = []
+        self.fired: list[np.ndarray] = []
 
-    def _wishes(self, rates, turns):
-        wishes = super()._wishes(rates, turns)
-        pushes = [RATE[axis] * (turns[axis] - rates[axis]) for axis in range(AXES)]
-        self.heard.append([*rates[:AXES], *turns[:AXES], *pushes])
-        if self.network is None:
-            return wishes
-        fired = self.network.step(events(rates, turns))
-        self.fired += int(fired.sum())
-        halves = fired.reshape(AXES, 2, -1).sum(axis=2)
-        return [*(F(WORTH * int(up - down)) for up, down in halves), wishes[2]]
-
-
-def lesson() -> list[list[int]]:
-    """The events of a flight on the cascade, on which the chip's numbers are found."""
-    teacher = Chipped()
-    flight.fly(LESSON, Coded(schemes("sod")), seed=1000, control=teacher)
-    return [event for heard in teacher.heard for event in events(heard[:AXES], heard[AXES : 2 * AXES])]
+    def step(self, sample, wanted, thrust, feed=(0.0, 0.0, 0.0)):
+        counts = self.encoder.counts(sample, wanted, feed[0])
+        if self.loss and self.dice.random() < self.loss:
+            counts[:6] = 0
+        heard = events(counts.tolist())
+        self.heard.append(len(heard))
+        self.fired.append(self.network.step(heard))
+        wishes = self.network.network.worth @ self.fired[-1]
+        return self._mix(F(thrust), [inertia * F(wish) for inertia, wish in zip(self.inertia, wishes)])
 
 
-def flown(make) -> list[flight.Flight]:
-    """All manoeuvres on the spikes of send-on-delta, with a controller that `make` makes for each."""
-    seeds = enumerate(ALL, start=100)
-    return [flight.fly(manoeuvre, Coded(schemes("sod")), seed, control=make()) for seed, manoeuvre in seeds]
+def flown(manoeuvre: Manoeuvre, make) -> list[flight.Flight]:
+    """The manoeuvre with each seed, on a drone that its rotors shake."""
+    number = (ALL + LONG).index(manoeuvre)
+    flights = []
+    for seed in SEEDS:
+        control = make()
+        flights.append(flight.fly(manoeuvre, Registers(), seed + number, control=control, vibration=LEVEL))
+        if isinstance(control, Held):
+            HELD.append(control)
+            control.network.end()
+    return flights
+
+
+#: All that have flown on the chip.
+HELD: list[Held] = []
+
+
+def mean(flights: list[flight.Flight]) -> float:
+    return float(np.mean([own.errors.mean() for own in flights if not own.lost]))
 
 
 def main(program: str) -> None:
-    cascade = flown(lambda: Control(flight.RATE))
-    kept = control.INTEGRAL, control.DERIVATIVE
-    control.INTEGRAL, control.DERIVATIVE = ([own[yaw] if yaw == 2 else F(0) for yaw in range(3)] for own in kept)
-    part = flown(lambda: Control(flight.RATE))
-    control.INTEGRAL, control.DERIVATIVE = kept
-
-    chip, all_chipped = Chip(program, lesson()), []
-
-    def chipped() -> Chipped:
-        all_chipped.append(Chipped(chip))
-        return all_chipped[-1]
-
-    on_chip = flown(chipped)
-    said = chip.end()
-    print(said, file=sys.stderr)
-
-    print("| mean error, ° | cascade | its proportional part alone | the chip | worst on the chip |\n|---|---:|---:|---:|---:|")
-    for manoeuvre, *flights in zip(ALL, cascade, part, on_chip):
-        errors = ["lost" if own.lost else f"{own.errors.mean():.1f}" for own in flights]
-        print(f"| {manoeuvre.name} | {' | '.join(errors)} | {flights[-1].errors.max():.0f} |")
-    means = [np.mean([own.errors.mean() for own in way if not own.lost]) for way in (cascade, part, on_chip)]
-    worst = max(own.errors.max() for own in on_chip)
-    print(f"| **all** | {' | '.join(f'{mean:.1f}' for mean in means)} | {worst:.0f} |\n")
-    samples, clocks = len(chip.clocks), np.array(chip.clocks)
-    heard = 2 * AXES
-    agreement = next(own for own in said.splitlines() if own.startswith("outputs agree"))
+    check(THRESHOLD, MOST)
+    network = Network()
+    ways = [
+        lambda: Control(flight.RATE),
+        lambda: Networked(flight.RATE, Flown()),
+        lambda: Held(Chip(program, network)),
+    ]
+    print("| mean error, ° | cascade | network on the microcontroller | the chip | worst on the chip | lost on the chip |")
+    print("|---|---:|---:|---:|---:|---:|")
+    means, lost = [], np.zeros(3, int)
+    for manoeuvre in ALL + LONG:
+        flights = [flown(manoeuvre, make) for make in ways]
+        own = [sum(each.lost for each in way) for way in flights]
+        errors = [mean(way) for way in flights]
+        words = [f"{error:.1f}" + (f", {gone} lost" if gone else "") for error, gone in zip(errors, own)]
+        worst = max(each.errors.max() for each in flights[-1])
+        print(f"| {manoeuvre.name} | {' | '.join(words)} | {worst:.0f} | {own[-1]} of {len(SEEDS)} |", flush=True)
+        if manoeuvre in ALL:
+            means.append(errors)
+            lost += own
+    every = " | ".join(f"{own:.1f}" for own in np.mean(means, axis=0))
+    print(f"| **the ten** | {every} | | {lost[-1]} of {len(ALL) * len(SEEDS)} |\n")
+    heard = np.concatenate([own.heard for own in HELD])
+    fired = np.concatenate([np.sum(own.fired, axis=1) for own in HELD])
+    clocks = np.array(Chip.clocks)
     print(
-        f"A sample is {heard} spikes in, {heard * AXES * NEURONS} synaptic operations and {sum(c.fired for c in all_chipped) / samples:.1f} "
-        f"spikes out, in {clocks.mean():.0f} of the chip's clocks, {clocks.max()} at most. The network as trained and on the chip: "
-        f"{agreement}; of the flights above, in all {samples} samples."
+        f"{len(network.thresholds)} neurons and {len(network.inputs)} inputs take {len(network.thresholds) + len(network.inputs)} of the "
+        f"chip's 256 rows. A sample is {heard.mean():.1f} events in, {heard.max()} at most, and {fired.mean():.1f} spikes, in "
+        f"{clocks.mean():.0f} of the chip's clocks, {clocks.max()} at most; an event takes {Chip.longest} at most. "
+        f"In all {heard.sum()} events of the {len(heard)} samples above, the chip fires as the graph does, spike by spike."
     )
 
 
+def elsewhere() -> None:
+    network = Network()
+    whole = [(World, LEVEL, 0, 5), (Brushless, LEVEL, 0, 2), (World, 2 * LEVEL, 0, 2), (World, 0, 0, 2)]
+    for world, vibration, loss, seeds in [*whole, (World, LEVEL, 0.01, 2), (World, LEVEL, 0.1, 2)]:
+        for name in ("cascade", "network"):
+            flights = []
+            for number, manoeuvre in enumerate(ALL):
+                for seed in range(300 + number, 300 + 100 * seeds, 100):
+                    is_cascade = name == "cascade"
+                    control = Control(flight.RATE, world.drone) if is_cascade else Held(Plain(network), world.drone, loss)
+                    more = {"world": world, "vibration": vibration, "loss": loss * is_cascade}
+                    flights.append(flight.fly(manoeuvre, Registers(), seed, control=control, **more))
+            lost = sum(own.lost for own in flights)
+            words = f"{world.__name__}, vibration {vibration:g}, {loss:.0%} lost on the way: {name}"
+            print(f"{words} {mean(flights):.1f}°, {lost} of {len(flights)} lost", flush=True)
+
+
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1]) if len(sys.argv) > 1 else elsewhere()

@@ -39,14 +39,14 @@ class Flown:
         return potentials
 
 
-def check() -> None:
+def check(threshold: np.ndarray = THRESHOLD, most: int = MOST) -> None:
     """The encoders of `network_pilot.py` are the crate's, spike by spike."""
-    signals = np.random.default_rng(1).normal(size=(500, SIGNALS)).astype(np.float32) * 3 * THRESHOLD + REFERENCE
-    encoder, counts = Encoder(), []
+    signals = np.random.default_rng(1).normal(size=(500, SIGNALS)).astype(np.float32) * 3 * threshold + REFERENCE
+    encoder, counts = Encoder(threshold, most), []
     for encoder.signals in signals:
         counts.append(encoder.fire())
-    for own, signal, threshold, reference in zip(np.transpose(counts), signals.T, THRESHOLD, REFERENCE):
-        code = sw.IntegrateAndFire(threshold=float(threshold), reference=float(reference), power=8, spikes=MOST)
+    for own, signal, worth, reference in zip(np.transpose(counts), signals.T, threshold, REFERENCE):
+        code = sw.IntegrateAndFire(threshold=float(worth), reference=float(reference), power=8, spikes=most)
         if not np.array_equal(code.encode(signal).array.sum(axis=(1, 2)), own):
             raise SystemExit("the encoders are not the crate's")
 

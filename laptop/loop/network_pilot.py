@@ -33,7 +33,8 @@ MOST = 31
 class Encoder:
     """Integrate-and-fire of all signals: input `2 s` is signal `s` up, `2 s + 1` down."""
 
-    def __init__(self):
+    def __init__(self, threshold: np.ndarray = THRESHOLD, most: int = MOST):
+        self.threshold, self.most = threshold, most
         self.potential, self.before = np.zeros(SIGNALS, np.float32), (1.0, 0.0, 0.0, 0.0)
         self.signals = np.zeros(SIGNALS, np.float32)
 
@@ -50,8 +51,8 @@ class Encoder:
     def fire(self) -> np.ndarray:
         """Spikes of `signals`: those of the crate's integrate-and-fire, which `check` compares."""
         self.potential += self.signals - REFERENCE
-        counts = np.clip(np.trunc(self.potential / THRESHOLD), -MOST, MOST)
-        self.potential -= counts * THRESHOLD
+        counts = np.clip(np.trunc(self.potential / self.threshold), -self.most, self.most)
+        self.potential -= counts * self.threshold
         return counts.astype(int)
 
 

@@ -3,8 +3,10 @@
 import brushless
 import numpy as np
 import spikewire as sw
+from attitude import ACCEL, ASK, FAR, GYRO, NEARBY, SET, STEP, TURN, WANTED, Layout
 from banks import banks
 from brushless import Brushless
+from chip import Network, Plain, counted
 from codes import Coded, schemes
 from controllers import CONTROLLERS
 from flight import LowPass, Registers, fly
@@ -89,6 +91,32 @@ def test_a_lost_frame_is_noticed():
     path = Coded(schemes("sf"))
     fly(STEPS, path, seed=5, loss=0.1)
     assert path.receiver.lost > 0 and 0.3 < path.exact < 1
+
+
+def test_the_chips_network_counts():
+    """Whatever comes in, each digit has one value, and the answers' worth is the sum of what has come in. Products move the yaw."""
+    random, layout, plain = np.random.default_rng(1), Layout(), Plain(Network())
+    moves = np.zeros((ASK, 3), int)
+    for axis in range(3):
+        moves[GYRO + 2 * axis, axis], moves[WANTED + 2 * axis, axis] = -1, 1
+    for axis in range(2):
+        moves[ACCEL + 2 * (1 - axis), axis], moves[FAR + 2 * axis, axis] = 2 * axis - 1, NEARBY
+    moves[1::2] = -moves[::2]
+    numbers, yawed = np.zeros(3, int), 0
+    for event in random.integers(ASK, size=20_000):
+        expected = numbers + moves[event]
+        if (abs(expected) > [900, 900, 38]).any():
+            continue
+        plain.event(event)
+        answers = counted([plain.event(ASK)], len(plain.potentials))
+        told = np.rint(plain.network.worth @ answers / (np.array(TURN) * STEP)).astype(int)
+        assert np.array_equal(told[:2], expected[:2]) and abs(told[2] - expected[2]) <= 1, (event, told, expected)
+        numbers, yawed = told, yawed + int(told[2] != expected[2])
+        for up, down, answer in (digit for axis in layout.digits for digit in axis):
+            value = plain.potentials[up : up + 3]
+            assert sorted(value) == [0, 0, SET] and np.array_equal(value, plain.potentials[down : down + 3])
+            assert np.array_equal(value[::-2], plain.potentials[answer : answer + 2])
+    assert yawed > 20
 
 
 if __name__ == "__main__":

@@ -37,7 +37,11 @@ const PARTS: [Part; 20] = [
         "docs/loop.md: its tables from laptop/loop/verdicts.json",
         simulated_drone::write_tables,
     ),
-    part("chip", "docs/loop.md: the chip's flights", simulated_drone::write_chip),
+    part(
+        "chip",
+        "docs/loop.md: the chip's flights, and docs/chip.svg",
+        simulated_drone::write_chip,
+    ),
     part("chips", "docs/chips.md: how well networks agree on the chips", chips::write),
     part("network-flies", "docs/loop.md: the network's flights", network_flies::write),
     part("frames", "docs/frames.png", video::write),

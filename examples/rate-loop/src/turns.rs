@@ -2,7 +2,7 @@
 
 use spikewire_chips::{ReckOnNetwork, ReckOnPair, ReckOnShared};
 
-/// Delay of the chip's answers, in steps: an answer shows the effect of the inputs of `LATE` steps before.
+/// Delay of the chip's answers, in steps. An answer shows the effect of the inputs sent `LATE` steps earlier.
 /// A step is a tick, 5000 µs in the recording.
 pub const LATE: usize = 2;
 

@@ -16,6 +16,7 @@ const TABLES: [&str; 2] = ["loop", "filters"];
 const CHIP: &str = "chip";
 const PICTURE: &str = "docs/loop.svg";
 const CRASH: &str = "docs/crash.svg";
+const CHIP_PICTURE: &str = "docs/chip.svg";
 
 /// The row of a table that a check flies again.
 const AGAIN: &str = "sod";
@@ -78,21 +79,25 @@ pub fn verify() -> Result<()> {
     Ok(())
 }
 
-/// Flies all manoeuvres with a network on the model of tinyODIN: the page's table of it must come again from the
-/// committed graph.
+/// Flies all manoeuvres with a network on the model of tinyODIN: the page's table and picture of it must come again
+/// from the committed graph.
 pub fn chip() -> Result<()> {
-    markdown::ensure_written(PAGE, CHIP, &on_chip()?, "cargo xtask write chip")
+    let (python, command) = (environment()?, "cargo xtask write chip");
+    drawing::ensure_kept(&draw(&python, "chip_picture.py")?, CHIP_PICTURE, command)?;
+    markdown::ensure_written(PAGE, CHIP, &on_chip(&python)?, command)
 }
 
-/// Flies all manoeuvres with a network on the model of tinyODIN, and writes the table into docs/loop.md.
+/// Flies all manoeuvres with a network on the model of tinyODIN, writes the table into docs/loop.md, and draws the
+/// picture.
 pub fn write_chip() -> Result<()> {
-    markdown::write(PAGE, CHIP, &on_chip()?)
+    let python = environment()?;
+    drawing::keep(&draw(&python, "chip_picture.py")?, CHIP_PICTURE)?;
+    markdown::write(PAGE, CHIP, &on_chip(&python)?)
 }
 
-fn on_chip() -> Result<String> {
-    let python = environment()?;
+fn on_chip(python: &Path) -> Result<String> {
     run(&mut cargo("build --package spikewire-cli"))?;
-    let flown = output(program(&python, "chip.py").arg(paths::target().join("debug/spikewire")))?;
+    let flown = output(program(python, "chip.py").arg(paths::target().join("debug/spikewire")))?;
     println!("{flown}");
     Ok(format!("\n{flown}\n"))
 }

@@ -18,7 +18,7 @@ pub struct Request<'a> {
     pub chip: &'a dyn Chip,
     /// The network in double precision.
     pub trained: &'a Trained,
-    /// Input spikes of the recording on which the chip's parameters are tuned, by step.
+    /// Input spikes, by step, of the recording on which the chip's parameters are tuned.
     pub tuned: &'a Trains,
     /// A second recording, which only tests the quantised network. If `None`, the network is tested on `tuned`.
     pub held_out: Option<HeldOut<'a>>,
@@ -47,14 +47,15 @@ pub struct HeldOut<'a> {
 pub struct Brought {
     /// The quantised network.
     pub network: Box<dyn OnChip>,
-    /// Comparison with double precision on the recording on which the parameters were tuned.
+    /// Comparison with double precision, for the recording that was used to tune the parameters.
     pub tuned: Figures,
     /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
-    /// The effect of each part of the chip's arithmetic on the spikes. Two runs of the network are compared for each
-    /// part: one in double precision except for this part, and one entirely in double precision. The number is the
-    /// share of active steps in which the same outputs fire in both runs. A step is active if an output fires in either
-    /// run. The runs use the held-out recording or, without one, the recording on which the parameters were tuned.
+    /// The parts of the chip's arithmetic, each with a measure of its effect on the spikes. For each part, two runs of
+    /// the network are compared: one in double precision except for this part, and one entirely in double precision.
+    /// The measure is the share of active steps in which the same outputs fire in both runs. A step is active if an
+    /// output fires in either run. The runs use the held-out recording. If there is none, they use the recording on
+    /// which the parameters were tuned.
     pub costs: Vec<(Cost, f64)>,
     /// Share of active steps in which the same outputs fire in double precision and in the training framework. A step
     /// is active if an output fires in either run. A low share suggests that the network's file, or the rule of its
@@ -80,11 +81,11 @@ pub struct Figures {
     /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in double precision
     /// and on the chip.
     pub windows_agreeing: usize,
-    /// Mean number of clock cycles that the chip takes for a step. On the flight controller, the mean number of weights
-    /// that are added in a step.
+    /// Mean number of clock cycles that the chip takes for a step. On the flight controller: the mean number of weight
+    /// additions in a step.
     pub mean_clocks: f64,
-    /// Largest number of clock cycles that the chip takes for a step. On the flight controller, the largest number of
-    /// weights that are added in a step.
+    /// Largest number of clock cycles that the chip takes for a step. On the flight controller: the largest number of
+    /// weight additions in a step.
     pub most_clocks: u64,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
@@ -98,7 +99,7 @@ pub struct PotentialFigures {
     pub name: String,
     /// Number of outputs.
     pub outputs: usize,
-    /// Number of weights that exceeded the chip's range and were clipped.
+    /// Number of the outputs' weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
     /// Root mean square of the potentials in double precision, in the units of the trained network.
     pub size: f64,
@@ -362,9 +363,9 @@ impl Figures {
     }
 }
 
-/// Returns how well the outputs' spikes on the chip, `fired`, agree with those of the original, from 0 to 1. This is
-/// the mean of two shares: of the active steps that agree, and of the windows in which the same outputs have the most
-/// spikes.
+/// Returns how well the outputs' spikes on the chip, `fired`, agree with those of the original, from 0 to 1. The result
+/// is the mean of two shares. The first is the share of steps in which the same outputs fire. The second is the share
+/// of windows in which the same outputs have the most spikes. Steps and windows in which no output fires do not count.
 pub(super) fn holds(original: &[Vec<u16>], fired: &[Vec<u16>]) -> f64 {
     let all = original.chunks(WINDOW).zip(fired.chunks(WINDOW));
     let all = all.map(|(original, fired)| (most(original), most(fired)));

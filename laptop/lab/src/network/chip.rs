@@ -12,9 +12,9 @@ pub trait Chip: Sync {
     fn name(&self) -> &'static str;
 
     /// Searches for the chip's parameters with which the spikes of each layer are nearest to those in `fired`. `inputs`
-    /// are the network's input spikes by step. `compare` has the meaning of
-    /// [`Request::compare`](super::Request::compare). Calls `progress` with the number of finished parts of the search
-    /// and the total number of parts.
+    /// are the network's input spikes by step. `compare` selects when the chip's neurons compare their potentials with
+    /// their thresholds; if `compare` is `None`, this function chooses. Calls `progress` with the number of finished
+    /// parts of the search and the total number of parts.
     ///
     /// # Errors
     /// Returns an error if the network does not fit the chip.
@@ -28,8 +28,8 @@ pub trait Chip: Sync {
     ) -> Result<Box<dyn OnChip>>;
 }
 
-/// The time at which a chip's neurons compare their potentials with their thresholds. The choice exists only on chips
-/// that support both variants.
+/// The time at which a chip's neurons compare their potentials with their thresholds. A chip that supports just one
+/// time ignores this choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compare {
     /// After each spike that arrives at the neuron: the chip's default.
@@ -50,13 +50,13 @@ pub trait OnChip {
     /// Returns an error if the chip refuses a call.
     fn run(&self, inputs: &Trains) -> Result<Ran>;
 
-    /// Loads the network into the chip's model, and runs it step by step. Passes the result of each step to `see`
-    /// before it reads the inputs of the next step, so that later inputs may depend on the result. Returns the number
+    /// Loads the network into the chip's model, and runs it step by step. The result of each step is passed to `see`
+    /// before the inputs of the next step are read, so that later inputs may depend on the result. Returns the number
     /// of spikes that were lost on their way into the chip.
     ///
     /// # Errors
-    /// Returns an error if the chip or `see` refuses a step, or if the chip's outputs for a step come only in later
-    /// steps.
+    /// Returns an error if the chip or `see` refuses a step. Also returns an error if the chip's outputs for a step
+    /// appear one or more steps later.
     fn follow(
         &self,
         _steps: &mut dyn Iterator<Item = Result<Vec<u16>>>,
@@ -103,8 +103,8 @@ pub struct Ran {
     pub fired: Vec<Trains>,
     /// The outputs' potentials by step, in the units of the trained network; empty if the outputs are spikes.
     pub potentials: Vec<Vec<f64>>,
-    /// For each step, the number of clock cycles that the chip takes. For the flight controller: the number of weights
-    /// that the step adds.
+    /// For each step, the number of clock cycles that the chip takes. On the flight controller: the number of weight
+    /// additions in the step.
     pub clocks: Vec<u64>,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
@@ -114,8 +114,8 @@ pub struct Ran {
 pub struct Stepped {
     /// The neurons that fired in the step, by layer.
     pub fired: Vec<Vec<u16>>,
-    /// Number of clock cycles that the step took on the chip. If the network runs on the flight controller instead,
-    /// this is the number of weights that the step added.
+    /// Number of clock cycles that the step took on the chip. On the flight controller: the number of weight additions
+    /// in the step.
     pub clocks: u64,
 }
 

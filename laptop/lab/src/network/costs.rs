@@ -39,9 +39,9 @@ const LEAKS: [f64; 12] = [0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.25, 1.5, 
 
 impl Cost {
     /// Runs the network on `inputs`, and returns the spikes of the last layer. The arithmetic is double precision,
-    /// except for the part of the chip's arithmetic that this cost stands for. This part may have parameters, such as
-    /// fixed leaks. They are chosen beforehand, on a recording with the inputs `tuned`: each layer should then fire the
-    /// spikes in `fired` as nearly as possible.
+    /// except for the part of the chip's arithmetic that this cost stands for. If this part has parameters, such as
+    /// fixed leaks, they are chosen first, on a recording with the inputs `tuned`. The choice makes each layer's spikes
+    /// in this recording as near as possible to those in `fired`.
     pub(super) fn alone(
         self,
         trained: &Trained,
@@ -126,10 +126,11 @@ fn run(layer: &Layer, leaks: &[Option<f64>], by_spike: bool, inputs: &Trains) ->
     inputs.iter().map(of_step).collect()
 }
 
-/// Runs one step of the layer's neuron `at`, and returns whether the neuron fires. A spike resets the neuron in the
-/// same step. If `leak` is given, a fixed leak of this amount replaces the trained leak. If `by_spike` is true, the
-/// neuron compares its potential with its threshold after each spike that arrives. Otherwise, it compares once, after
-/// all spikes of the step.
+/// Runs one step of the layer's neuron `at`, and returns whether the neuron fires. `inputs` lists the layer's inputs
+/// that fire in the step, and `before` lists the layer's neurons that fired in the step before. A spike resets the
+/// neuron in the same step. If `leak` is given, a fixed leak of this amount replaces the trained leak. If `by_spike` is
+/// true, the neuron compares its potential with its threshold after each spike that arrives. Otherwise, it compares
+/// once, after all spikes of the step.
 fn step(
     layer: &Layer,
     at: usize,

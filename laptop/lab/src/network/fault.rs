@@ -163,8 +163,8 @@ kinds! {
 room!(FitKind, Fit);
 
 kinds! {
-    /// The reason for which a run on a chip's model fails: the chip's driver reports an error, or the model gives an
-    /// answer that the network cannot give.
+    /// The reason for which a run on a chip's model fails. The chip's driver may report an error. The model may also
+    /// give an impossible answer, such as a spike of a neuron that the network does not use.
     pub enum ModelKind by spell of subject {
         Refused { error: Box<dyn std::error::Error + Send + Sync> } => ("the chip's model: {error}"),
         Answer { answer: Option<ReckOnAnswer> } => ("the chip's model answers {answer:?}"),

@@ -60,8 +60,8 @@ impl File {
         Err(NetworkKind::NoNetwork.at(path))
     }
 
-    /// Converts the network to the form that `spikewire-network` runs on the flight controller. `asked` makes the
-    /// choices about decay, firing and reset that the file leaves open.
+    /// Converts the network to the form that `spikewire-network` runs on the flight controller. If the file leaves open
+    /// how neurons decay, fire or reset, `asked` decides.
     ///
     /// # Errors
     /// Returns an error if the file and `asked` together leave part of the rule open, or if they contradict each other.
@@ -72,9 +72,9 @@ impl File {
         }
     }
 
-    /// Converts the network to the form that can be brought onto chips. `asked` makes the choices about decay, firing
-    /// and reset that the file leaves open. If `asked` leaves the duration of a step open too, a step lasts `seconds`,
-    /// as in the recording.
+    /// Converts the network to the form that can be brought onto chips. If the file leaves open how neurons decay, fire
+    /// or reset, `asked` decides. `asked` may also set the duration of a step. Otherwise, a step lasts `seconds`, as in
+    /// the recording.
     ///
     /// # Errors
     /// Returns an error if the file and `asked` together leave part of the rule open, or if no chip supports the

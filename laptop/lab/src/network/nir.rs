@@ -217,8 +217,8 @@ impl Graph {
         })
     }
 
-    /// Moves the ends of edges from nested graphs to nodes. An edge that starts at a nested graph now starts at the
-    /// graph's output node. An edge that ends at a nested graph now ends at the graph's input node.
+    /// Reconnects all edges that start or end at a nested graph. An edge that starts at the nested graph then starts at
+    /// the graph's output node. An edge that ends at the nested graph then ends at the graph's input node.
     fn join(&mut self) {
         for (from, to) in &mut self.edges {
             if let Some((_, output)) = self.inner.get(from) {

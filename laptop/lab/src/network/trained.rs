@@ -120,7 +120,7 @@ impl Layer {
         self.weights.first().map_or(0, Vec::len)
     }
 
-    /// Replaces a reset that no chip has by the one that is most like it.
+    /// Replaces a reset that no chip supports with the most similar reset that chips support.
     pub(super) fn reset_by_chip(self) -> Self {
         let reset = match self.reset {
             Reset::ToValueHeld => Reset::ToValue,
@@ -130,7 +130,8 @@ impl Layer {
         Self { reset, ..self }
     }
 
-    /// Returns whether no chip has this reset.
+    /// Returns whether the layer resets as [`Reset::ToValueHeld`] or [`Reset::SubtractNoDelay`], which no chip
+    /// supports.
     pub(super) fn has_own_reset(&self) -> bool {
         matches!(self.reset, Reset::ToValueHeld | Reset::SubtractNoDelay)
     }
@@ -293,10 +294,10 @@ impl Trained {
         Ok(self)
     }
 
-    /// Converts layers for chips on which a spike subtracts the threshold one step later. Changes only layers in which
-    /// a spike subtracts the threshold in the same step. In such a layer, the next leak also reduces the subtracted
-    /// amount. Because the chip subtracts only after this leak, it would subtract too much. A positive weight from each
-    /// neuron to itself makes up for the difference.
+    /// Adapts layers to chips on which a spike subtracts the threshold one step later. Changes only layers in which a
+    /// spike subtracts the threshold in the same step. In the trained layer, the leak of the next step also reduces the
+    /// subtracted amount. The chip subtracts the whole threshold, after the leak. A positive weight from each neuron to
+    /// itself adds the difference to the potential.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
             if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {

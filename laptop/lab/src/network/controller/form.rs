@@ -12,8 +12,8 @@ use crate::network::fault::{Context, FitKind, LayerKind, Result, ensure};
 /// Largest absolute value of a number that `spikewire-network` accepts in `f32`.
 const LARGEST: f64 = 1e15;
 
-/// A time constant of a current that is at least this share of a step, but less than a step, counts as one step. Such a
-/// time constant occurs if a step of the recording is a little longer than a step of the training.
+/// Smallest time constant of a synaptic current, in steps, that is taken for exactly one step. A time constant between
+/// this value and 1 occurs if a step of the recording is a little longer than a step of the training.
 const A_STEP: f64 = 0.98;
 
 /// Rounding error of gains in files of snnTorch and `SpikingJelly`. A gain that differs from 1 by less than this error
@@ -284,11 +284,13 @@ impl Neuron<f64> {
     }
 }
 
-/// Returns the factor by which a step multiplies a quantity that decays with time constant `tau`, in seconds.
+/// Returns the factor by which a step multiplies a quantity that decays with time constant `tau`, in seconds. The
+/// formula of [`Decay::Euler`] gives a negative factor if `tau` is shorter than a step. For snnTorch, the factor is
+/// then 0.
 ///
 /// # Errors
-/// Returns an error if `tau` is not positive. Also returns an error if [`Decay::Euler`] would give a negative factor,
-/// because `tau` is shorter than a step; for snnTorch, the factor is then 0.
+/// Returns an error if `tau` is not a positive finite number. Also returns an error if the factor would be negative and
+/// the framework is not snnTorch.
 fn left(tau: f64, rule: &Rule) -> Result<f64> {
     let Rule { dt, framework, decay, .. } = *rule;
     ensure!(tau > 0.0 && tau.is_finite(), LayerKind::TimeConstant { tau });

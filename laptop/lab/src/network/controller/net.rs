@@ -135,8 +135,8 @@ impl<K: Number> Layer<K> {
         self.weights.len()
     }
 
-    /// Returns the number of weights that a step of the layer adds. `inputs` is the number of input spikes, and `own`
-    /// the number of the layer's own spikes in the step before.
+    /// Returns the number of weight additions in a step of the layer. `inputs` is the number of input spikes, and `own`
+    /// is the number of spikes that the layer fired in the step before.
     pub(super) fn operations(&self, inputs: usize, own: usize) -> usize {
         let back = match self.own {
             Recurrent::None => 0,
@@ -218,8 +218,8 @@ impl<K: Number> Net<K> {
         self.layers.iter().map(rest).collect()
     }
 
-    /// Runs one step of all layers. Returns the number of weights that were added, and the number of neurons whose
-    /// potential or current had to be limited to the range of the number type.
+    /// Runs one step of all layers. Returns two counts: the weight additions, and the neurons whose potential or
+    /// current had to be limited to the range of the number type.
     pub(super) fn step(&self, state: &mut [State<K>], inputs: &[u16]) -> (usize, u32) {
         let (mut operations, mut saturated) = (0, 0);
         let mut drive = inputs.to_vec();

@@ -14,7 +14,8 @@ impl Model {
     /// Converts the network to the form that can be brought onto chips.
     ///
     /// # Errors
-    /// Returns an error if a current lasts longer than a step, or if neurons that never fire are not the last ones.
+    /// Returns an error if a synaptic current lasts longer than a step. Also returns an error if neurons that never
+    /// fire are anywhere but in a last layer of their own.
     pub(in super::super) fn on_chip(self) -> Result<Trained> {
         let mut layers = self.net.layers;
         let is_silent =

@@ -1,12 +1,12 @@
-//! The choices about how neurons decay, fire and reset that a file and its framework leave open, and the text that asks
-//! the user for them.
+//! Choices about the decay, firing and reset of neurons. If a network's file and its framework leave such a choice
+//! open, a text asks the user to make it.
 
 use super::Framework;
 use catalogue::run::Spell;
 use std::fmt::Write as _;
 
-/// A choice about how neurons decay, fire and reset. It is left to the user unless the network's file or the training
-/// framework makes it.
+/// A choice about how neurons decay, fire and reset. The network's file or the training framework may settle the
+/// choice. Otherwise, the user must decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Choice {

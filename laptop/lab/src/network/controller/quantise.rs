@@ -56,7 +56,7 @@ pub(super) struct Integers {
     pub net: Net<i32>,
     /// Left shift of each layer's weights, in bits.
     pub shifts: Vec<u32>,
-    /// Number of weights that exceeded 8 bits and were clipped, for each layer.
+    /// For each layer, the number of weights that exceeded 8 bits and were clipped.
     pub clipped: Vec<usize>,
     /// For each neuron of the last layer, the factor that converts its integer potential to the units of the trained
     /// network.

@@ -34,8 +34,8 @@ pub enum Reset {
     Subtract,
     /// Subtracts the threshold in the next step.
     SubtractLate,
-    /// Subtracts the threshold in the same step, as snnTorch does with `reset_delay=False`. If the last potential was
-    /// above the threshold, the neuron fires only if the new potential minus the threshold is above the threshold.
+    /// Subtracts the threshold in the same step, as snnTorch does with `reset_delay=False`. A neuron whose potential is
+    /// above the threshold before a step must exceed twice the threshold to fire in the step.
     SubtractNoDelay,
     /// Leaves the potential as it is.
     NoReset,
@@ -59,7 +59,8 @@ pub enum Decay {
     Exponential,
 }
 
-/// The value of the synaptic current that a step adds to the potential, for neurons that have such a current.
+/// The synaptic current that a step adds to the potential: the current of this step, or of the step before. The choice
+/// matters only for neurons that have a synaptic current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Current {
     /// The current after this step's inputs were added to it.
@@ -84,7 +85,7 @@ pub struct Asked {
     pub fires: Option<Fires>,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Option<Decay>,
-    /// The value of the synaptic current that a step adds to the potential: before or after the step changes it.
+    /// The synaptic current that a step adds to the potential: the current of this step, or of the step before.
     pub current: Option<Current>,
     /// Duration of a step, in seconds.
     pub dt: Option<f64>,
@@ -101,7 +102,7 @@ pub struct Rule {
     pub fires: Fires,
     /// How a time constant becomes the factor by which a step multiplies a potential or current.
     pub decay: Decay,
-    /// The value of the synaptic current that a step adds to the potential: before or after the step changes it.
+    /// The synaptic current that a step adds to the potential: the current of this step, or of the step before.
     pub current: Current,
     /// Duration of a step, in seconds.
     pub dt: f64,
@@ -119,7 +120,7 @@ pub(super) const PLAIN: Rule = Rule {
     dt: 1.0,
 };
 
-/// Default duration of a step, in seconds, with which snnTorch and `SpikingJelly` write files.
+/// Duration of a step, in seconds, that snnTorch and `SpikingJelly` assume by default when they write a NIR file.
 const WRITTEN: f64 = 1e-4;
 
 /// Properties of a network that decide which parts of a rule must be known.
@@ -162,7 +163,8 @@ impl Framework {
         Asked { framework: Some(self), resets, fires, decay: Some(decay), current, dt }
     }
 
-    /// Returns whether gains near 1 in this framework's files stand for exactly 1.
+    /// Returns whether a gain near 1 in this framework's files differs from 1 only by a rounding error. A gain is a
+    /// factor for the weights that lead to a neuron.
     pub(super) const fn means_ones(self) -> bool {
         matches!(self, Self::SnnTorch | Self::SpikingJelly)
     }
@@ -214,9 +216,9 @@ impl Asked {
         }
     }
 
-    /// Fills in the parts of the rule that neither the user nor the framework gives, for a network on a chip. Neurons
-    /// then fire above the threshold, decay by [`Decay::Euler`] and add [`Current::New`], and a step lasts `seconds`.
-    /// Leaves the reset open.
+    /// Returns a copy with defaults for a network on a chip: [`Fires::Above`], [`Decay::Euler`], [`Current::New`], and
+    /// steps of `seconds`. A default is used if neither the user nor the framework gives this part of the rule. The
+    /// reset has no default.
     pub(in super::super) fn on_chip(&self, seconds: Option<f64>) -> Self {
         let says = self.framework.map(Framework::says).unwrap_or_default();
         Self {
@@ -228,8 +230,8 @@ impl Asked {
         }
     }
 
-    /// Returns the first of the resets that the user gave. If the user gave none, returns the first reset in `says`,
-    /// the parts of the rule that the framework implies.
+    /// Returns the first reset that the user gave. If the user gave none, returns the first reset in `says`, which
+    /// contains the parts of the rule that the framework implies.
     fn reset(&self, says: &Self) -> Option<Reset> {
         self.resets.iter().chain(&says.resets).next().copied()
     }

@@ -24,12 +24,12 @@ pub(super) fn emit(network: &Quantised, remarks: &Remarks) -> String {
 /// Number of ticks in a step. The network's own inputs fire before the first tick of a step.
 pub const TICKS: usize = {ticks};
 
-/// For each tick of a step, additional inputs that fire before this tick: biases, and gates. A gate is an input that
-/// lowers the potentials of neurons, so that they do not fire at some ticks.
+/// For each tick of a step, the additional inputs that fire before this tick. Some are biases. The others are gates,
+/// which lower the potentials of neurons so that the neurons do not fire at some ticks.
 pub static ALWAYS: [&[u8]; TICKS] = [{}];
 
-/// For each tick of a step, additional inputs that fire before this tick: gates that raise neurons again. In the first
-/// step, only the gates of the last tick fire.
+/// For each tick of a step, the gates that fire before this tick and raise the lowered neurons again. In the first step
+/// of a run, only the gates of the last tick fire.
 pub static RAISES: [&[u8]; TICKS] = [{}];
 ",
             gates(|tick| &tick.always),
@@ -65,7 +65,7 @@ pub const FIRED: u32 = {FIRED};"
 
 use spikewire_chips::{{ReckOnNetwork, ReckOnPair, ReckOnShared}};
 {bias}
-/// Delay of the chip's answers, in {unit}: an answer shows the effect of the inputs of `LATE` {unit} before.
+/// Delay of the chip's answers, in {unit}. An answer shows the effect of the inputs sent `LATE` {unit} earlier.
 /// {step}{micros}.
 pub const LATE: usize = {late};
 

@@ -15,16 +15,17 @@ const SAME: f64 = 1e-4;
 /// leaks are as similar as possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// For each of the chip's neurons, the layer and index of the network's neuron that it holds; `None` for a neuron
-    /// that stays free. One neuron of a pair stays free if a layer has an odd number of neurons, or if no other neuron
-    /// of the layer has a similar leak.
+    /// The network's neuron that each neuron of the chip holds: the index of the layer, then the index of the neuron in
+    /// the layer. `None` if the chip's neuron stays free. One neuron of a pair stays free if a layer has an odd number
+    /// of neurons, or if no other neuron of the layer has a similar leak.
     pub(super) neurons: Vec<Option<(usize, usize)>>,
     /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
     by_layer: Vec<Vec<usize>>,
 }
 
-fn part(layer: &str) -> Spot {
-    Spot::Part(layer.to_owned())
+/// Returns the location that an error reports for the layer `name`.
+fn layer_at(name: &str) -> Spot {
+    Spot::Part(name.to_owned())
 }
 
 impl Places {
@@ -41,9 +42,12 @@ impl Places {
         if apart.is_ok() { apart } else { Self::placed(trained, has_bias, f64::INFINITY) }
     }
 
-    /// Assigns all neurons of a network to the chip. `most` limits which neurons of a layer form a pair: both keep a
-    /// share of their potential in a step, and these shares differ by at most `most`. `has_bias` says whether the bias
-    /// needs an input.
+    /// Assigns all neurons of a network to the chip. Two neurons of a layer may form a pair if their decay factors
+    /// differ by at most `most`. A step multiplies a neuron's potential by its decay factor. `has_bias` says whether
+    /// the network has a bias, which takes one of the chip's inputs.
+    ///
+    /// # Errors
+    /// Returns an error if the chip has too few neurons, inputs or outputs.
     fn placed(trained: &Trained, has_bias: bool, most: f64) -> Result<Self> {
         let mut neurons = Vec::new();
         let mut by_layer = Vec::new();
@@ -68,18 +72,18 @@ impl Places {
             }
             let (count, needed) = (layer.neurons.len(), neurons.len());
             let kind = || FitKind::Neurons { most: NEURONS, layer: count, needed };
-            ensure!(needed <= NEURONS, kind().at(part(&layer.name)));
+            ensure!(needed <= NEURONS, kind().at(layer_at(&layer.name)));
             by_layer.push(own);
         }
         let inputs = trained.inputs() + usize::from(has_bias);
         let kind = || FitKind::Inputs { most: Self::INPUTS, inputs, has_bias };
-        ensure!(inputs <= Self::INPUTS, kind().at(part(&trained.layers[0].name)));
+        ensure!(inputs <= Self::INPUTS, kind().at(layer_at(&trained.layers[0].name)));
         let (name, outputs) = match (&trained.readout, trained.layers.last()) {
             (Some(readout), _) => (readout.name.as_str(), readout.weights.len()),
             (None, Some(layer)) => (layer.name.as_str(), layer.neurons.len()),
             (None, None) => ("", 0),
         };
-        ensure!(outputs <= OUTPUTS, FitKind::Outputs { most: OUTPUTS, outputs }.at(part(name)));
+        ensure!(outputs <= OUTPUTS, FitKind::Outputs { most: OUTPUTS, outputs }.at(layer_at(name)));
         Ok(Self { neurons, by_layer })
     }
 

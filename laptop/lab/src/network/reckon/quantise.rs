@@ -13,16 +13,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
 /// factor.
 const KEEP: f64 = 32_768.0;
-/// The integer that stands for a decay factor of 1 of an output. Each tick of the chip multiplies the output's
-/// potential by its decay factor.
+/// The integer that stands for an output's decay factor of 1. Each tick of the chip multiplies the output's potential
+/// by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
 /// more ticks of the chip.
 const LEAST_KEEP: f64 = 0.875;
 /// Maximum number of the chip's ticks that one step of the network takes.
 const MOST_TICKS: u32 = 16;
-/// Safety factor of gates: inputs that lower a neuron so that it does not fire. A gate lowers the neuron by this factor
-/// times the amount that the recording needs.
+/// Safety factor for gates. A gate is an input that lowers a neuron to keep it from firing. It lowers the neuron by
+/// this factor times the amount that suffices in the recording.
 const SPARE: f64 = 1.5;
 const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
@@ -31,7 +31,7 @@ const ROOM: f64 = 0.8 * 32_767.0;
 /// Scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales are
 /// multiples of the largest scale at which the pair's weights and potentials fit the chip.
 const SCALES: [f64; 8] = [1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.6];
-/// Number of left shifts that the chip offers for weights: 0 to 7.
+/// Number of left shifts that the chip offers for weights. The chip can shift weights by 0 to 7 bits.
 const SHIFTS: u8 = 8;
 /// Weight, left shift and decay factor of an output that shows the spikes of one neuron. A decay factor of 64 stands
 /// for 1/2: each tick of the chip halves the output's potential. The bits of the potential therefore show in which of
@@ -84,8 +84,8 @@ pub(super) struct Quantised {
 pub(super) struct Tick {
     /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
     pub(super) always: Vec<usize>,
-    /// Numbers of the gates that raise neurons before this tick. In the first step, they fire only if this is the last
-    /// tick of the step, because the neurons of the other ticks have not been lowered yet.
+    /// Numbers of the gates (which are inputs) that raise neurons before this tick. In the first step, only the gates
+    /// of the last tick fire: the neurons that the other gates raise have not been lowered yet.
     pub(super) raises: Vec<usize>,
 }
 
@@ -98,7 +98,7 @@ pub(super) struct Change {
     pub(super) clipped: usize,
     /// Number of weights other than 0 that were rounded to 0.
     pub(super) vanished: usize,
-    /// Two sums: of the squares of the weights, and of the squares of the amounts by which rounding changed them.
+    /// Sum of the squared weights, then sum of the squared amounts by which rounding changed the weights.
     sums: [f64; 2],
 }
 
@@ -137,10 +137,10 @@ struct Source {
     /// Amount by which gates lower the neuron; 0 if the neuron needs no gates. Gates are inputs that keep the neuron
     /// from firing at some ticks.
     gate: f64,
-    /// For each neuron that sends spikes to this one: the number of the chip's neuron that holds the sender, and the
-    /// weight.
+    /// The neurons that send spikes to this one. Each entry is the sender's number on the chip, and the weight.
     recurrent: Vec<(usize, f64)>,
-    /// Largest absolute potential that the neuron reaches in double precision, plus the amount [`gate`](Self::gate).
+    /// Sum of two amounts: the largest absolute potential that the neuron reaches in double precision, and the amount
+    /// [`gate`](Self::gate) by which gates lower the neuron.
     peak: f64,
 }
 
@@ -303,8 +303,8 @@ fn ticks(trained: &Trained) -> usize {
     (least.max(most).ln() / LEAST_KEEP.ln() - 1e-9).ceil().max(1.0) as usize
 }
 
-/// Returns the share of its potential that a neuron keeps in one tick, at least [`LEAST_KEEP`]. `keep` is the share
-/// that the neuron keeps in a step, and `ticks` is the number of ticks in a step.
+/// Returns the factor by which a tick multiplies a neuron's potential. The factor is at least [`LEAST_KEEP`]. `keep` is
+/// the factor for a whole step, and `ticks` is the number of ticks in a step.
 fn keep_of(keep: f64, ticks: usize) -> f64 {
     keep.powf(1.0 / ticks as f64).max(LEAST_KEEP)
 }
@@ -314,7 +314,7 @@ fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
     (kept.sum::<f64>() / pair.len().max(1) as f64 * KEEP).round() as u16
 }
 
-/// The network in double precision, and what it did in the recording.
+/// A network in double precision, with its largest potentials and its spikes in the recording.
 struct Recorded<'a> {
     trained: &'a Trained,
     places: &'a Places,
@@ -373,11 +373,11 @@ impl Recorded<'_> {
 }
 
 /// Returns two amounts: the amount by which gates lower a neuron, and the amount by which they raise the neuron again.
-/// Gates are inputs that keep the neuron from firing before its layer compares again. Between the lowering and the
-/// raising, the neuron leaks in `ticks - 1` ticks. Only the remainder of the first amount must therefore be raised.
+/// Gates are inputs that keep the neuron from firing at some ticks. Between the lowering and the raising, the neuron
+/// leaks in `ticks - 1` ticks. These leaks undo part of the lowering, and the second amount undoes the rest.
 ///
-/// Both amounts are multiples of `1 << shift`. The first is at least `gate`, and is chosen so that its remainder is as
-/// near as possible to such a multiple.
+/// Both amounts are multiples of `1 << shift`. The first is at least `gate`. It is chosen so that the rest after the
+/// leaks is as near as possible to a multiple of `1 << shift`.
 fn gates(gate: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32) {
     if gate == 0.0 {
         return (0, 0);
@@ -408,9 +408,11 @@ fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> 
 struct Drive {
     /// Numbers of the network's inputs that fire. No input occurs twice.
     inputs: Vec<u16>,
-    /// Spikes of the preceding layer. Each gives a neuron by the index of its layer and by its index in the layer.
+    /// Neurons of the preceding layer that fire in the step. Each entry is the index of that layer, then the index of
+    /// the neuron in the layer.
     before: Vec<(usize, usize)>,
-    /// Neurons of the layer itself that fire in the step. Their spikes act one tick later.
+    /// Neurons of the layer itself that fire in the step. Each entry is the index of the layer, then the index of the
+    /// neuron in the layer. These spikes act one tick later.
     own: Vec<(usize, usize)>,
 }
 
@@ -453,8 +455,8 @@ struct Held<'a> {
     inputs: Vec<i32>,
     recurrent: Vec<i32>,
     bias: i32,
-    /// Amounts by which gates lower and raise the neuron. Gates are inputs that keep the neuron from firing before its
-    /// layer compares again.
+    /// Amount by which gates lower the neuron, and amount by which gates raise the neuron again. Gates are inputs that
+    /// keep the neuron from firing at some ticks.
     gates: (i32, i32),
     rule: Rule,
     places: &'a Places,
@@ -492,8 +494,8 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Runs the neuron on the spikes in `drives`. Returns the distance between its spikes and the spikes in `fired` of
-    /// the neuron with index `neuron`.
+    /// Runs the neuron on the spikes in `drives`. Returns the distance between two spike trains: the neuron's spikes in
+    /// this run, and the spikes that `fired` contains for the neuron with index `neuron`.
     fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let (mut is_over, mut raised) = (false, 0);
@@ -556,8 +558,8 @@ impl Quantised {
         self.inputs.len() - 1
     }
 
-    /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of all
-    /// layers that compare at this tick, unless these layers have no bias.
+    /// Adds the inputs that carry the biases of neurons. For each tick of a step, one input carries the biases of the
+    /// layers that may fire at this tick. There is no such input if all these biases are 0.
     fn put_bias(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
         for tick in 0..self.ticks.len() {
             let mut weights = Vec::new();
@@ -576,8 +578,9 @@ impl Quantised {
         }
     }
 
-    /// Adds the gates of each layer: inputs that lower the layer's neurons after they have compared their potentials
-    /// with their thresholds, and raise them when they compare again. The layer then cannot fire at other ticks.
+    /// Adds the gates of each layer. Gates are inputs that keep a layer from firing except at its own tick of a step.
+    /// Some gates lower the layer's neurons before the tick after the layer's own. The others raise the neurons again
+    /// before the layer's own tick comes again.
     fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[(u16, f64)], shift: u8) {
         let ticks = self.ticks.len();
         for layer in 0..self.layers.len() {

@@ -13,10 +13,13 @@ type Chip = ReckOn<Spi, Port>;
 /// Number of the chip's clock cycles in one SPI clock cycle.
 const RATIO: u32 = 10;
 
-/// Loads the network into the chip's model, and runs the network on all inputs as one sample. Each step sends its
-/// inputs and the bias, and then one or several ticks. On the chip, a spike needs one tick from each layer to the next,
-/// and one more tick from the last layer to the outputs. The result does not contain these delays: as in double
-/// precision, a spike passes through all layers within one step.
+/// Loads the network into the chip's model, and runs the network on the inputs of all steps. For the chip, the whole
+/// run is one sample (an input sequence). A step has one or several ticks, and its inputs are sent before its first
+/// tick. Additional inputs, such as those for biases, are sent before each tick.
+///
+/// On the chip, a spike needs one tick from each layer to the next, and one more tick from the last layer to the
+/// outputs. The result does not contain these delays: as in double precision, a spike passes through all layers within
+/// one step.
 ///
 /// # Errors
 /// Returns an error if the chip refuses a call.

@@ -4,9 +4,9 @@
 /// choice. The search starts from the `climbs` best choices in `first`. It moves each of them to its best neighbour,
 /// again and again, until no neighbour has a smaller distance.
 ///
-/// The function `distance` computes the distance of a choice. Its second argument is a limit, at and above which a
-/// distance is of no use. The function may stop as soon as the distance reaches the limit, and return any number that
-/// is not below the limit. This saves time for most choices.
+/// The function `distance` computes the distance of a choice. Its second argument is a limit: the search only needs
+/// exact distances below it. The function may stop as soon as the distance reaches the limit, and return any number
+/// that is not below the limit. This saves time for most choices.
 pub(super) fn climb<C: Copy, N: IntoIterator<Item = C>>(
     first: impl IntoIterator<Item = C>,
     neighbours: impl Fn(C) -> N,

@@ -26,7 +26,7 @@ const CLIMBS: usize = 2;
 /// Leaks to try for a neuron, as multiples of a reference amount. The reference is the amount that the trained neuron
 /// loses in the time between two leaks of the chip, if its potential starts at half its threshold.
 const LEAKS: [f64; 7] = [1.0, 0.5, 0.75, 1.5, 2.0, 3.0, 0.0];
-/// Maximum number of neurons in each layer on which the intervals between leaks are rated.
+/// Maximum number of neurons of each layer with which the search compares different intervals between two leaks.
 const SURVEYED: usize = 32;
 /// A value that stands for a leak where a function expects a weight. It is below all weights of the chip.
 const LEAK: i8 = i8::MIN;
@@ -36,8 +36,8 @@ const MOST_SPIKES: usize = 10_000;
 /// Intervals to try between two leaks, in steps. A leak moves the potential of every neuron towards 0.
 const STEPS: [usize; 6] = [1, 2, 3, 4, 8, 16];
 
-/// A network in tinyODIN's integers. The chip's neurons are those of all layers, one layer after the other. If the
-/// network has a bias, the last input carries it and must fire in every step.
+/// A network in tinyODIN's integers. On the chip, the neurons are numbered layer by layer, from the first layer to the
+/// last. If the network has a bias, the last input is for the bias. This input must fire in every step.
 #[derive(Clone, Debug)]
 pub(super) struct Quantised {
     /// The layers.
@@ -46,7 +46,8 @@ pub(super) struct Quantised {
     inputs: usize,
     /// Whether the network has a bias.
     pub has_bias: bool,
-    /// Whether spikes of neurons act on neurons, in a recurrent layer or from one layer to the next.
+    /// Whether spikes of the chip's neurons act on other neurons or on themselves. This is the case if the network has
+    /// several layers or a recurrent layer.
     is_recurrent: bool,
     /// Number of steps between two leaks of all neurons.
     pub steps_a_leak: usize,
@@ -254,7 +255,7 @@ impl ChipLayer {
 /// The parameters of a neuron that the search varies.
 #[derive(Clone, Copy)]
 struct Choice {
-    /// Value of a weight of 1 on the chip, in the units of the trained network.
+    /// Factor that converts a weight on the chip to the units of the trained network.
     unit: f64,
     threshold: u16,
     leak: u8,
@@ -270,7 +271,7 @@ struct Aim<'a> {
 
 /// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
 /// distance between the spikes and the target, and the neuron. `climbs` is the number of initial choices of parameters
-/// that the search improves; with 0, it only selects the best initial choice.
+/// that the search improves. If `climbs` is 0, the search takes the best initial choice as it is.
 fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, ChipNeuron) {
     let own = layer.recurrent.get(at).into_iter().flatten();
     let weights: Vec<f64> = layer.weights[at].iter().chain(own).copied().collect();

@@ -16,9 +16,10 @@ pub(super) type Steps<'a> = dyn Iterator<Item = Result<Vec<u16>>> + 'a;
 /// A function that is called with the result of each step.
 pub(super) type See<'a> = dyn FnMut(Stepped) -> Result<()> + 'a;
 
-/// Loads the network into the chip's model, and runs it step by step. A step sends the leak if it is due, then the
-/// bias, then the inputs in order. Passes the result of each step to `see` before it reads the inputs of the next step.
-/// Returns the number of spikes that were lost on their way into the chip.
+/// Loads the network into the chip's model, and runs it step by step. A step sends a leak of all neurons if one is due
+/// (once in [`steps_a_leak`](Quantised::steps_a_leak) steps), then the bias, then the inputs in order. The result of
+/// each step is passed to `see` before the inputs of the next step are read. Returns the number of spikes that were
+/// lost on their way into the chip.
 ///
 /// # Errors
 /// Returns an error if the chip or `see` refuses a step.

@@ -28,8 +28,8 @@ const MAX_POTENTIAL: u16 = 2047;
 /// Number of [shapes](Shape) for which the search for parameters is thorough. A rough search with all shapes selects
 /// them.
 const CHOSEN: usize = 2;
-/// Increase in agreement with the original that makes one more event in each step worthwhile. Agreement is the share of
-/// active steps in which the same outputs fire. A step is active if an output fires in either network.
+/// Increase in agreement that justifies one more event in each step. Agreement with the original is the share of active
+/// steps in which the same outputs fire. A step is active if an output fires in either network.
 const PRICE: f64 = 1e-4;
 
 /// A network in tinyODIN's integers, whose neurons compare their potentials with their thresholds once a step.
@@ -50,11 +50,13 @@ struct GatedLayer {
     neurons: Vec<GatedNeuron>,
 }
 
-/// Quantises the network: first with a rough search for each [shape](Shape), then with a thorough search for the
-/// [`CHOSEN`] shapes that were rated best. The rating is the agreement with the original, minus [`PRICE`] for each
-/// event in a step. Returns the best network of the rough search, then the networks of the thorough search. In the
-/// rough search, the parameters follow almost directly from the trained ones. In the thorough search, the spikes come
-/// nearer to those of the original in this recording. Returns an empty list if the chip has no room for any shape.
+/// Quantises the network in two searches. The first search is rough: it tries all [shapes](Shape), with parameters that
+/// follow almost directly from the trained ones. The second search is thorough: it takes the [`CHOSEN`] shapes with the
+/// best ratings, and brings the spikes in this recording nearer to those of the original. The rating of a shape is the
+/// agreement with the original, minus [`PRICE`] for each event in a step.
+///
+/// Returns the best network of the rough search, then the networks of the thorough search. Returns an empty list if the
+/// chip has no room for any shape.
 ///
 /// Calls `progress` with the number of finished parts of this work and the total number of parts.
 pub(super) fn quantise(
@@ -151,7 +153,10 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
 
 impl Gated {
     /// Quantises the network with the shape `shape`, layer by layer. The inputs of each further layer are the spikes of
-    /// the quantised layer before it. The search for each neuron climbs from the `climbs` best initial choices.
+    /// the quantised layer before it. `fired` contains the spikes that the original fires, by layer and step. `targets`
+    /// contains the same spikes: for each layer and neuron, whether the neuron fires in each step. The search for each
+    /// neuron improves the `climbs` best initial choices of parameters. If `climbs` is 0, the search takes the best
+    /// initial choice as it is.
     fn find(
         trained: &Trained,
         inputs: &Trains,
@@ -179,7 +184,7 @@ impl Gated {
         network
     }
 
-    /// Runs the network in plain arithmetic, and returns the spikes of the last layer.
+    /// Runs the network without the chip's model, and returns the spikes of the last layer.
     pub(super) fn outputs(&self, inputs: &Trains) -> Trains {
         let of_layer = |before: Trains, layer: &GatedLayer| layer.run(&self.shape, &before);
         self.layers.iter().fold(inputs.clone(), of_layer)

@@ -9,15 +9,15 @@ pub(super) struct GatedNeuron {
     /// The weights that lead to the neuron, one for each input of the layer. In a recurrent layer, one weight for each
     /// neuron of the layer follows. The chip splits each weight over one or more rows of synapses.
     pub weights: Vec<i16>,
-    /// Weight that acts in every step.
+    /// Amount that the bias adds to the potential in every step.
     pub bias: i16,
     /// Potential at which the neuron fires.
     pub threshold: u16,
-    /// Amount by which a leak moves the chip's potential towards 0.
+    /// Amount by which a leak moves the neuron's potential on the chip towards 0.
     pub leak: u8,
     /// Amount by which a rung raises the potential. A rung is one of the events that raise the neurons in a step.
     pub rung: u8,
-    /// Number of leaks that only this neuron receives, in each step in which it fires.
+    /// Number of additional leaks in a step in which the neuron fires. Other neurons do not receive these leaks.
     pub own_leaks: u16,
     /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
@@ -45,9 +45,9 @@ fn towards(potential: i32, centre: i32, by: i32) -> i32 {
     centre + away.signum() * (away.abs() - by).max(0)
 }
 
-/// Returns the potential after all leaks of `turn`. Each leak moves the potential by at most `leak` towards the leak's
-/// height; the leaks come from the lowest height to the highest. `turn` has one entry for each leak: the number of
-/// events that lower the neurons before the leak. `height` converts an entry to the height of its leak.
+/// Returns the potential after all leaks of a step. Each leak moves the potential by at most `leak` towards the height
+/// of the leak. `turn` has one entry for each leak, as in [`Shape::leaks`]. The leaks come from the lowest height to
+/// the highest. `height` converts an entry to the height of its leak.
 fn leaked(potential: i32, turn: &[u16], leak: i32, height: impl Fn(u16) -> i32) -> i32 {
     // The leaks below the potential move it down, all but the last of them by the whole leak. When one comes, the leaks
     // before have moved the potential already.
@@ -65,9 +65,9 @@ fn leaked(potential: i32, turn: &[u16], leak: i32, height: impl Fn(u16) -> i32) 
 }
 
 impl GatedNeuron {
-    /// Runs one step, which changes `potential`; returns whether the neuron fires. `turn` lists the leaks that act on
-    /// all neurons in the step. The entry for a leak is the number of events in the step that lower the neurons before
-    /// the leak comes.
+    /// Runs one step, which changes `potential`. Returns whether the neuron fires. `turn` has one entry for each leak
+    /// that acts on all neurons in the step, as in [`Shape::leaks`]. `added` contains the sums of the weights that act
+    /// on the neuron in the step.
     #[inline]
     pub(super) fn step(
         &self,
@@ -97,8 +97,9 @@ impl GatedNeuron {
         fires
     }
 
-    /// Returns the part of `weight` that row `row` holds if the weight is split into rows of synapses. `rows` has the
-    /// number of events that a spike sends on each row. All parts have the sign of the weight.
+    /// Splits `weight` into synapses, one in each row, and returns the synapse in row `row`. `rows` has one entry for
+    /// each row: the number of events that a spike sends on the row. The sum of all synapses, each multiplied by the
+    /// entry of its row, is `weight`. Synapses other than 0 have the sign of `weight`.
     pub(super) fn part(weight: i16, row: usize, rows: &[u16]) -> i8 {
         let (mut rest, mut part) = (weight, 0);
         for &times in rows.iter().take(row + 1) {
@@ -108,9 +109,9 @@ impl GatedNeuron {
         part as i8
     }
 
-    /// Returns the neuron's initial potential and threshold on the chip. A rung is an event that raises the potential
-    /// by [`rung`](Self::rung). The initial potential is [`below`](Shape::below) rungs below 0. The threshold on the
-    /// chip is [`above`](Shape::above) rungs higher than [`threshold`](Self::threshold).
+    /// Returns the initial potential and the threshold that the chip stores for the neuron. The initial potential is
+    /// below 0, by [`below`](Shape::below) times [`rung`](Self::rung). The stored threshold is
+    /// [`threshold`](Self::threshold) plus [`above`](Shape::above) times `rung`.
     pub(super) fn held(&self, shape: &Shape) -> (i16, u16) {
         let rung = i16::from(self.rung);
         (-rung * shape.below as i16, self.threshold + shape.above * u16::from(self.rung))

@@ -8,16 +8,17 @@ use super::shape::Shape;
 use super::{LARGEST_RUNG, MAX_LEAK, MAX_POTENTIAL};
 use crate::network::Reset;
 
-/// Values to try for a neuron's largest weight on the chip, divided by the number of events that a spike sends. A value
-/// above 7 clips the largest weights to the chip's range, but rounds the smaller weights more finely. The last value
-/// rounds all weights to 0 if a spike sends fewer than 5 events. The neuron then stays silent.
+/// Values to try for a neuron's largest weight on the chip. Each value is for one event, and is multiplied by the
+/// number of events that a spike sends. A value above 7 clips the largest weights to the chip's range, but rounds the
+/// smaller weights more finely. The last value rounds all weights to 0 if a spike sends fewer than 5 events. The neuron
+/// then stays silent.
 const LARGEST: [f64; 10] = [7.0, 6.0, 8.0, 5.0, 9.0, 4.0, 3.0, 12.0, 1.0, 0.1];
 /// Amounts to try first for a rung, an event that raises the neurons' potentials.
 const RUNGS: [u8; 4] = [7, 5, 3, 2];
 /// Number of initial choices of a neuron's parameters from which the search climbs to better ones.
 pub(super) const CLIMBS: usize = 2;
-/// Number of initial choices of a neuron's parameters that a rough search tries, in which no choice is improved. The
-/// choices that change the neuron least are tried. Their result rates a [shape](Shape).
+/// Number of initial choices of a neuron's parameters that a rough search tries. It tries the choices that change the
+/// neuron least, and improves none of them. The network that it finds serves to rate a [shape](Shape).
 const RATED: usize = 6;
 
 /// The spikes that act on a layer, listed by step. First come the inputs that fire in the step. In a recurrent layer,
@@ -61,14 +62,14 @@ struct Choice {
     /// Change of the number of leaks that the neuron alone receives after a spike. The number of leaks is the result of
     /// [`own_leaks`] plus this change.
     more: i16,
-    /// Amount that every step adds to the potential. This amount comes in addition to the trained bias, and to a
-    /// correction for leaks that would otherwise move a potential of 0.
+    /// Change of the neuron's bias, in the chip's units. The bias on the chip is the sum of three amounts: the trained
+    /// bias, this change, and a correction for leaks that would otherwise move a potential of 0.
     bias: i16,
 }
 
 /// Searches for the parameters with which the spikes of neuron `at` are nearest to the target of `aim`. Returns the
 /// distance between the spikes and the target, and the neuron. `climbs` is the number of initial choices of parameters
-/// that the search improves; with 0, it only selects the best initial choice.
+/// that the search improves. If `climbs` is 0, the search takes the best initial choice as it is.
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let distance = |choice, most| made(layer, at, aim.shape, choice).distance(aim, most);
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
@@ -192,9 +193,10 @@ fn made(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> GatedNeuron 
     GatedNeuron { weights, bias, threshold, leak, rung, own_leaks, clipped }
 }
 
-/// Returns how many leak events are sent to neuron `at` alone after it has fired. If spikes reset the potential to 0,
-/// later events of the step move the potential, and these leaks bring the potential back to 0. If spikes subtract the
-/// threshold, these leaks make up for the difference between the chip's reset and a subtraction.
+/// Returns the number of additional leaks that neuron `at` receives in a step in which it fires. The chip's reset sets
+/// the potential to 0, and later events of the step move it. If the trained network also resets to 0, the additional
+/// leaks bring the potential back to 0. If it subtracts the threshold, they bring the potential near the value that the
+/// subtraction would leave.
 fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
     let Choice { threshold, leak, rung, .. } = choice;
     if leak == 0 || shape.rungs() == 0 {

@@ -1,5 +1,6 @@
-//! The shape of a network whose neurons compare their potentials with their thresholds once a step. A shape is what all
-//! neurons of the network share: the rows of synapses for each weight, and the sequence of events in a step.
+//! The shape of a network whose neurons compare their potentials with their thresholds once a step. The shape is the
+//! same for all neurons of the network. It describes how each weight is split into synapses, and which events make up a
+//! step.
 
 use super::super::super::Trained;
 use super::{LARGEST_RUNG, MAX_POTENTIAL, NEURONS, ROWS};
@@ -8,14 +9,14 @@ use super::{LARGEST_RUNG, MAX_POTENTIAL, NEURONS, ROWS};
 /// number of events that a spike sends on this row. Each way can represent all integers from its smallest to its
 /// largest possible weight.
 const ROWS_TRIED: [&[u16]; 5] = [&[1], &[4, 1], &[8, 1], &[8, 8, 1], &[24, 8, 1]];
-/// Factor by which the number of rungs is larger than this recording needs. A rung is an event that raises the neurons.
-/// The additional rungs are for other recordings, in which a step may add more to a potential.
+/// Safety factor for the number of rungs, the events that raise the neurons in a step. A step has this factor times as
+/// many rungs as the recording needs. In other recordings, a step may add more to a potential.
 const SPARE: f64 = 1.5;
-/// Differences in height to try between neighbouring leaks, in units of the amount by which one rung (an event) raises
-/// a neuron.
+/// Differences in height between neighbouring leaks, to be tried in turn. The unit is the amount by which one rung (an
+/// event) raises a neuron.
 const DISTANCES: [f64; 3] = [3.0, 6.0, 12.0];
-/// Limits to try for the absolute potential, in units of the median threshold. Up to the limit, leaks reduce a
-/// potential by a share of its value. Beyond the limit, they reduce it by a fixed amount.
+/// Sizes to try for the range in which leaks reduce a potential by a share of its value. The unit is the median
+/// threshold. Potentials whose absolute value is beyond the range are reduced by a fixed amount.
 const REACHES: [f64; 2] = [1.0, 2.0];
 /// Number of steps after which the heights of the leaks repeat. Until then, each step has leaks at other heights.
 const TURNS: i32 = 3;
@@ -27,25 +28,29 @@ const MAX_LEAKS: f64 = 99.0;
 /// neurons by a fixed amount. After enough rungs, a neuron fires if its potential has reached its threshold.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shape {
-    /// For each row of synapses, the number of events that a spike sends on the row. Every input and every sending
-    /// neuron has these rows. A weight is the sum of its synapses, each multiplied by the number of events of its row.
+    /// For each row of synapses, the number of events that a spike sends on the row. Each input has these rows, and so
+    /// has each neuron that sends spikes to other neurons. A weight is a sum over the rows: the synapse in each row,
+    /// times the row's number of events.
     pub rows: &'static [u16],
-    /// Whether the network has a bias, as an input that fires in every step.
+    /// Whether the network has a bias. The bias is an input that fires in every step.
     pub has_bias: bool,
-    /// Number of rungs (events that raise the neurons) that follow those of [`below`](Self::below). They raise a neuron
-    /// at rest from 0 to a positive potential. On the chip, the neuron's threshold is higher by the same amount.
+    /// Number of rungs (events that raise the neurons) after the first [`below`](Self::below) rungs of a step. These
+    /// later rungs raise a neuron at rest from 0 to a positive potential. The threshold that the chip stores is higher
+    /// by the same amount.
     pub above: u16,
-    /// Number of rungs (events that raise the neurons) that raise a neuron at rest to 0. A neuron at rest begins a step
-    /// below 0, at the downward offset.
+    /// Number of rungs from the downward offset to 0. A rung is an event that raises the neurons. A neuron at rest
+    /// begins a step at the offset, and this number of rungs raises it to 0.
     pub below: u16,
-    /// The leaks that all neurons receive: one list for each step of a cycle, which then repeats. A list has one entry
-    /// for each leak: the number of events in the step that lower the neurons before the leak comes.
+    /// The leaks that all neurons receive: one list for each step of a cycle of steps. A list has one entry for each
+    /// leak: 0 if the leak comes before the step's first event that lowers the neurons, 1 if it comes between the first
+    /// and the second such event, and so on.
     pub leaks: Vec<Vec<u16>>,
-    /// Number of rungs (events that raise the neurons) that raise all neurons again at the end of a step. Additional
-    /// leaks then act on each neuron that fired in the step. 0 if spikes subtract the threshold.
+    /// Number of events at the end of a step that raise all neurons again, by one rung each. Then additional leaks act
+    /// on each neuron that fired in the step, and the same number of events lowers all neurons. This number is 0 if
+    /// spikes subtract the threshold.
     pub lift: u16,
-    /// The leaks that reduce a potential by a share of its value. `None` if no step has more than one leak that acts on
-    /// all neurons.
+    /// The leaks that reduce a potential by a share of its value. `None` if each step has at most one leak for all
+    /// neurons.
     pub share: Option<Share>,
 }
 
@@ -53,12 +58,14 @@ pub(super) struct Shape {
 /// leak is the potential towards which the leak moves a neuron.
 ///
 /// The lowest leak acts first. The leaks below a potential move it down, each by an amount `a`. Then the leaks above
-/// the potential move it up, each by `a`. Neighbouring leaks are `s` apart. From one leak to the next, the height rises
-/// by `s` and the potential falls by `a`. A potential that is higher by `s + a` therefore meets one more leak that
-/// moves it down, and one fewer that moves it up. In sum, a step takes the share `2 a / (s + a)` of the potential.
+/// the potential move it up, each by `a`. The heights of neighbouring leaks differ by `s`. From one leak below a
+/// potential to the next, the distance between potential and height therefore shrinks by `s + a`. A potential that is
+/// higher by `s + a` meets one more leak that moves it down, and one fewer that moves it up. In sum, a step takes the
+/// share `2 a / (s + a)` of the potential.
 ///
-/// A potential of 0 must stay 0. For this purpose, the height of the middle leak is below 0, by `a` for each leak that
-/// acts before it.
+/// A potential of 0 must stay 0. The leaks below the middle leak act first, and each moves this potential down by `a`.
+/// The height of the middle leak is the negative potential that results. The leaks above the middle leak then move the
+/// potential back up to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Share {
     /// Difference in height between neighbouring leaks, in units of the amount by which one rung (an event) raises a
@@ -83,8 +90,9 @@ impl Share {
         (2.0 * levels < MAX_LEAKS).then_some(Self { spacing, levels, middle: -levels * leak })
     }
 
-    /// Returns the heights of the leaks, in rungs, by step and leak. The list covers [`TURNS`] steps, after which the
-    /// heights repeat.
+    /// Returns the heights of the leaks: one list for each of [`TURNS`] steps, after which the lists repeat. The height
+    /// of a leak is the potential towards which the leak moves a neuron. The unit is the amount by which one rung (an
+    /// event) raises the neuron.
     fn heights(self) -> Vec<Vec<i32>> {
         let levels = self.levels as i32;
         let leak = if levels > 0 { -self.middle / self.levels } else { 0.0 };
@@ -105,8 +113,8 @@ impl Share {
         (1.0 - keep) / (1.0 + keep) * self.spacing * f64::from(rung)
     }
 
-    /// Returns where a potential of 0 lies after the leaks of a step. Each leak moves the neuron's potential by `leak`;
-    /// each event that raises the neuron (a rung) moves it by `rung`.
+    /// Returns the amount by which the leaks of a step move a potential of 0. `leak` is the amount by which a single
+    /// leak moves the potential. `rung` is the amount by which one rung (an event) raises the potential.
     pub(super) fn drift(self, leak: u8, rung: u8) -> f64 {
         let (leak, rung) = (f64::from(leak), f64::from(rung));
         2.0 * leak / (self.spacing * rung + leak) * (self.levels * leak + self.middle * rung)
@@ -153,8 +161,8 @@ pub(super) fn rows_of(trained: &Trained, has_bias: bool, rows: usize) -> usize {
     sources * rows + trained.layers.len() + 2
 }
 
-/// Returns all shapes to try. `drive` is the largest sum of weights that a step adds to a neuron, and `threshold` the
-/// median threshold, both in units of a neuron's largest weight.
+/// Returns all shapes to try. `drive` is the largest sum of positive weights that a step adds to a neuron. `threshold`
+/// is the median threshold. Both are in units of a neuron's largest weight.
 pub(super) fn shapes(trained: &Trained, has_bias: bool, drive: f64, threshold: f64) -> Vec<Shape> {
     let neurons = || trained.layers.iter().flat_map(|layer| &layer.neurons);
     if neurons().count() >= NEURONS - 1 {
