@@ -50,7 +50,8 @@ FLOWN = 50
 
 @dataclass(frozen=True)
 class Bank:
-    """A code as it flies: the corner of a low-pass before it, Hz, its keyframes, and the parameters of each group."""
+    """A code as it flies: the corner of a low-pass before it, Hz, its keyframes, and the parameters of each group, or of
+    each channel."""
 
     name: str
     low_pass: float | None
@@ -60,7 +61,8 @@ class Bank:
     def schemes(self) -> list[sw.Scheme]:
         """The scheme of each channel."""
         found: list = [None] * 6
-        for (channels, _), parameters in zip(GROUPS, self.groups):
+        places = [channels for channels, _ in GROUPS] if len(self.groups) == 3 else [[channel] for channel in range(6)]
+        for channels, parameters in zip(places, self.groups):
             given = parameters | ({"seed": 1} if self.name in CHANCE else {})
             for channel in channels:
                 found[channel] = sw.schemes[self.name](**given)
@@ -91,10 +93,20 @@ class Bank:
         return self.scaled(int(part), factor**way)
 
 
-def banks() -> dict[str, Bank]:
+def banks(path: Path = KEPT_BANKS) -> dict[str, Bank]:
     """All that were found."""
-    kept = json.loads(KEPT_BANKS.read_text()) if KEPT_BANKS.exists() else {}
-    return {name: Bank(name.removesuffix(CASCADE), own["low_pass"], own["keyframe_ms"], tuple(own["groups"])) for name, own in kept.items()}
+    kept = json.loads(path.read_text()) if path.exists() else {}
+    return {name: Bank(name.split("/")[0], own["low_pass"], own["keyframe_ms"], tuple(own["groups"])) for name, own in kept.items()}
+
+
+def written(kept: dict[str, Bank]) -> str:
+    """Banks as they are kept, one a line."""
+    lines = []
+    for name, bank in kept.items():
+        own = asdict(bank)
+        own.pop("name")
+        lines.append(f'  "{name}": {json.dumps(own)}')
+    return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def unfiltered(name: str) -> Bank:
@@ -150,12 +162,7 @@ def main() -> None:
         kept[name] = climbed(unfiltered(name.removesuffix(CASCADE)), name.endswith(CASCADE))
         print(name, kept[name], flush=True)
         ordered = {name: kept[name] for one in sw.schemes for name in (one, one + CASCADE) if name in kept}
-        lines = []
-        for name, bank in ordered.items():
-            own = asdict(bank)
-            own.pop("name")
-            lines.append(f'  "{name}": {json.dumps(own)}')
-        KEPT_BANKS.write_text("{\n" + ",\n".join(lines) + "\n}\n")
+        KEPT_BANKS.write_text(written(ordered))
 
 
 if __name__ == "__main__":

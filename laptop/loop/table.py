@@ -1,7 +1,8 @@
 """The tables of `docs/loop.md`, and `verdicts.json`, which they are printed from.
 
-`table.py` flies everything and prints both tables; `table.py CODE...` flies these codes anew and prints both;
-`table.py --print` prints what `verdicts.json` holds; `table.py --filters CODE` flies and prints a row of the second table.
+`table.py` flies everything and prints the tables; `table.py CODE...` flies these codes anew and prints them;
+`table.py --print` prints what `verdicts.json` holds; `table.py --filters CODE` flies and prints a row of the second table,
+`table.py --third CODE` one of the third.
 `--no-vibration` flies and prints these codes on a drone whose rotors do not shake it, and keeps nothing.
 """
 
@@ -15,20 +16,29 @@ from pathlib import Path
 import numpy as np
 import spikewire as sw
 
-from banks import CASCADE, LEVEL, LOSS, Bank, banks, unfiltered
+from advised import KEPT_ADVISED
+from banks import LEVEL, LOSS, Bank, banks, unfiltered
 from brushless import Brushless
 from codes import instructions
 from controllers import CONTROLLERS
 from flight import LowPass, Registers, fly
 from manoeuvres import ALL
+from third import Third
 from world import World
 
 VERDICTS = Path(__file__).with_name("verdicts.json")
 CONTROL = "without a code"
 #: Worlds, and rates in samples a second, in which a code must hold.
-WORLDS = {"RotorPy": World, "drone-models": Brushless}
+WORLDS = {"RotorPy": World, "drone-models": Brushless, "MuJoCo": Third}
 RATES = (250, 500, 1000)
-EVERYWHERE = [(world, control, rate) for world in WORLDS for control in CONTROLLERS for rate in RATES]
+
+
+def settings(*worlds: str) -> list[tuple[str, str, int]]:
+    """All controllers and rates in these worlds."""
+    return [(world, control, rate) for world in worlds for control in CONTROLLERS for rate in RATES]
+
+
+EVERYWHERE = settings("RotorPy", "drone-models")
 HERE = ("RotorPy", "cascade", 500)
 #: The manoeuvres of the flights everywhere, and of the second table.
 SHORT = [own for own in ALL if own.name in ("hover", "steps of 30°", "eight", "motor 10 % weak", "flip")]
@@ -91,10 +101,20 @@ def flown(name: str, bank: Bank | None) -> dict:
     own["here"] = cell(make, seeds=(1, 2))
     own["every tenth frame lost"] = cell(make, loss=0.1)
     own["still"] = cell(make, level=0.0)
-    own["everywhere"] = {}
-    for where in EVERYWHERE:
-        own["everywhere"][" ".join(map(str, where))] = cell(make, where, flights=SHORT)
+    own["everywhere"] = {key(where): cell(make, where, flights=SHORT) for where in EVERYWHERE}
     return own
+
+
+def third(bank: Bank | None) -> dict:
+    """A code, or none, with its bank, in the third world."""
+    make = bank.path if bank else registers(None)
+    here = cell(make, ("MuJoCo", *HERE[1:]), seeds=(1, 2))
+    return {"here": here, "everywhere": {key(where): cell(make, where, flights=SHORT) for where in settings("MuJoCo")}}
+
+
+def key(where: tuple[str, str, int]) -> str:
+    """World, controller and rate as one word."""
+    return " ".join(map(str, where))
 
 
 def verdict(own: dict, control: dict) -> str:
@@ -134,6 +154,25 @@ FILTERED = """\
 """
 
 
+#: Which bank of a code it is: what stands behind the slash of its name.
+WHICH = {
+    "cascade": ", for the cascade",
+    "hexarotor": ", as `advise` takes it from the hexarotor's log",
+    "own": ", as `advise` takes it from this drone's log",
+}
+
+THIRD = """\
+| code | flies? RotorPy | MuJoCo | error, °: RotorPy | MuJoCo | bytes/s: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error | of bytes |
+|---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|
+"""
+
+
+def label(name: str) -> str:
+    """A bank's name in the tables."""
+    code, _, which = name.partition("/")
+    return name if name == CONTROL else f"`{code}`" + WHICH.get(which, "")
+
+
 def flown_row(name: str, own: dict, control: dict) -> tuple:
     """A row of the first table, and what rows are sorted by."""
     here, tenth, still = own["here"], own["every tenth frame lost"], own["still"]
@@ -143,7 +182,7 @@ def flown_row(name: str, own: dict, control: dict) -> tuple:
     beside = far(own, control) if any(cell["error"] is not None for cell in everywhere) else None
     late = own["filter_delay_ms"] + 2 * own["latency_samples"] if is_code else 0.0
     columns = [
-        f"`{name.removesuffix(CASCADE)}`" + (", for the cascade" if name.endswith(CASCADE) else "") if is_code else name,
+        label(name),
         verdict(own, control),
         number(own["low_pass"]) if is_code else "–",
         number(own["keyframe_ms"]) if is_code else "–",
@@ -165,10 +204,53 @@ def flown_row(name: str, own: dict, control: dict) -> tuple:
 
 def filtered_row(name: str, own: dict) -> str:
     """A row of the second table."""
-    columns = [f"`{name}`" if name != CONTROL else name]
-    for key in ("still", "none", "80", "40"):
-        columns += [f"{number(own[key]['error'], 1)}, {len(own[key]['lost'])}", number(own[key]["bytes"])]
+    columns = [label(name)]
+    for way in ("still", "none", "80", "40"):
+        columns += [f"{number(own[way]['error'], 1)}, {len(own[way]['lost'])}", number(own[way]["bytes"])]
     return "| " + " | ".join(columns) + " |\n"
+
+
+def third_row(name: str, own: dict, flown: dict, thirds: dict) -> str:
+    """A row of the third table: RotorPy's flights beside MuJoCo's."""
+    theirs = in_rotorpy(flown[name])
+    columns = [label(name), *verdicts(name, own, flown, thirds)]
+    for figure, digits in (("error", 1), ("bytes", 0)):
+        columns += [number(theirs["here"][figure], digits), number(own["here"][figure], digits)]
+    columns += [crashes(theirs), crashes(own)]
+    for figure in ("error", "bytes"):
+        ratios = compared(theirs, own, figure)
+        columns.append(f"{min(ratios):.2f}–{max(ratios):.2f}" if ratios else "–")
+    return "| " + " | ".join(columns) + " |\n"
+
+
+def verdicts(name: str, own: dict, flown: dict, thirds: dict) -> tuple[str, str]:
+    """The first table's verdict on a code, and the same with MuJoCo's flights in the place of RotorPy's."""
+
+    def moved(third: dict, first: dict) -> dict:
+        others = {where: cell for where, cell in first["everywhere"].items() if "RotorPy" not in where}
+        return third | {"everywhere": third["everywhere"] | others}
+
+    control = moved(thirds[CONTROL], flown[CONTROL])
+    return verdict(flown[name], flown[CONTROL]), verdict(moved(own, flown[name]), control)
+
+
+def in_rotorpy(own: dict) -> dict:
+    """What was flown in RotorPy's world, with keys as of MuJoCo's."""
+    cells = {key_.replace("RotorPy", "MuJoCo"): cell for key_, cell in own["everywhere"].items() if "RotorPy" in key_}
+    return {"here": own["here"], "everywhere": cells}
+
+
+def crashes(own: dict) -> str:
+    """How many flights of all were lost."""
+    cells = [own["here"], *own["everywhere"].values()]
+    return f"{sum(len(cell['lost']) for cell in cells)} of {sum(cell['flights'] for cell in cells)}"
+
+
+def compared(one: dict, other: dict, figure: str) -> list[float]:
+    """The ratio of a figure in the other world to that in the one, in each setting in which neither lost a flight."""
+    cells = [(one["here"], other["here"])]
+    cells += [(cell, other["everywhere"][where]) for where, cell in one["everywhere"].items()]
+    return [theirs[figure] / own[figure] for own, theirs in cells if not own["lost"] and not theirs["lost"]]
 
 
 def rounded(own):
@@ -188,12 +270,14 @@ def keep(kept: dict) -> None:
 
 
 def printed(kept: dict) -> str:
-    """Both tables, with a line between them."""
+    """The three tables, with a line between each two."""
     control = kept["banks"][CONTROL]
-    rows = sorted(flown_row(name, own, control) for name, own in kept["banks"].items())
+    rows = sorted((*flown_row(name, own, control), name) for name, own in kept["banks"].items())
     order = [CONTROL, *sw.schemes]
     others = [filtered_row(name, kept["filters"][name]) for name in order if name in kept["filters"]]
-    return FLOWN + "".join(text for _, text in rows) + "\n" + FILTERED + "".join(others)
+    thirds = [third_row(name, kept["third"][name], kept["banks"], kept["third"]) for *_, name in rows if name in kept["third"]]
+    tables = (FLOWN, [text for _, text, _ in rows]), (FILTERED, others), (THIRD, thirds)
+    return "\n".join(head + "".join(rows) for head, rows in tables)
 
 
 def main(arguments: list[str]) -> None:
@@ -203,17 +287,27 @@ def main(arguments: list[str]) -> None:
         for name in names:
             print(filtered_row(name, rounded(filtered(name))), end="")
         return
-    all_banks = banks()
+    found = banks()
+    all_banks = found | banks(KEPT_ADVISED)
+    kept = json.loads(VERDICTS.read_text()) if VERDICTS.exists() else {}
+    if "--third" in options:
+        for name in names:
+            print(third_row(name, rounded(third(found.get(name))), kept["banks"], kept["third"]), end="")
+        return
     if "--no-vibration" in options:
         for name in names or all_banks:
             print(name, json.dumps(rounded(cell(all_banks[name].path, level=0.0))), flush=True)
         return
-    kept = json.loads(VERDICTS.read_text()) if VERDICTS.exists() else {"banks": {}, "filters": {}}
     whole = [CONTROL, *all_banks, *(name for name in sw.schemes if name not in all_banks)]
+    kept = {kind: kept.get(kind, {}) for kind in ("banks", "filters", "third")}
+    for kind, rows in kept.items():  # what is flown no longer goes
+        kept[kind] = {name: own for name, own in rows.items() if name in whole}
     for name in [] if "--print" in options else names or whole:
         if name == CONTROL or name in all_banks:
             kept["banks"][name] = flown(name, all_banks.get(name))
-        if not name.endswith(CASCADE):
+        if name == CONTROL or name in found:
+            kept["third"][name] = third(found.get(name))
+        if "/" not in name:
             kept["filters"][name] = filtered(name)
         keep(kept)
         print(name, "flown", file=sys.stderr, flush=True)

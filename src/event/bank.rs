@@ -179,7 +179,7 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         }
     }
 
-    /// [`encode`](Self::encode) with a tick for each sub-timestep.
+    /// [`encode`](Self::encode) with a tick for each sub-timestep: a pass for each in which a neuron fires.
     fn encode_by_slot(
         &mut self,
         tick: Tick,
@@ -194,17 +194,23 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
                 self.quiet.set(channel, scheme.quiet_band(state));
             }
         }
-        let mut tick = tick;
-        for slot in 0..CodeOf::<T, N>::SLOTS {
+        let mut slot = 0;
+        while slot < CodeOf::<T, N>::SLOTS {
+            let tick = tick + self.slot_ticks.wrapping_mul(slot as u32);
             let mut first = self.first_address;
+            let mut next = usize::MAX;
             for (code, (scheme, _)) in codes.iter().zip(T::each(&self.channels)) {
-                let firings = code.iter().flat_map(Code::firings);
-                for firing in firings.filter(|firing| usize::from(firing.slot) == slot) {
-                    emit(event(tick, first, firing));
+                for firing in code.iter().flat_map(Code::firings) {
+                    let own = usize::from(firing.slot);
+                    if own == slot {
+                        emit(event(tick, first, firing));
+                    } else if own > slot {
+                        next = next.min(own);
+                    }
                 }
                 first = first.wrapping_add(scheme.neurons() as u16);
             }
-            tick += self.slot_ticks;
+            slot = next;
         }
     }
 

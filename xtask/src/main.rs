@@ -47,7 +47,7 @@ cargo xtask <command>
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
   network NETWORK.rs SPIKES.txt
                         a network that `spikewire network` wrote, on an emulated STM32F405 and RP2040 and on the host
-  loop [CODE]           flies a simulated drone on spikes and draws it; installs RotorPy from PyPI, 1.1 GB
+  loop [CODE]           flies a simulated drone on spikes and draws it; installs RotorPy from PyPI, 1.2 GB
   demo                  real flight data through encoder, emulated flight controller and decoder
   release               checks and builds all that is uploaded, stops before that, and says what the owner fills in
   bench-target          what every codec costs on every emulated board, in instructions and bytes

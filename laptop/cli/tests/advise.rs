@@ -106,8 +106,11 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
     let bytes: Vec<f64> =
         banks.iter().map(|bank| bank["bytes_per_second"].as_f64().unwrap()).collect();
     assert!(bytes.is_sorted() && !bytes.is_empty(), "{banks:#?}");
-    let flown = std::fs::read_to_string("../loop/verdicts.json").unwrap();
-    let flown: Value = serde_json::from_str(&flown).unwrap();
+    let kept = |name: &str| -> Value {
+        let text = std::fs::read_to_string(format!("../loop/{name}.json")).unwrap();
+        serde_json::from_str(&text).unwrap()
+    };
+    let (flown, found) = (kept("verdicts"), kept("banks"));
     for bank in banks {
         let scheme = bank["scheme"].as_str().unwrap();
         let flights = &flown["banks"][scheme];
@@ -120,6 +123,12 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
             "{scheme}"
         );
     }
+    // The turn rates are coded no coarser than in the flights, although a fifth of their deviation is much more.
+    let threshold = report["channels"][0]["reaching"].as_array().unwrap().iter();
+    let threshold = threshold.filter(|one| one["scheme"] == "sod");
+    let threshold = threshold.map(|one| one["parameters"]["threshold"].as_f64().unwrap()).next();
+    let most = found["sod"]["groups"][0]["threshold"].as_f64().unwrap();
+    assert!(threshold.is_some_and(|own| own < 1.2 * most), "{threshold:?} {most}");
     // The schemes that failed in flight are listed once, not for each channel.
     let page = ran!("{asked}").output;
     for words in ["tbr lost ", "bernoulli was not flown"] {

@@ -4,6 +4,7 @@ mod bank;
 mod flown;
 
 pub use bank::BankAdvice;
+use flown::Inertial;
 pub use flown::{Verdict as FlightVerdict, verdict};
 
 use crate::Result;
@@ -54,7 +55,8 @@ pub struct AdviseRequest {
     /// Sample type of the codecs.
     pub sample: SampleType,
     /// Largest RMSE that the control loop tolerates, in the signal's unit. `None` stands for a fifth of the signal's
-    /// standard deviation.
+    /// standard deviation. If `loop_bandwidth` is given as well, it is at most the usual error of the parameters with which
+    /// the simulated drone flew, on channels whose names tell their unit.
     pub max_rmse: Option<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
@@ -169,6 +171,8 @@ enum Tuning {
 #[derive(Debug, Serialize)]
 struct Candidate {
     link_bytes_per_second: Option<f64>,
+    /// The RMSE that was allowed.
+    max_rmse: f64,
     #[serde(flatten)]
     row: Row,
     #[serde(skip)]
@@ -326,11 +330,12 @@ impl Advice {
         let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
         let whole = Stretch::whole(recording);
         let cut = Cut { name: recording.name.clone(), train, held_out, whole };
+        let max_rmse = self.allowed(request, scheme, recording);
         let delay = filtered.map_or(0.0, |own| own.delay);
         let borne = self.loop_latency.map(|borne| borne - delay);
         let latencies = [request.max_latency, borne].into_iter().flatten();
         let limits = Limits { latency: latencies.reduce(f64::min), ..Limits::default() };
-        let goal = Goal::MostEfficient(self.max_rmse);
+        let goal = Goal::MostEfficient(max_rmse);
         let known = (goal, &limits, self.core.as_str());
         let problem = Problem::new(scheme, request.sample, fixed, &cut.train, known);
         let method = Method { seed: request.seed, free_taps: false };
@@ -353,7 +358,7 @@ impl Advice {
             return missed(what + &bounds.collect::<String>());
         }
         let row = Row::new(&problem, &cut, &found, best, None)?;
-        if let Some(held_out) = row.held_out.filter(|own| own.rmse > MARGIN * self.max_rmse) {
+        if let Some(held_out) = row.held_out.filter(|own| own.rmse > MARGIN * max_rmse) {
             return missed(format!(
                 "reaches it where it is tuned only: {} on held-out blocks",
                 short(held_out.rmse)
@@ -374,7 +379,20 @@ impl Advice {
             None => None,
         };
         let scheme = Some(scheme);
-        Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, row, scheme })))
+        Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, max_rmse, row, scheme })))
+    }
+
+    /// Returns the largest RMSE that a scheme's settings may have on a filtered recording. In a control loop, they may
+    /// be no coarser than the parameters that flew, unless the user says how coarse they may be.
+    fn allowed(&self, request: &AdviseRequest, scheme: Scheme, recording: &Recording) -> f64 {
+        if request.max_rmse.is_some() || self.loop_latency.is_none() {
+            return self.max_rmse;
+        }
+        let asked =
+            Inertial::named(&recording.name).and_then(|channel| flown::parameters(scheme, channel));
+        let trial =
+            asked.and_then(|asked| Trial::new(scheme, &asked, request.sample, recording).ok());
+        trial.map_or(self.max_rmse, |trial| usual_rmse(recording, &trial).min(self.max_rmse))
     }
 
     /// Returns the low-pass filter that stood before the scheme's encoder in the simulated flights. Returns `None` if
@@ -487,6 +505,8 @@ impl Advice {
         } else {
             format!("next: {}", next.join(", "))
         };
+        let is_of_flights = best.max_rmse < self.max_rmse;
+        let flown = if is_of_flights { ", that of the parameters that flew" } else { "" };
         let take = if self.is_one_of_many { "alone" } else { "take" };
         let mut reasons = vec![
             format!("  {take} {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
@@ -502,10 +522,10 @@ impl Advice {
                 row.costs.instructions()
             ),
             format!(
-                "    {} bytes a second on the link, where samples take {raw}: the fewest of {} schemes within an RMSE of {}; {next}",
+                "    {} bytes a second on the link, where samples take {raw}: the fewest of {} schemes within an RMSE of {}{flown}; {next}",
                 bytes(best),
                 self.reaching.len(),
-                short(self.max_rmse)
+                short(best.max_rmse)
             ),
         ];
         if best.scheme.is_some_and(|scheme| scheme.info().drifts()) {
@@ -513,6 +533,17 @@ impl Advice {
         }
         reasons
     }
+}
+
+/// Returns the RMSE of a trial without its largest errors, a twentieth of all: those where the signal jumps farther than
+/// the spikes of a sample reach.
+fn usual_rmse(recording: &Recording, trial: &Trial) -> f64 {
+    const LEFT_OUT: usize = 20;
+    let errors = recording.values.iter().zip(&trial.decoded);
+    let mut squares: Vec<f64> = errors.map(|(value, decoded)| (value - decoded).powi(2)).collect();
+    squares.sort_by(f64::total_cmp);
+    let usual = squares.len() - squares.len() / LEFT_OUT;
+    (squares.iter().take(usual).sum::<f64>() / usual.max(1) as f64).sqrt()
 }
 
 /// Returns the number of bytes that a trial's events take as frames of `spikewire`'s link. Each frame is sent once it

@@ -11,14 +11,17 @@ use std::{
 };
 
 const PAGE: &str = "docs/loop.md";
-/// The tables: each code's flights when it is tuned by flying, and when it is tuned on its error behind other filters.
-const TABLES: [&str; 2] = ["loop", "filters"];
+/// The tables: each code's flights when it is tuned by flying, when it is tuned on its error behind other filters, and
+/// in a third world.
+const TABLES: [&str; 3] = ["loop", "filters", "third"];
 const CHIP: &str = "chip";
 const PICTURE: &str = "docs/loop.svg";
 const CRASH: &str = "docs/crash.svg";
 const CHIP_PICTURE: &str = "docs/chip.svg";
+/// The banks that `advise` takes.
+const ADVISED: &str = "laptop/loop/advised.json";
 
-/// The row of a table that a check flies again.
+/// The row of two tables that a check flies again.
 const AGAIN: &str = "sod";
 
 /// Flies a flip on the spikes of a code, and draws it.
@@ -38,12 +41,24 @@ pub fn write() -> Result<()> {
     let python = environment()?;
     drawing::keep(&draw(&python, "picture.py")?, PICTURE)?;
     drawing::keep(&draw(&python, "crash.py")?, CRASH)?;
+    fs::write(paths::root().join(ADVISED), advised(&python)?)?;
     put(&output(&mut program(&python, "table.py"))?)
 }
 
 /// Writes the tables of the flights stored in `laptop/loop/verdicts.json` into docs/loop.md, without flying.
 pub fn write_tables() -> Result<()> {
     put(&output(program(&environment()?, "table.py").arg("--print"))?)
+}
+
+/// Asks `spikewire advise` for banks.
+fn advised(python: &Path) -> Result<String> {
+    output(program(python, "advised.py").arg(laptop()?))
+}
+
+/// Builds the laptop program.
+fn laptop() -> Result<PathBuf> {
+    run(&mut cargo("build --package spikewire-cli"))?;
+    Ok(paths::target().join("debug/spikewire"))
 }
 
 fn put(printed: &str) -> Result<()> {
@@ -68,14 +83,20 @@ pub fn verify() -> Result<()> {
     for (marker, table) in tables(&printed) {
         markdown::ensure_written(PAGE, marker, &table, "cargo xtask write verdicts")?;
     }
-    let table = output(program(&python, "table.py").args(["--filters", AGAIN]))?;
-    let page = fs::read_to_string(paths::root().join(PAGE))?;
-    let row = table.lines().last().unwrap_or_default();
-    println!("{row}");
     ensure!(
-        page.lines().any(|line| line == row),
-        "{PAGE} has another row; `cargo xtask write loop` flies all"
+        advised(&python)? == fs::read_to_string(paths::root().join(ADVISED))?,
+        "`advise` takes other banks than {ADVISED} has; `cargo xtask write loop` flies them"
     );
+    let page = fs::read_to_string(paths::root().join(PAGE))?;
+    for option in ["--filters", "--third"] {
+        let table = output(program(&python, "table.py").args([option, AGAIN]))?;
+        let row = table.lines().last().unwrap_or_default();
+        println!("{row}");
+        ensure!(
+            page.lines().any(|line| line == row),
+            "{PAGE} has another row; `cargo xtask write loop` flies all"
+        );
+    }
     Ok(())
 }
 
@@ -96,8 +117,7 @@ pub fn write_chip() -> Result<()> {
 }
 
 fn on_chip(python: &Path) -> Result<String> {
-    run(&mut cargo("build --package spikewire-cli"))?;
-    let flown = output(program(python, "chip.py").arg(paths::target().join("debug/spikewire")))?;
+    let flown = output(program(python, "chip.py").arg(laptop()?))?;
     println!("{flown}");
     Ok(format!("\n{flown}\n"))
 }
@@ -125,7 +145,7 @@ pub(super) fn program(python: &Path, name: &str) -> Command {
 /// Returns an environment with `RotorPy` and with this repository's package, compiled like its tests.
 pub(super) fn environment() -> Result<PathBuf> {
     println!(
-        "Installs in target/loop, from PyPI: what laptop/loop/requirements.txt names, 1.1 GB."
+        "Installs in target/loop, from PyPI: what laptop/loop/requirements.txt names, 1.2 GB."
     );
     let python = python::environment("loop")?;
     python::install(&python, &["--requirement", "laptop/loop/requirements.txt"])?;

@@ -2,6 +2,9 @@
 //! `cargo xtask write loop` measures the results, and `docs/loop.md` shows them.
 
 use crate::flight::Filter;
+use crate::scheme::Scheme;
+use catalogue::Unit;
+use catalogue::run::{Asked, Value};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -82,21 +85,82 @@ pub struct Verdict {
     pub groups: Vec<serde_json::Value>,
 }
 
+/// The parameters of a scheme for each group of channels.
+#[derive(Deserialize)]
+struct Found {
+    groups: Vec<serde_json::Value>,
+}
+
+static PARAMETERS: LazyLock<BTreeMap<String, Found>> =
+    LazyLock::new(|| serde_json::from_str(FOUND).unwrap_or_default());
+
 /// Returns the verdict on the scheme named `scheme`, if it was flown.
 pub fn verdict(scheme: &str) -> Option<Verdict> {
-    #[derive(Deserialize)]
-    struct Found {
-        groups: Vec<serde_json::Value>,
-    }
     let own = flown(scheme)?;
-    let mut found = serde_json::from_str::<BTreeMap<String, Found>>(FOUND).ok()?;
     Some(Verdict {
         objection: objection(scheme, LOSSES[0]),
         beside: without_a_code().and_then(|plain| own.beside(plain)),
         low_pass: own.low_pass,
         keyframe_ms: own.keyframe_ms,
-        groups: found.remove(scheme).map(|own| own.groups).unwrap_or_default(),
+        groups: PARAMETERS.get(scheme).map(|own| own.groups.clone()).unwrap_or_default(),
     })
+}
+
+/// A channel of an inertial sensor, as its name tells it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Inertial {
+    /// Position of the channel's parameters among the groups of a bank.
+    group: usize,
+    /// The number that stands for 1 rad/s or 1 m/s² in the log.
+    unit: f64,
+}
+
+impl Inertial {
+    /// Returns the group and unit of the channel `name`. Returns `None` if the name tells neither a gyroscope nor an
+    /// accelerometer, or if the unit is unknown.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        const RATES: [&str; 5] =
+            ["gyr", "angular_velocity", "angular_rate", "rotation_rate", "body_rate"];
+        const FORCES: [&str; 3] = ["acc", "linear_acceleration", "specific_force"];
+        /// Milli-g in 1 m/s².
+        const MILLI_G: f64 = 1000.0 / 9.806_65;
+        let name = name.to_ascii_lowercase();
+        let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
+        let ends = |ends: &[&str]| ends.iter().any(|end| name.ends_with(end));
+        let is_rate = has(&RATES);
+        if !is_rate && !has(&FORCES) || has(&["accsmooth"]) {
+            return None;
+        }
+        let unit = if has(&["deg", "gyroadc", "gyrounfilt"]) {
+            180.0 / std::f64::consts::PI
+        } else if ends(&["xgyro", "ygyro", "zgyro"]) {
+            1000.0
+        } else if ends(&["xacc", "yacc", "zacc"]) {
+            MILLI_G
+        } else {
+            1.0
+        };
+        let is_along_thrust = name.contains("_z_") || ends(&["z", "[2]", "zacc"]);
+        Some(Self { group: if is_rate { 0 } else { 1 + usize::from(is_along_thrust) }, unit })
+    }
+}
+
+/// Returns the parameters with which a scheme flew on this channel, in the unit of the log.
+pub(crate) fn parameters(scheme: Scheme, channel: Inertial) -> Option<Asked> {
+    let group = PARAMETERS.get(scheme.name())?.groups.get(channel.group)?;
+    let mut asked = Asked::default();
+    for (name, value) in group.as_object()? {
+        let parameter = scheme.info().parameter(name)?;
+        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let value = match parameter.read(&text).ok()? {
+            Value::Number(number) if parameter.unit == Unit::Signal => {
+                Value::Number(number * channel.unit)
+            }
+            value => value,
+        };
+        asked.set(parameter.name, value);
+    }
+    Some(asked)
 }
 
 fn without_a_code() -> Option<&'static Flown> {
@@ -173,8 +237,34 @@ impl Flown {
 
 #[cfg(test)]
 mod tests {
-    use super::{BANKS, LOSSES, flown, objection, verdict, without_a_code};
+    use super::{BANKS, Inertial, LOSSES, flown, objection, parameters, verdict, without_a_code};
     use crate::scheme::Scheme;
+
+    #[test]
+    fn channels_are_known_by_their_names() {
+        let of = |name| Inertial::named(name).map(|own| (own.group, own.unit.round()));
+        assert_eq!(of("gyro_x"), Some((0, 1.0)));
+        assert_eq!(of("imu.angular_velocity.z"), Some((0, 1.0)));
+        assert_eq!(of("gyroADC[2]"), Some((0, 57.0)));
+        assert_eq!(of("sensor_combined.accelerometer_m_s2[0]"), Some((1, 1.0)));
+        assert_eq!(of("AccZ"), Some((2, 1.0)));
+        assert_eq!(of("zacc"), Some((2, 102.0)));
+        assert_eq!(of("accSmooth[2]"), None);
+        assert_eq!(of("baro"), None);
+    }
+
+    #[test]
+    fn parameters_are_those_of_the_bank_in_the_unit_of_the_log() {
+        let sod = Scheme::named("sod").unwrap();
+        let of = |name| {
+            let asked = parameters(sod, Inertial::named(name).unwrap()).unwrap();
+            (asked.number("threshold").unwrap(), asked.get("spikes").cloned())
+        };
+        let (rad, spikes) = of("gyro_x");
+        assert!((of("gyro_x_deg").0 / rad - 57.29578).abs() < 1e-4);
+        assert_eq!(of("gyro_x_deg").1, spikes);
+        assert!(of("accel_z").0 > of("accel_x").0);
+    }
 
     #[test]
     fn a_scheme_without_objection_has_figures() {
