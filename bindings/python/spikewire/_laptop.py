@@ -75,6 +75,7 @@ def tune(
     core: str | None = None,
     hold_out: float | None = None,
     blocks: int | None = None,
+    worst_flight: bool = False,
     seconds: float | None = None,
     evaluations: int | None = None,
     seed: int | None = None,
@@ -92,8 +93,9 @@ def tune(
     least RMSE at the efficiency of the paper's settings. With `scheme` ``"all"`` it is a list, the best first.
 
     `rate`: samples a second. `max_ram` in bytes a channel, `max_instructions` a sample on `core`, `max_latency` in
-    samples and `max_rate` in events a second limit what may be found. A part `hold_out` of `blocks` is kept back to
-    score on. It scores `evaluations` settings; the same number and `seed` give the same result, unless it is cut short
+    samples and `max_rate` in events a second limit what may be found. A part `hold_out` is kept back to score on: of the
+    signals or, if there is only one, of its `blocks`. With `worst_flight` the error on the signal with the largest one
+    counts, instead of the error over all. It scores `evaluations` settings; the same number and `seed` give the same result, unless it is cut short
     after so many `seconds`.
     What is not given is as in ``spikewire tune``. `kept` are parameters that stay as given.
     """
@@ -109,6 +111,7 @@ def tune(
         "core": core,
         "hold_out": hold_out,
         "blocks": blocks,
+        "worst_flight": worst_flight,
         "seconds": seconds,
         "evaluations": evaluations,
         "seed": seed,

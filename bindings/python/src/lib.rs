@@ -58,7 +58,7 @@ mod _native {
 
 /// What is known of each scheme.
 mod info {
-    use catalogue::{Found, Kind, Parameter, Unit};
+    use catalogue::{Found, Kind, Parameter, Search, Unit};
     use pyo3::prelude::*;
     use pyo3::types::{PyDict, PyList};
 
@@ -108,7 +108,26 @@ mod info {
             Found::Max => "the signal's maximum",
         });
         told.set_item("found", found)?;
+        told.set_item("search", own.search.map(search))?;
         told.set_item("example", own.example)?;
         Ok(told)
+    }
+
+    /// The kind of a search, its bounds, and its words.
+    fn search(own: Search) -> (&'static str, f64, f64, Vec<&'static str>) {
+        let (kind, low, high) = match own {
+            Search::Words(words) => {
+                return ("words", 0.0, words.len() as f64 - 1.0, words.to_vec());
+            }
+            Search::Log(low, high) => ("log", low, high),
+            Search::Around(low, high) => ("around", low, high),
+            Search::OfFilter(low, high) => ("of filter", low, high),
+            Search::Thresholds(low, high) => ("times", low, high),
+            Search::Filter(_, low, high) => ("filter", low, high),
+            Search::Whole(low, high) | Search::Most(low, high) => {
+                ("whole", f64::from(low), f64::from(high))
+            }
+        };
+        (kind, low, high, Vec::new())
     }
 }

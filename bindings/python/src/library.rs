@@ -16,7 +16,7 @@ use lab::scheme::Scheme;
 use lab::score::Figures;
 use lab::trial::{Recording, Trial};
 use lab::tune::report::Row;
-use lab::tune::{Goal, Limits, TuneRequest};
+use lab::tune::{Goal, Limits, Over, TuneRequest};
 use lab::watch::{Progress, Watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -144,6 +144,7 @@ pub(crate) struct Tune {
     core: Option<String>,
     hold_out: Option<f64>,
     blocks: Option<usize>,
+    worst_flight: bool,
     seconds: Option<f64>,
     evaluations: Option<usize>,
     seed: Option<u64>,
@@ -190,6 +191,7 @@ impl Tune {
         request.core = self.core.unwrap_or(request.core);
         request.hold_out.part = self.hold_out.unwrap_or(request.hold_out.part);
         request.hold_out.blocks = self.blocks.unwrap_or(request.hold_out.blocks);
+        request.over = if self.worst_flight { Over::Worst } else { Over::Mean };
         request.evaluations = self.evaluations.unwrap_or(request.evaluations);
         request.seed = self.seed.unwrap_or(request.seed);
         Ok(request)

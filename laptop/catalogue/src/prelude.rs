@@ -12,9 +12,9 @@ pub(crate) use crate::{
 #[cfg(feature = "run")]
 pub(crate) use {
     crate::run::{
-        Asked, Build, Constant, Counted, Error, ErrorKind, FEW, Given, LANES, Needs, Outcome,
-        Outcomes, Parabola, Resolve, Result, Rule, Rust, Settings, Shape, Value, Visit, above,
-        below, costs, lengthened, missing, outcomes, population, state, sweep,
+        Asked, Build, Constant, Counted, Error, ErrorKind, FEW, Given, Needs, Outcome, Outcomes,
+        Parabola, Piece, Resolve, Result, Rust, Settings, Shape, Value, Visit, above, below, costs,
+        lengthened, missing, outcomes, population, state,
     },
     spikewire::dynamic,
 };

@@ -34,12 +34,12 @@ pub fn logs() -> Result<()> {
 /// Compares `spikewire tune` with other people's optimisers, at equal numbers of settings.
 pub fn tuner() -> Result<()> {
     let python = environment("tuner", "laptop/cli/python/tune_requirements.txt")?;
-    run(&mut cargo("build --release --package spikewire-cli"))?;
-    let program = paths::target().join("release/spikewire");
+    python::package(&python, "release")?;
     let results = paths::target().join("tuner/peers.json");
-    let recording = paths::root().join("data/hexarotor.csv");
+    let recording = paths::root().join("data/hexarotor.csv").display().to_string();
     let check = paths::root().join("laptop/cli/python/tune_peers.py");
-    run(command(&python).arg(check).args([program, recording, results]))
+    let channels = ":gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
+    run(command(&python).arg(check).arg(results).args(["1", &(recording + channels)]))
 }
 
 /// Returns the Python of an environment with these packages.

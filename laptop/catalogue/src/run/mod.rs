@@ -12,12 +12,12 @@ mod exact;
 mod example;
 mod filter;
 mod needs;
+mod piece;
 mod quantiles;
 mod resolve;
 mod rust;
 mod sample_type;
 mod settings;
-mod sweep;
 mod value;
 mod words;
 
@@ -29,11 +29,11 @@ pub use exact::{Outcome, Outcomes, Parabola, above, below, outcomes};
 pub use example::example;
 pub use filter::taps;
 pub use needs::Needs;
+pub use piece::Piece;
 pub use resolve::{Known, Resolve, missing};
 pub use rust::{Constant, Counted, Rust, lengthened, state};
 pub use sample_type::{Fixed32, SampleType};
 pub use settings::Settings;
-pub use sweep::{LANES, Rule, sweep};
 pub use value::{SET, Value};
 pub use words::{Given, Spell, Spelled, Worded, Words, joined, quoted};
 
@@ -159,17 +159,10 @@ pub trait Build: Entry {
         Err(ErrorKind::NotMeasured { scheme: &Self::INFO }.into())
     }
 
-    /// Returns the outcomes of a range of thresholds on stretches of a signal, each coded by itself; `None` if the
+    /// Returns the outcomes of a range of thresholds on pieces of a signal, each coded by itself; `None` if the
     /// scheme has no such list. If each outcome takes a pass over the signal, lists only about `most` of them, and says
     /// whether any is missing. The threshold in the settings is ignored.
-    fn outcomes(_: &Settings, _: &[&[f64]], _: (f64, f64), _: usize) -> Option<Outcomes> {
-        None
-    }
-
-    /// Compares several values of one parameter in one pass over stretches of a signal; returns the spikes and squared
-    /// errors of each. The values are thresholds, or factors of the filter if there is no threshold; that in the
-    /// settings is ignored. `None` if each value would need a pass.
-    fn swept(_: &Settings, _: &[&[f64]], _: &[f64; LANES]) -> Option<[(usize, f64); LANES]> {
+    fn outcomes(_: &Settings, _: &[Piece], _: (f64, f64), _: usize) -> Option<Outcomes> {
         None
     }
 
@@ -286,26 +279,16 @@ pub trait RunTime: Sync {
     /// Returns an error if the settings lack its length, or if there is no such codec.
     fn counted(&self, settings: &Settings) -> Result<Counted>;
 
-    /// Returns the outcomes of a range of thresholds on stretches of a signal, each coded by itself; `None` if the
+    /// Returns the outcomes of a range of thresholds on pieces of a signal, each coded by itself; `None` if the
     /// scheme has no such list. If each outcome takes a pass over the signal, lists only about `most` of them, and says
     /// whether any is missing. The threshold in the settings is ignored.
     fn outcomes(
         &self,
         settings: &Settings,
-        stretches: &[&[f64]],
+        pieces: &[Piece],
         range: (f64, f64),
         most: usize,
     ) -> Option<Outcomes>;
-
-    /// Compares several values of one parameter in one pass over stretches of a signal; returns the spikes and squared
-    /// errors of each. The values are thresholds, or factors of the filter if there is no threshold; that in the
-    /// settings is ignored. `None` if each value would need a pass.
-    fn swept(
-        &self,
-        settings: &Settings,
-        stretches: &[&[f64]],
-        values: &[f64; LANES],
-    ) -> Option<[(usize, f64); LANES]>;
 
     /// Writes the scheme as a Rust constant.
     ///
@@ -371,20 +354,11 @@ impl<T: Build + Sync> RunTime for T {
     fn outcomes(
         &self,
         settings: &Settings,
-        stretches: &[&[f64]],
+        pieces: &[Piece],
         range: (f64, f64),
         most: usize,
     ) -> Option<Outcomes> {
-        T::outcomes(settings, stretches, range, most)
-    }
-
-    fn swept(
-        &self,
-        settings: &Settings,
-        stretches: &[&[f64]],
-        values: &[f64; LANES],
-    ) -> Option<[(usize, f64); LANES]> {
-        T::swept(settings, stretches, values)
+        T::outcomes(settings, pieces, range, most)
     }
 
     fn constant(&self, settings: &Settings) -> Result<Constant> {

@@ -209,19 +209,6 @@ impl Build for Scheme {
         })
     }
 
-    fn swept(
-        settings: &Settings,
-        stretches: &[&[f64]],
-        values: &[f64; LANES],
-    ) -> Option<[(usize, f64); LANES]> {
-        let (form, criterion) = (settings.get("form")?.word(), settings.get("criterion")?.word());
-        if (form, criterion) != (Some("aligned"), Some("sub")) {
-            return None;
-        }
-        let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
-        Some(sweep(Rule::Bsa, stretches, filter, &[1.0; LANES], values))
-    }
-
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {
         let (taps, shift) = (rust.taps(settings)?, rust.signal(settings, "shift")?);
         let ratio = || settings.number("threshold").map(|ratio| format!("{:?}", ratio as f32));

@@ -82,15 +82,6 @@ impl Build for Scheme {
         Ok(Counted::at_most("hsa-15", settings.length()? as f64 / 15.0))
     }
 
-    fn swept(
-        settings: &Settings,
-        stretches: &[&[f64]],
-        values: &[f64; LANES],
-    ) -> Option<[(usize, f64); LANES]> {
-        let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
-        Some(sweep(Rule::Hough, stretches, filter, values, &[0.0; LANES]))
-    }
-
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let scheme =
             dynamic::Hough::try_new(settings.taps()?)?.try_with_shift(settings.signal("shift")?)?;

@@ -83,12 +83,12 @@ impl Build for Scheme {
 
     fn outcomes(
         settings: &Settings,
-        stretches: &[&[f64]],
+        pieces: &[Piece],
         _: (f64, f64),
         _: usize,
     ) -> Option<Outcomes> {
         let samples = settings.count("window", 0..=dynamic::WIDEST - 1).ok()? + 1;
-        let distances = |values: &&[f64]| -> Vec<f64> {
+        let distances = |Piece { values, .. }: &Piece| -> Vec<f64> {
             // The first samples stand before themselves.
             let past = &values[..samples.min(values.len())];
             let mut sum: f64 = past.iter().sum();
@@ -100,8 +100,8 @@ impl Build for Scheme {
             };
             values.iter().zip(leaving).map(distance).collect()
         };
-        let distances: Vec<Vec<f64>> = stretches.iter().map(distances).collect();
-        Some(outcomes(stretches, &distances, false))
+        let distances: Vec<Vec<f64>> = pieces.iter().map(distances).collect();
+        Some(outcomes(pieces, &distances, false))
     }
 
     fn constant(settings: &Settings, rust: &Rust) -> Result<Constant> {

@@ -70,15 +70,17 @@ impl Build for Scheme {
     /// runs are spread over the range.
     fn outcomes(
         _: &Settings,
-        stretches: &[&[f64]],
+        pieces: &[Piece],
         (low, high): (f64, f64),
         most: usize,
     ) -> Option<Outcomes> {
         let ratio = (high / low).powf(1.0 / most.max(1) as f64);
         let mut found = Outcomes { list: Vec::new(), is_complete: true };
+        let masks: Vec<(&[f64], Vec<bool>)> =
+            pieces.iter().map(|own| (own.values, own.mask())).collect();
         let mut threshold = low;
         while threshold < high && threshold > 0.0 {
-            let (outcome, next) = outcome(stretches, threshold);
+            let (outcome, next) = outcome(&masks, threshold);
             found.list.push(outcome);
             found.is_complete &= next >= threshold * ratio;
             threshold = next.max(threshold * ratio);
@@ -92,15 +94,15 @@ impl Build for Scheme {
     }
 }
 
-/// Returns the outcome of step forward on stretches just above a threshold, and the next threshold at which its spikes
-/// differ.
+/// Returns the outcome of step forward just above a threshold, and the next threshold at which its spikes differ. Each
+/// sample of a piece comes with whether it is scored.
 #[cfg(feature = "run")]
-fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
+fn outcome(pieces: &[(&[f64], Vec<bool>)], threshold: f64) -> (Outcome, f64) {
     let (mut parabola, mut spikes, mut next) = (Parabola::default(), 0, f64::INFINITY);
-    for values in stretches {
+    for (values, mask) in pieces {
         let first = values.first().copied().unwrap_or_default();
         let mut count = 0.0;
-        for value in values.iter().map(|value| value - first) {
+        for (value, is_scored) in values.iter().map(|value| value - first).zip(mask) {
             // Upwards while `value > (count + 1) * threshold`, downwards while `value < (count - 1) * threshold`.
             let (up, down) = (count + 1.0, count - 1.0);
             for multiple in [up, down] {
@@ -113,13 +115,15 @@ fn outcome(stretches: &[&[f64]], threshold: f64) -> (Outcome, f64) {
             if (value > up * threshold && value / up != threshold)
                 || (up < 0.0 && value / up == threshold)
             {
-                (count, spikes) = (up, spikes + 1);
+                (count, spikes) = (up, spikes + usize::from(*is_scored));
             } else if (value < down * threshold && value / down != threshold)
                 || (down > 0.0 && value / down == threshold)
             {
-                (count, spikes) = (down, spikes + 1);
+                (count, spikes) = (down, spikes + usize::from(*is_scored));
             }
-            parabola.observe(value, count);
+            if *is_scored {
+                parabola.observe(value, count);
+            }
         }
     }
     let (low, high) = if next.is_finite() {
@@ -158,19 +162,24 @@ mod tests {
     proptest! {
         /// The values are integers, so that samples lie exactly at a threshold.
         #[test]
-        fn outcomes_are_those_of_the_law(values in prop::collection::vec(-9_i8..9, 2..40)) {
-            let values: Vec<f64> = values.into_iter().map(f64::from).collect();
+        fn outcomes_are_those_of_the_law(
+            values in prop::collection::vec((-9_i8..9, any::<bool>()), 2..40)
+        ) {
+            let mask: Vec<bool> = values.iter().map(|own| own.1).collect();
+            let values: Vec<f64> = values.iter().map(|own| f64::from(own.0)).collect();
+            let pieces = [(&values[..], mask)];
             let mut threshold = 0.1;
             while threshold < 20.0 {
-                let (own, next) = outcome(&[&values], threshold);
+                let (own, next) = outcome(&pieces, threshold);
                 let (mut count, mut spikes, mut squares) = (0.0, 0, 0.0);
-                for value in values.iter().map(|value| value - values[0]) {
+                for (value, is_scored) in values.iter().zip(&pieces[0].1) {
+                    let (value, one) = (value - values[0], usize::from(*is_scored));
                     if value > (count + 1.0) * own.threshold {
-                        (count, spikes) = (count + 1.0, spikes + 1);
+                        (count, spikes) = (count + 1.0, spikes + one);
                     } else if value < (count - 1.0) * own.threshold {
-                        (count, spikes) = (count - 1.0, spikes + 1);
+                        (count, spikes) = (count - 1.0, spikes + one);
                     }
-                    squares += (value - count * own.threshold).powi(2);
+                    squares += one as f64 * (value - count * own.threshold).powi(2);
                 }
                 prop_assert_eq!(own.spikes, spikes);
                 prop_assert!((own.squares - squares).abs() < 1e-6, "{:?}, but {}", own, squares);

@@ -95,15 +95,6 @@ impl Build for Scheme {
         Ok(Counted::at_most("t-hsa-15", settings.length()? as f64 / 15.0))
     }
 
-    fn swept(
-        settings: &Settings,
-        stretches: &[&[f64]],
-        values: &[f64; LANES],
-    ) -> Option<[(usize, f64); LANES]> {
-        let filter = (settings.numbers("taps").ok()?, settings.number("shift").ok()?);
-        Some(sweep(Rule::ThresholdHough, stretches, filter, &[1.0; LANES], values))
-    }
-
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {
         let scheme =
             dynamic::ThresholdHough::try_new(settings.taps()?, settings.signal("threshold")?)?;

@@ -157,13 +157,13 @@ impl Build for Scheme {
 
     costs!(TemporalContrast<S>, "tbr");
 
-    fn outcomes(_: &Settings, stretches: &[&[f64]], _: (f64, f64), _: usize) -> Option<Outcomes> {
-        let distances = |values: &&[f64]| {
-            let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    fn outcomes(_: &Settings, pieces: &[Piece], _: (f64, f64), _: usize) -> Option<Outcomes> {
+        let distances = |piece: &Piece| {
+            let steps = piece.values.windows(2).map(|pair| pair[1] - pair[0]);
             [0.0].into_iter().chain(steps).collect()
         };
-        let distances: Vec<Vec<f64>> = stretches.iter().map(distances).collect();
-        Some(outcomes(stretches, &distances, true))
+        let distances: Vec<Vec<f64>> = pieces.iter().map(distances).collect();
+        Some(outcomes(pieces, &distances, true))
     }
 
     fn build<S: Sample, V: Visit<S>>(settings: &Settings, visitor: V) -> Result<V::Output> {

@@ -20,7 +20,7 @@ use lab::scheme::Scheme;
 use lab::trial::Recording;
 use lab::tune::report::{Cut, Row, print};
 use lab::tune::stretch::HoldOut;
-use lab::tune::{Goal, Limits, Stretch, TuneRequest, Tuned, costs, emit, tune};
+use lab::tune::{Goal, Limits, Over, Stretch, TuneRequest, Tuned, costs, emit, tune};
 use lab::watch::{Progress, Watch};
 use serde::Serialize;
 use serde_json::json;
@@ -84,12 +84,15 @@ pub(crate) struct Tune {
     /// Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
-    /// Share of the blocks to hold out; 0 holds out none
+    /// Share that is held out, 0 for none: of the logs or, if there is only one, of its blocks
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
-    /// Number of blocks of equal length into which each log is cut
+    /// Number of blocks of equal length into which a single log is cut
     #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
+    /// Count the error of the log on which it is largest, instead of the error over all logs
+    #[arg(long, help_heading = "Search")]
+    worst_flight: bool,
     /// Stop after this many seconds in total, and keep the best settings found by then. With this limit, the result
     /// depends on the machine's speed. Ctrl-C stops the search too
     #[arg(long, value_parser = lab::input::above_zero, help_heading = "Search")]
@@ -258,6 +261,7 @@ impl Tune {
             },
             core: self.core.clone(),
             hold_out: HoldOut { blocks: self.blocks, part: self.hold_out },
+            over: if self.worst_flight { Over::Worst } else { Over::Mean },
             below: self.below,
             evaluations: self.evaluations,
             seconds: self.seconds,

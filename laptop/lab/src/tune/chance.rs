@@ -2,7 +2,7 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// A generator of random numbers.
 pub(super) struct Chance(ChaCha8Rng);
@@ -27,10 +27,5 @@ impl Chance {
     pub(super) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.part()).ln()).sqrt();
         radius * (TAU * self.part()).cos()
-    }
-
-    /// Draws from a Cauchy distribution of scale 1 around 0.
-    pub(super) fn cauchy(&mut self) -> f64 {
-        (PI * (self.part() - 0.5)).tan()
     }
 }

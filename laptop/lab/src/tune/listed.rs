@@ -2,10 +2,10 @@
 //! the error at each threshold are first computed in exact arithmetic, without the codec. Then the codec scores only
 //! the best thresholds.
 
-use super::Scored;
 use super::problem::{Goal, most_spikes};
 use super::search::{BATCH, Run};
 use super::space::Space;
+use super::{Scored, Stretch};
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
@@ -17,6 +17,8 @@ const PASSES: usize = 4_000_000_000;
 /// Maximum number of samples that are processed to list outcomes, for each setting that the search may score. This
 /// limit keeps a search with a small budget short. In a search with a large budget, [`PASSES`] is the smaller limit.
 const PASSES_A_SETTING: usize = 200_000;
+/// Minimum number of settings by which the list's length is chosen. A search with fewer settings lists as many outcomes.
+const FEW_SETTINGS: usize = 300;
 /// Maximum number of ranges around good thresholds in which the outcomes of further thresholds are listed.
 const NEIGHBOURHOODS: usize = 24;
 /// Number of combinations of integer parameters that are listed before the search checks again whether to stop.
@@ -30,19 +32,21 @@ type Listed = (Vec<Asked>, Vec<(Outcome, usize)>);
 
 impl Run<'_> {
     /// Lists the number of spikes and the error at all thresholds, for every combination of integer parameters. Scores
-    /// the best of these outcomes with the codec. Returns false if the scheme cannot list outcomes. Also returns false
-    /// if the user fixed the threshold, the step, the factor or the start value.
-    pub(super) fn exactly(&mut self, space: &Space) -> bool {
+    /// the best of these outcomes with the codec, until the whole search has scored `until` settings. Returns whether
+    /// the search is over. The search goes on if the scheme cannot list outcomes, if the user fixed the threshold, the
+    /// step, the factor or the start value, or if settings close to the best outcomes may be better, because the codec
+    /// rounds and the list does not.
+    pub(super) fn exactly(&mut self, space: &Space, until: usize) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];
         if decides.iter().any(|name| problem.fixed.get(name).is_some()) {
             return false;
         }
         let Some((combinations, mut all)) = self.listed(space) else { return false };
-        let samples: usize = problem.train.iter().map(|stretch| stretch.values.len()).sum();
+        let samples: usize = problem.train.iter().map(Stretch::samples).sum();
         // The best by the goal, several because rounding may move one over a limit, and then a selection of the Pareto
         // front.
-        let most = MOST_SCORED.min(self.budget.evaluations - self.found.evaluated);
+        let most = MOST_SCORED.min(until.saturating_sub(self.found.evaluated));
         let best = if problem.goal == Goal::Front { 0 } else { most.div_ceil(2) };
         let in_order = self.in_order(samples);
         all.sort_by(|a, b| in_order(&a.0).total_cmp(&in_order(&b.0)));
@@ -63,28 +67,30 @@ impl Run<'_> {
         // A step that is fitted to these stretches scores too well on them. The list is sorted by the error to expect
         // on other stretches, so its first allowed setting is the best.
         let is_fitted = |(own, _): &(Outcome, usize)| own.apart != own.squares;
-        if chosen.first().is_some_and(is_fitted) && matches!(problem.goal, Goal::LeastError(_)) {
+        let is_fitted = chosen.first().is_some_and(is_fitted);
+        if is_fitted && matches!(problem.goal, Goal::LeastError(_)) {
             self.found.best = first.or_else(|| self.found.best.take());
         }
-        true
+        is_fitted
     }
 
     /// Lists the outcomes (thresholds with their spikes and errors) that are worth scoring, for all combinations of
     /// integer parameters. Returns `None` if the scheme cannot list its outcomes.
     fn listed(&mut self, space: &Space) -> Option<Listed> {
         let problem = self.problem;
-        let rounded = self.rounded;
-        let stretches: Vec<&[f64]> = rounded.iter().map(Vec::as_slice).collect();
-        let samples: usize = stretches.iter().map(|values| values.len()).sum();
-        let passes = self.budget.evaluations.saturating_mul(PASSES_A_SETTING).min(PASSES);
-        let most = (passes / samples.max(1) / 2).max(50);
+        let pieces = self.pieces;
+        let coded: usize = pieces.iter().map(|own| own.values.len()).sum();
+        let samples: usize = problem.train.iter().map(Stretch::samples).sum();
+        let settings = self.budget.evaluations.max(FEW_SETTINGS);
+        let passes = settings.saturating_mul(PASSES_A_SETTING).min(PASSES);
+        let most = (passes / coded.max(1) / 2).max(50);
         let range = problem.extent.max - problem.extent.min;
         let list_of = |combination: &Asked, span: (f64, f64), most: usize| -> Option<Outcomes> {
             let mut options = combination.clone();
             options.set("threshold", range * 0.1);
             let first = problem.train.first()?;
             let settings = problem.settings(&options, problem.sample, first).ok()?;
-            problem.scheme.outcomes(&settings, &stretches, span, most)
+            problem.scheme.outcomes(&settings, pieces, span, most)
         };
         let in_order = self.in_order(samples);
         let combined = |options: &Asked| -> Option<(Vec<Outcome>, usize, bool)> {

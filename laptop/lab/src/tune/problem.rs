@@ -19,6 +19,16 @@ pub enum Goal {
     Front,
 }
 
+/// How the errors of several flights count in a search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Over {
+    /// The mean of the squared errors over all samples.
+    #[default]
+    Mean,
+    /// The mean of the squared errors of the flight on which it is largest.
+    Worst,
+}
+
 /// Upper limits on what settings may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
@@ -41,6 +51,8 @@ pub struct Tally {
     pub spikes: usize,
     /// Sum of the squared errors.
     pub squares: f64,
+    /// Mean of the squared errors of the flight on which it is largest.
+    pub worst: f64,
     /// The duration of the samples in seconds, if the rate is known.
     pub seconds: Option<f64>,
 }
@@ -143,6 +155,8 @@ pub struct Problem<'a> {
     pub train: &'a [Stretch],
     /// The goal of the search.
     pub goal: Goal,
+    /// How the errors of several flights count.
+    pub over: Over,
     /// Upper limits on what settings may cost.
     pub limits: &'a Limits,
     /// Name of the processor core, such as `M4F`, whose measured instruction counts apply.
@@ -162,14 +176,13 @@ impl<'a> Problem<'a> {
         (goal, limits, core): (Goal, &'a Limits, &'a str),
     ) -> Self {
         let mut calibrated = Calibrated::new(sample);
-        for stretch in train {
-            calibrated.observe(&stretch.values);
-        }
+        let scored = || train.iter().flat_map(Stretch::scored_values);
+        scored().for_each(|values| calibrated.observe(values));
         let (min, max) = calibrated.range().unwrap_or_default();
-        let values = || train.iter().flat_map(|stretch| &stretch.values);
-        let mean = values().sum::<f64>() / values().count().max(1) as f64;
+        let mean = scored().flatten().sum::<f64>() / scored().flatten().count().max(1) as f64;
         let extent = Extent { min, max, mean };
-        Self { scheme, sample, fixed: fixed.clone(), train, goal, limits, core, extent, calibrated }
+        let (fixed, over) = (fixed.clone(), Over::Mean);
+        Self { scheme, sample, fixed, train, goal, over, limits, core, extent, calibrated }
     }
 
     /// Completes `options` to the settings for a stretch. A missing parameter gets its default, or a value that is
@@ -250,19 +263,25 @@ impl<'a> Problem<'a> {
         let mut settings = self.settings(options, sample, first)?;
         // Stretches can differ only in the first value.
         let is_shared = !self.scheme.info().has_first_value();
-        for (place, stretch) in stretches.iter().enumerate() {
-            if place > 0 && !is_shared {
-                settings = self.settings(options, sample, stretch)?;
+        for flight in stretches.chunk_by(|a, b| a.flight == b.flight) {
+            let (mut samples, mut squares) = (0, 0.0);
+            for stretch in flight {
+                if tally.samples + samples > 0 && !is_shared {
+                    settings = self.settings(options, sample, stretch)?;
+                }
+                let (events, decoded, own) = self.coded(&settings, stretch)?;
+                latency = own;
+                samples += stretch.samples();
+                tally.spikes += events.iter().filter(|own| stretch.is_scored(own.sample)).count();
+                for scored in &stretch.scored {
+                    let pairs = stretch.values[scored.clone()].iter().zip(&decoded[scored.clone()]);
+                    squares += pairs.map(|(value, own)| (value - own).powi(2)).sum::<f64>();
+                }
+                tally.seconds = tally.seconds.zip(stretch.seconds()).map(|(all, own)| all + own);
             }
-            let (events, decoded, own) = self.coded(&settings, stretch)?;
-            latency = own;
-            tally.samples += stretch.samples();
-            tally.spikes += events.iter().filter(|own| stretch.is_scored(own.sample)).count();
-            for scored in &stretch.scored {
-                let pairs = stretch.values[scored.clone()].iter().zip(&decoded[scored.clone()]);
-                tally.squares += pairs.map(|(value, own)| (value - own).powi(2)).sum::<f64>();
-            }
-            tally.seconds = tally.seconds.zip(stretch.seconds()).map(|(all, own)| all + own);
+            tally.samples += samples;
+            tally.squares += squares;
+            tally.worst = tally.worst.max(squares / samples as f64);
         }
         Ok((tally, latency, settings))
     }
@@ -272,7 +291,15 @@ impl<'a> Problem<'a> {
     /// # Errors
     /// Returns an error if the options are invalid.
     pub fn score(&self, options: &Asked) -> Result<Scored> {
-        let (tally, latency, settings) = self.tallied(options, self.sample, self.train)?;
+        self.score_on(options, self.train)
+    }
+
+    /// Scores options on stretches.
+    ///
+    /// # Errors
+    /// Returns an error if the options are invalid.
+    pub(super) fn score_on(&self, options: &Asked, stretches: &[Stretch]) -> Result<Scored> {
+        let (tally, latency, settings) = self.tallied(options, self.sample, stretches)?;
         let costs = Costs::new(self.scheme, &settings, latency, self.core);
         Ok(Scored { options: options.clone(), tally, costs, excess: self.excess(&tally, &costs) })
     }
@@ -289,7 +316,7 @@ impl<'a> Problem<'a> {
             (Limit::Rate, tally.rate().unwrap_or(unknown), *rate),
         ];
         if let Goal::MostEfficient(rmse) = self.goal {
-            asked.push((Limit::Rmse, tally.rmse(), Some(rmse)));
+            asked.push((Limit::Rmse, self.mean_square(tally).sqrt(), Some(rmse)));
         }
         // A difference within rounding is no excess.
         let is_above = |value: f64, allowed: f64| value > allowed * (1.0 + 1e-12);
@@ -311,10 +338,19 @@ impl<'a> Problem<'a> {
         excess
     }
 
+    /// Returns the mean square error that the search reduces: over all samples, or on the worst flight.
+    pub(super) fn mean_square(&self, tally: &Tally) -> f64 {
+        match self.over {
+            Over::Mean => tally.squares / tally.samples as f64,
+            Over::Worst => tally.worst,
+        }
+    }
+
     /// Rates scored settings by how well they reach a goal, and returns the rating. A smaller rating is better.
     /// Settings that break a limit have larger ratings than all settings that break none.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
-        let Tally { samples, spikes, squares, .. } = scored.tally;
+        let Tally { samples, spikes, .. } = scored.tally;
+        let squares = self.mean_square(&scored.tally) * samples as f64;
         let limits = scored
             .excess
             .iter()
@@ -352,7 +388,7 @@ impl<'a> Problem<'a> {
 
 /// Smallest result of [`Problem::value`] for settings that break a limit. Settings that break no limit have smaller
 /// results.
-const NOT_ALLOWED: f64 = 1e12;
+pub(super) const NOT_ALLOWED: f64 = 1e12;
 
 /// Returns the largest number of spikes in `samples` samples at which the efficiency is at least `efficiency` percent.
 /// Corrects rounding: the efficiency of a whole number of spikes gives exactly this number again.

@@ -187,8 +187,7 @@ impl Row {
         let growth = held_out.rmse / self.tuned_on.rmse;
         if growth > FAR {
             flags.push(format!(
-                "{} times the RMSE on held-out blocks, {} where it is {} on those it was tuned on: those are coded each \
-                 from its first sample on, the held-out ones within the flight",
+                "{} times the RMSE on held-out blocks, {} where it is {} on those it was tuned on",
                 short((growth * 10.0).round() / 10.0),
                 short(held_out.rmse),
                 short(self.tuned_on.rmse)

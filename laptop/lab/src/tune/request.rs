@@ -1,7 +1,7 @@
 //! Requests to tune schemes on logs, and their results.
 
 use super::RequestKind;
-use super::problem::front;
+use super::problem::{Over, front};
 use super::report::{Cut, Row, missed};
 use super::search::{Budget, Found, Method, search, share};
 use super::stretch::{HoldOut, cut};
@@ -35,8 +35,11 @@ pub struct TuneRequest {
     pub limits: Limits,
     /// Processor core, such as `M4F`, whose measured instruction counts apply.
     pub core: String,
-    /// The part of each recording that is held out from tuning, to check the settings found.
+    /// The part that is held out from tuning, to check the settings found: of the blocks of a single log, or of several
+    /// logs.
     pub hold_out: HoldOut,
+    /// How the errors of several logs count.
+    pub over: Over,
     /// Frequency in Hz below which the error is also reported.
     pub below: Option<f64>,
     /// Number of settings to score for each scheme and channel, 1 or more.
@@ -66,6 +69,7 @@ impl TuneRequest {
             limits: Limits::default(),
             core: "M4F".to_owned(),
             hold_out: HoldOut { blocks: 20, part: 0.3 },
+            over: Over::default(),
             below: None,
             evaluations: Self::EVALUATIONS,
             seconds: None,
@@ -123,19 +127,39 @@ impl TuneRequest {
         }
     }
 
-    /// Cuts the channels of all logs into stretches. Also returns notes for the user: reasons not to trust the
-    /// recordings. There are notes only if `anyway` is set.
+    /// Returns whether the log at `place` is held out as a whole. A single log never is; of several logs at least one
+    /// is held out, and one is not, unless the part to hold out is 0.
+    fn is_held_out(&self, place: usize) -> bool {
+        let logs = self.logs.len();
+        if logs < 2 || self.hold_out.part == 0.0 {
+            return false;
+        }
+        let count = ((logs as f64 * self.hold_out.part).round() as usize).clamp(1, logs - 1);
+        // Spread evenly: every share of the logs has one of them in its middle.
+        let before = |place: usize| (2 * place * count + logs) / (2 * logs);
+        before(place + 1) > before(place)
+    }
+
+    /// Cuts the channels of all logs into stretches; also returns notes for the user. Of several logs, whole logs are
+    /// held out; of a single log, blocks.
     fn channels(&self) -> Result<(Vec<Cut>, Vec<String>)> {
         let (mut cuts, mut notes): (Vec<Cut>, _) = (Vec::new(), Vec::new());
-        for log in &self.logs {
+        for (flight, log) in self.logs.iter().enumerate() {
             for (place, recording) in log.iter().enumerate() {
                 match ChannelSummary::of(recording).objection() {
                     Some(words) if self.anyway && recording.values.len() > 1 => notes.push(words),
                     Some(why) => return Err(RequestKind::NothingToSearch { why }.into()),
                     None => {}
                 }
-                let (train, held_out) = cut(recording, self.hold_out)?;
-                let (name, whole) = (recording.name.clone(), Stretch::whole(recording));
+                let (name, mut whole) = (recording.name.clone(), Stretch::whole(recording));
+                for own in &mut whole {
+                    own.flight = flight;
+                }
+                let (train, held_out) = match self.logs.len() {
+                    0 | 1 => cut(recording, self.hold_out)?,
+                    _ if self.is_held_out(flight) => (Vec::new(), whole.clone()),
+                    _ => (whole.clone(), Vec::new()),
+                };
                 match cuts.get_mut(place) {
                     Some(known) if known.name == name => {
                         known.train.extend(train);
@@ -243,6 +267,7 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
     let core = costs::core(&request.core)?;
     let known = (Goal::Front, limits, core.as_str());
     let mut problem = Problem::new(scheme, *sample, fixed, &channel.train, known);
+    problem.over = request.over;
     let mut paper = problem.fixed.clone();
     paper.paper = true;
     let paper = problem.score(&paper).ok();

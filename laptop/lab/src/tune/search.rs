@@ -1,16 +1,16 @@
 //! Searches for the settings of a scheme. The search is exact if the scheme can list the number of spikes and the error
-//! for all thresholds. Otherwise, the search is an evolution.
+//! for all thresholds. Otherwise, a model guides it.
 //!
 //! The length of a search is counted in settings scored with the codec, not in seconds. Therefore the result is the
 //! same on every machine.
 
 use super::Bound;
 use super::bounds::bounds;
-use super::evolution::Evolution;
+use super::guided::Guided;
 use super::problem::{Goal, Problem, Scored, front};
-use super::space::{Inner, Role, Space};
+use super::space::{Role, Space};
 use super::strategy::Strategy;
-use catalogue::run::{Asked, LANES, Value};
+use catalogue::run::{Asked, Piece, Value};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -57,10 +57,7 @@ pub struct Method {
 
 /// Number of settings that are scored before the search checks again whether to stop.
 pub(super) const BATCH: usize = 64;
-/// Smallest and largest number of parents with which an evolution starts.
-const PARENTS: (usize, usize) = (10, 100);
-/// Efficiencies in percent: 100 less the number of spikes for every 100 samples. To find a Pareto front, the search
-/// seeks the settings with the least error for each of these efficiencies.
+/// Efficiencies in percent. To find a Pareto front, settings are searched for each of these efficiencies.
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
@@ -72,10 +69,15 @@ const NONE: f64 = 1e30;
 pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     let rounded: Vec<Vec<f64>> =
         problem.train.iter().map(|stretch| stretch.rounded(problem.sample)).collect();
+    let pieces: Vec<Piece> = rounded
+        .iter()
+        .zip(problem.train)
+        .map(|(values, stretch)| Piece { values, scored: &stretch.scored })
+        .collect();
     let mut run = Run {
         problem,
         budget,
-        rounded: &rounded,
+        pieces: &pieces,
         found: Found {
             best: None,
             front: Vec::new(),
@@ -92,7 +94,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     let mut paper = problem.fixed.clone();
     paper.paper = true;
     run.try_all(&[paper]);
-    if space.len() > 0 && !run.exactly(&space) {
+    if space.len() > 0 && !run.exactly(&space, budget.evaluations / 2) {
         // One setting of the budget is left for `tighten`.
         let is_loose = space.axes().iter().any(|axis| axis.role == Role::Most);
         let (seed, all) = (method.seed, budget.evaluations - usize::from(is_loose));
@@ -121,8 +123,8 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
 pub(super) struct Run<'a> {
     pub problem: &'a Problem<'a>,
     pub budget: &'a Budget<'a>,
-    /// Samples of the stretches (parts of the recording) that are used for tuning, rounded to the sample type.
-    pub rounded: &'a [Vec<f64>],
+    /// The stretches to tune on, rounded to the sample type.
+    pub pieces: &'a [Piece<'a>],
     pub found: Found,
     least: f64,
 }
@@ -133,13 +135,17 @@ impl Run<'_> {
     }
 
     pub(super) fn is_cut_short(&mut self) -> bool {
-        let is_late = self.budget.deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        self.found.is_cut_short |= is_late || (self.budget.is_stopped)();
+        self.found.is_cut_short |= self.is_late();
         self.found.is_cut_short
     }
 
-    /// Scores the first entries of `all`, as many as the budget allows. Records the best settings and those that may be
-    /// on the Pareto front. Returns the score of each entry that was tried, or `None` for an invalid entry.
+    fn is_late(&self) -> bool {
+        let is_late = self.budget.deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        is_late || (self.budget.is_stopped)()
+    }
+
+    /// Scores options until the budget is spent, and keeps the best and the Pareto front. Returns each score, or `None`
+    /// for invalid options.
     pub(super) fn try_all(&mut self, all: &[Asked]) -> Vec<Option<Scored>> {
         let problem = self.problem;
         let left = self.budget.evaluations - self.found.evaluated;
@@ -174,86 +180,18 @@ impl Run<'_> {
         points.into_iter().zip(scored.into_iter().map(value)).collect()
     }
 
-    /// Runs an evolution that searches for settings for `goal`. The evolution ends when the whole search has scored
-    /// `until` settings, or when the budget is spent.
+    /// Searches for settings for `goal` until the whole search has scored `until` settings, or no new ones are found.
     fn evolve(&mut self, space: &Space, goal: Goal, seed: u64, until: usize) {
-        let own = until.saturating_sub(self.found.evaluated);
-        let before = self.found.evaluated;
-        let (fewest, most) = PARENTS;
-        // 18 parents for 100 settings, 57 for 1000.
-        let count = ((1.8 * (own as f64).sqrt()) as usize).clamp(fewest, most).min(own);
-        if count == 0 {
-            return;
-        }
-        let share = match goal {
-            Goal::LeastError(efficiency) => 1.0 - efficiency / 100.0,
-            Goal::MostEfficient(_) | Goal::Front => 0.5,
-        };
-        let first = space.starts(seed, count, share);
-        // The first points are compared over the whole axis, later ones only near their own value.
-        let first = self.swept(space, goal, first, None);
-        let parents = self.tried(space, goal, first);
-        let mut evolution = Evolution::new(seed, parents);
+        let mut guided = Guided::new(self.problem, space, goal, seed);
         while self.found.evaluated < until && !self.is_over() {
-            let spent = (self.found.evaluated - before) as f64 / own as f64;
-            let mut points = evolution.ask(spent);
-            points.truncate(until - self.found.evaluated);
-            let width = 0.4 * (1.0 - spent).max(0.1);
-            let points = self.swept(space, goal, points, Some(width));
-            let values = self.tried(space, goal, points);
-            evolution.tell(values);
+            let points = guided.ask(until - self.found.evaluated);
+            if points.is_empty() {
+                return;
+            }
+            let options: Vec<Asked> = points.iter().map(|point| space.options(point)).collect();
+            let scored = self.try_all(&options);
+            guided.tell(points, &scored);
         }
-    }
-
-    /// Moves each point along one axis to the best of several positions. The scheme encodes the signal for all
-    /// positions in a single pass. `width` is the length of the searched interval around the point, as a share of the
-    /// axis. Without a `width`, the positions span the whole axis. Leaves the points as they are if the scheme cannot
-    /// process several values in one pass.
-    fn swept(
-        &self,
-        space: &Space,
-        goal: Goal,
-        mut points: Vec<Vec<f64>>,
-        width: Option<f64>,
-    ) -> Vec<Vec<f64>> {
-        let problem = self.problem;
-        let Some(inner) = space.inner(problem.scheme) else { return points };
-        let stretches: Vec<&[f64]> = self.rounded.iter().map(Vec::as_slice).collect();
-        let samples: usize = stretches.iter().map(|values| values.len()).sum();
-        let best = |point: &mut Vec<f64>| -> Option<()> {
-            let Inner { axis, is_factor } = inner;
-            let own = point[axis];
-            let places: [f64; LANES] = std::array::from_fn(|lane| match width {
-                None => (lane as f64 + 0.5) / LANES as f64,
-                Some(_) if lane == 0 => own,
-                Some(width) => {
-                    let off = (lane as f64 - 7.5) / 7.5;
-                    (own + 0.5 * width * off * off.abs()).clamp(0.0, 1.0)
-                }
-            });
-            let options = space.options(point);
-            let settings =
-                problem.settings(&options, problem.sample, problem.train.first()?).ok()?;
-            let number = |place: f64| space.number(axis, place);
-            let values = if is_factor {
-                places.map(|place| (number(place) - number(own)).exp())
-            } else {
-                let taps = settings.numbers("taps").ok()?;
-                let sum: f64 = taps.iter().map(|tap| tap.abs()).sum();
-                places.map(|place| number(place) * sum)
-            };
-            let found = problem.scheme.swept(&settings, &stretches, &values)?;
-            let value =
-                |(spikes, squares): (usize, f64)| problem.value_of(goal, spikes, squares, samples);
-            let all = places.into_iter().zip(found);
-            let (place, _) = all.min_by(|(_, a), (_, b)| value(*a).total_cmp(&value(*b)))?;
-            point[axis] = place;
-            Some(())
-        };
-        points.par_iter_mut().for_each(|point| {
-            best(point);
-        });
-        points
     }
 
     /// Lowers the parameter that limits the number of spikes in a sample, because a high limit costs time. The new
@@ -315,4 +253,71 @@ pub fn share(end: Option<Instant>, left: usize) -> Option<Instant> {
     let now = Instant::now();
     let time = end.saturating_duration_since(now).checked_div(left.max(1) as u32);
     Some(now + time.unwrap_or(Duration::ZERO))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chance::Chance;
+    use super::super::{Goal, Limits, Problem, Scored, Stretch};
+    use super::{Budget, Method, search};
+    use crate::scheme::Scheme;
+    use crate::trial::Recording;
+    use crate::tune::space::Space;
+    use catalogue::run::{Asked, SampleType};
+
+    /// Draws a signal: a few sines, noise, and a jump.
+    fn drawn(chance: &mut Chance) -> Stretch {
+        let sines: Vec<(f64, f64)> =
+            (0..3).map(|_| (chance.part(), 0.4 * chance.part().powi(2))).collect();
+        let (noise, jump, at) = (0.1 * chance.part(), chance.normal(), 100 + chance.below(300));
+        let mut value = |place: usize| {
+            let sines = sines.iter().map(|(size, pace)| size * (place as f64 * pace).sin());
+            sines.sum::<f64>() + noise * chance.normal() + if place > at { jump } else { 0.0 }
+        };
+        let values = (0..500).map(&mut value).collect();
+        Stretch::whole(&Recording::of("x".to_owned(), values, Some(200.0))).remove(0)
+    }
+
+    /// Draws schemes and signals. More settings never give a worse result, and 200 settings give none that is worse than
+    /// the best of 200 random points.
+    #[test]
+    fn more_settings_are_never_worse_and_better_than_random_points() {
+        let schemes: Vec<Scheme> = Scheme::all().collect();
+        for seed in 0..16 {
+            let mut chance = Chance::new(seed);
+            let scheme = schemes[chance.below(schemes.len())];
+            let train = [drawn(&mut chance)];
+            let limits = Limits::default();
+            let asked = Asked::default();
+            let known = (Goal::Front, &limits, "M4F");
+            let mut problem = Problem::new(scheme, SampleType::F32, &asked, &train, known);
+            let space = Space::new(scheme, &asked, problem.extent);
+            let points: Vec<_> = (0..200)
+                .filter_map(|_| {
+                    let point: Vec<f64> = (0..space.len()).map(|_| chance.part()).collect();
+                    problem.score(&space.options(&point)).ok()
+                })
+                .collect();
+            let middle = &points[points.len() / 2].tally;
+            problem.goal = Goal::LeastError(middle.efficiency().min(97.0));
+            let value = |own: &Scored| problem.value(problem.goal, own);
+            let random = points.iter().map(value).fold(f64::INFINITY, f64::min);
+            let mut before = f64::INFINITY;
+            for evaluations in [20, 45, 100, 200] {
+                let is_stopped = || false;
+                let budget = Budget {
+                    evaluations,
+                    deadline: None,
+                    is_stopped: &is_stopped,
+                    tick: &|_, _| {},
+                };
+                let found = search(&problem, Method { seed, free_taps: false }, &budget);
+                assert!(found.evaluated <= evaluations);
+                let own = value(found.best.as_ref().unwrap());
+                assert!(own <= before, "{} {seed}: {own} after {before}", scheme.name());
+                before = own;
+            }
+            assert!(before <= random * 1.01, "{} {seed}: {before}, {random}", scheme.name());
+        }
+    }
 }

@@ -70,16 +70,6 @@ pub(crate) struct Space {
     extent: Extent,
 }
 
-/// An axis of the search space. In one pass over the signal, a scheme can compare many values on this axis.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Inner {
-    /// Index of the axis in the space.
-    pub axis: usize,
-    /// Whether the axis is the sum of the filter's taps. If true, a pass over the signal compares factors, and each
-    /// factor multiplies this sum. Otherwise, the pass compares thresholds.
-    pub is_factor: bool,
-}
-
 impl Space {
     /// Makes the space of the scheme's searched parameters. A parameter with a value in `fixed` is not searched. `extent`
     /// holds the range and mean of the samples.
@@ -135,21 +125,6 @@ impl Space {
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns the axis on which a scheme can try many values in one pass over the signal. For a scheme with a
-    /// threshold, the numbers on this axis are thresholds divided by the sum of the taps' absolute values. For a scheme
-    /// without a threshold, this is the axis of the sum of the taps. Returns `None` if the space has no such axis.
-    pub(crate) fn inner(&self, scheme: Scheme) -> Option<Inner> {
-        let has_threshold =
-            scheme.info().parameters.iter().any(|parameter| parameter.name == "threshold");
-        let is_inner = |axis: &Axis| match axis.role {
-            Role::OfFilter => true,
-            Role::Sum(..) => !has_threshold,
-            _ => false,
-        };
-        let axis = self.axes.iter().position(is_inner)?;
-        Some(Inner { axis, is_factor: !has_threshold })
-    }
-
     /// Returns `count` points from which a search starts, spread over each axis. `share` is the wanted number of spikes
     /// for each sample, at most 1. For each point, the sum of the filter's taps is chosen such that a signal at its
     /// mean gives about this number of spikes for each sample.
@@ -175,6 +150,12 @@ impl Space {
                     // The shift is the signal's minimum, or somewhat off it.
                     Role::Around(..) if has_filter && stratum % 3 == 0 => 0.0,
                     Role::Around(..) if has_filter => 0.4 * (even - 0.4),
+                    // Many are best at an end of their range, and more often at the upper one.
+                    Role::Whole => {
+                        axis.low + (1.6 * even - 0.2).clamp(0.0, 1.0) * (axis.high - axis.low)
+                    }
+                    // The signal's range, or somewhat off it.
+                    Role::Around(..) if stratum % 3 == 0 => 0.0,
                     _ => axis.low + even * (axis.high - axis.low),
                 };
                 let place = (number - axis.low) / (axis.high - axis.low).max(f64::MIN_POSITIVE);

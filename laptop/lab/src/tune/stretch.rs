@@ -16,6 +16,8 @@ pub struct Stretch {
     pub rate: Option<f64>,
     /// Index ranges of the samples that are scored, in order and disjoint.
     pub scored: Vec<Range<usize>>,
+    /// Number of the flight that the samples are from.
+    pub flight: usize,
 }
 
 impl Stretch {
@@ -31,7 +33,13 @@ impl Stretch {
     /// Makes a stretch of the recording's samples in the index range `own`. The ranges in `scored` are relative to the
     /// start of `own`.
     fn scored(recording: &Recording, own: &Range<usize>, scored: Vec<Range<usize>>) -> Self {
-        Self { values: recording.values[own.clone()].to_vec(), rate: recording.rate, scored }
+        let values = recording.values[own.clone()].to_vec();
+        Self { values, rate: recording.rate, scored, flight: 0 }
+    }
+
+    /// Returns each range of samples that are scored.
+    pub fn scored_values(&self) -> impl Iterator<Item = &[f64]> {
+        self.scored.iter().filter_map(|own| self.values.get(own.clone()))
     }
 
     /// Returns the number of samples that are scored.
@@ -72,12 +80,12 @@ const SHORTEST: usize = 20;
 /// out, this offset leaves both the first and the last block for tuning.
 const OFFSET: f64 = 0.35;
 
-/// Cuts a recording into blocks. Returns two lists of stretches: those to tune on, and those in which only the held-out
-/// blocks are scored.
+/// Cuts a recording into blocks. Returns the stretches whose blocks to tune on are scored, and the stretches whose
+/// held-out blocks are scored.
 ///
-/// Adjacent blocks for tuning form one stretch. Held-out blocks are coded as in flight: each segment is coded in one
-/// piece, including its blocks for tuning, and only the held-out blocks are scored. If each block were coded alone,
-/// a code that drifts would start each block from the right value, and its drift would not show.
+/// All blocks are coded as in flight: each segment is coded in one piece, and either the blocks to tune on or the
+/// held-out blocks are scored. If each block were coded alone, a code that drifts would start it from the right value,
+/// and its drift would not show.
 ///
 /// # Errors
 /// Returns an error if the blocks are too short, or if no block is left to tune on.
@@ -95,29 +103,22 @@ pub fn cut(recording: &Recording, hold_out: HoldOut) -> Result<(Vec<Stretch>, Ve
     let is_held_out = |block: usize| before_it(block + 1) > before_it(block);
     let (mut tuned_on, mut checked) = (Vec::new(), Vec::new());
     for segment in &recording.segments {
-        let mut ranges: [Vec<Range<usize>>; 2] = Default::default();
+        let mut sides: [Vec<Range<usize>>; 2] = Default::default();
         for block in 0..blocks {
             let (start, end) = (samples * block / blocks, samples * (block + 1) / blocks);
             let own = start.max(segment.start)..end.min(segment.end);
             if own.is_empty() {
                 continue;
             }
-            let side = &mut ranges[usize::from(is_held_out(block))];
-            match side.last_mut().filter(|last| last.end == own.start) {
-                Some(last) => last.end = own.end,
-                None => side.push(own),
-            }
+            sides[usize::from(is_held_out(block))].push(own);
         }
-        let [to_tune_on, scored] = ranges;
-        tuned_on.extend(to_tune_on.iter().map(|own| {
-            let scored = std::iter::once(0..own.len()).collect();
-            Stretch::scored(recording, own, scored)
-        }));
-        if !scored.is_empty() {
-            let from_start =
-                |own: &Range<usize>| own.start - segment.start..own.end - segment.start;
-            let scored = scored.iter().map(from_start).collect();
-            checked.push(Stretch::scored(recording, segment, scored));
+        for (side, all) in sides.into_iter().zip([&mut tuned_on, &mut checked]) {
+            if !side.is_empty() {
+                let from_start =
+                    |own: &Range<usize>| own.start - segment.start..own.end - segment.start;
+                let scored = side.iter().map(from_start).collect();
+                all.push(Stretch::scored(recording, segment, scored));
+            }
         }
     }
     if tuned_on.is_empty() || checked.is_empty() {
@@ -131,15 +132,14 @@ mod tests {
     use super::{HoldOut, Stretch, cut};
     use crate::trial::Recording;
 
-    /// Cuts a recording into 5 blocks, and holds out the second and the fifth block (40 %). Both blocks are scored in
-    /// one stretch, which contains the whole recording.
+    /// If 40 % of 5 blocks are held out, these are the second and the fifth block. All blocks are coded in one piece.
     #[test]
-    fn what_is_held_out_is_coded_with_what_is_before_it() {
+    fn all_blocks_are_coded_in_one_piece() {
         let values: Vec<f64> = (0..200).map(f64::from).collect();
         let recording = Recording::of("x".to_owned(), values.clone(), Some(100.0));
         let (kept, held_out) = cut(&recording, HoldOut { blocks: 5, part: 0.4 }).unwrap();
-        let firsts = kept.iter().map(|own| own.values[0]);
-        assert_eq!(firsts.collect::<Vec<_>>(), [0.0, 80.0]);
+        let [Stretch { values: coded, scored, .. }] = &kept[..] else { panic!("{kept:?}") };
+        assert_eq!((coded, &scored[..]), (&values, &[0..40, 80..120, 120..160][..]));
         let [Stretch { values: coded, scored, .. }] = &held_out[..] else { panic!("{held_out:?}") };
         assert_eq!((coded, &scored[..]), (&values, &[40..80, 160..200][..]));
         assert_eq!((held_out[0].samples(), held_out[0].seconds()), (80, Some(0.8)));

@@ -1,0 +1,373 @@
+//! A search that a model guides. Of many candidates, the search scores the one from which a model of the points so far
+//! promises the largest improvement.
+//!
+//! Most points lie around a centre, by steps that grow with success and shrink without. A centre whose steps have
+//! become small is left, in turn for the best point so far and for a good point elsewhere. No step depends on the
+//! budget. Therefore a search with a larger budget scores the settings of a smaller one first, and is never worse.
+
+use super::Stretch;
+use super::chance::Chance;
+use super::problem::{Goal, NOT_ALLOWED, Problem, Scored, most_spikes};
+use super::space::{Role, Space};
+use super::surrogate::{Hyper, Surrogate};
+use std::collections::HashSet;
+use std::f64::consts::TAU;
+
+/// Number of points that are scored at once, and how many of them the models choose, by the number of points known. A
+/// model takes about a millisecond for a point, and helps most while few points are known.
+const TOGETHER: [(usize, usize, usize); 3] = [(300, 4, 3), (1000, 8, 4), (usize::MAX, 16, 2)];
+/// Number of candidates of which a model chooses one.
+const CANDIDATES: usize = 50;
+/// Maximum number of points in a model.
+const MODELLED: usize = 60;
+/// Number of batches after which the models' parameters are fitted again.
+const REFIT: usize = 4;
+/// Deviation of points around the centre, as a share of an axis: the value at which a centre is left, the first value,
+/// and the maximum.
+const STEPS: (f64, f64, f64) = (2e-3, 0.15, 0.3);
+/// Distance on an axis, as a share of the axis, within which a point belongs to a centre that was left.
+const SAME: f64 = 0.05;
+/// Number of times that another point is drawn if a point is known already.
+const DRAWS: usize = 4;
+
+/// A point that was scored.
+struct Known {
+    point: Vec<f64>,
+    /// Rating of the point's settings. A smaller rating is better.
+    value: f64,
+    /// The logarithms of the number of spikes and of the mean square error. `None` if the settings are invalid.
+    modelled: Option<[f64; 2]>,
+}
+
+/// Models of the logarithms of the number of spikes and of the mean square error. A model is `None` if all its points
+/// have the same value.
+type Models = [Option<Surrogate>; 2];
+
+/// A search that is running.
+pub(super) struct Guided<'a> {
+    problem: &'a Problem<'a>,
+    space: &'a Space,
+    goal: Goal,
+    chance: Chance,
+    /// The points with which the search starts, and that are not scored yet.
+    first: Vec<Vec<f64>>,
+    known: Vec<Known>,
+    /// The points in `known`, as bits.
+    keys: HashSet<Vec<u64>>,
+    /// Index in `known` of the best point.
+    best: usize,
+    /// Index in `known` of the point around which most points are tried.
+    centre: usize,
+    /// Former centres.
+    left: Vec<usize>,
+    step: f64,
+    /// Number of batches that were chosen by models.
+    round: usize,
+    /// Parameters of the models of the points around the centre, and of those anywhere.
+    hypers: [[Hyper; 2]; 2],
+}
+
+impl<'a> Guided<'a> {
+    pub(super) fn new(problem: &'a Problem<'a>, space: &'a Space, goal: Goal, seed: u64) -> Self {
+        let share = match goal {
+            Goal::LeastError(efficiency) => 1.0 - efficiency / 100.0,
+            Goal::MostEfficient(_) | Goal::Front => 0.5,
+        };
+        let hypers = || std::array::from_fn(|_| Hyper::new(space.len()));
+        Self {
+            problem,
+            space,
+            goal,
+            chance: Chance::new(seed),
+            first: space.starts(seed, 4 + 3 * space.len(), share),
+            known: Vec::new(),
+            keys: HashSet::new(),
+            best: 0,
+            centre: 0,
+            left: Vec::new(),
+            step: STEPS.1,
+            round: 0,
+            hypers: [hypers(), hypers()],
+        }
+    }
+
+    /// Returns up to `most` points, whose settings the caller is to score. Returns none if no unknown points are found.
+    pub(super) fn ask(&mut self, most: usize) -> Vec<Vec<f64>> {
+        let (_, together, guided) = self.together();
+        let mut points = Vec::new();
+        while points.len() < together
+            && let Some(point) = self.first.pop()
+        {
+            points.extend(self.unknown(point));
+        }
+        if points.is_empty() && !self.known.is_empty() {
+            self.round += 1;
+            let near = self.models(true);
+            let far = self.models(false);
+            for slot in 0..together {
+                let step = self.step * [1.0, 0.3, 0.3, 0.1][self.chance.below(4)];
+                for _ in 0..DRAWS {
+                    let point = match slot {
+                        // The last of the guided points lies anywhere.
+                        _ if slot + 1 == guided => self.chosen(&far, None),
+                        _ if slot < guided => self.chosen(&near, Some(step)),
+                        _ if self.round.is_multiple_of(2) => self.near(self.centre, step),
+                        _ => self.mixed(),
+                    };
+                    if let Some(point) = self.unknown(point) {
+                        points.push(point);
+                        break;
+                    }
+                }
+            }
+        }
+        points.truncate(most);
+        points
+    }
+
+    /// Takes the scores of the points that `ask` returned, in the same order. A score is `None` if the settings are
+    /// invalid.
+    pub(super) fn tell(&mut self, points: Vec<Vec<f64>>, scored: &[Option<Scored>]) {
+        let (before, count) = (self.centre, points.len());
+        for (point, own) in points.into_iter().zip(scored) {
+            let value = own.as_ref().map(|own| self.problem.value(self.goal, own));
+            let value = value.unwrap_or(f64::INFINITY);
+            let modelled = own.as_ref().map(|own| {
+                let square = self.problem.mean_square(&own.tally).max(f64::MIN_POSITIVE);
+                [(1.0 + own.tally.spikes as f64).ln(), square.ln()]
+            });
+            self.known.push(Known { point, value, modelled });
+            let last = self.known.len() - 1;
+            if value < self.known[self.best].value {
+                self.best = last;
+            }
+            let is_near = self.distance(last, self.centre) < STEPS.2;
+            let is_better = value < self.known[self.centre].value;
+            if is_better && (is_near || self.best == last || self.round == 0) {
+                self.centre = last;
+            }
+        }
+        if self.round > 0 {
+            let (least, first, most) = STEPS;
+            let is_better = self.centre != before;
+            let factor = if is_better { 1.5 } else { 0.75_f64.powf(count as f64 / 4.0) };
+            self.step = (factor * self.step).min(most);
+            if self.step < least {
+                self.step = first;
+                self.left.push(self.centre);
+                self.centre = self.next_centre();
+            }
+        }
+    }
+
+    fn together(&self) -> (usize, usize, usize) {
+        let [.., last] = TOGETHER;
+        TOGETHER.into_iter().find(|(end, ..)| self.known.len() < *end).unwrap_or(last)
+    }
+
+    /// Returns the largest distance on an axis between two known points.
+    fn distance(&self, a: usize, b: usize) -> f64 {
+        let pairs = self.known[a].point.iter().zip(&self.known[b].point);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    fn next_centre(&self) -> usize {
+        let is_new = |own: &usize| self.left.iter().all(|left| self.distance(*left, *own) > SAME);
+        let elsewhere = (0..self.known.len()).filter(is_new);
+        let value = |own: &usize| self.known[*own].value;
+        match elsewhere.min_by(|a, b| value(a).total_cmp(&value(b))) {
+            Some(own) if self.left.len() % 2 == 1 => own,
+            _ => self.best,
+        }
+    }
+
+    /// Marks a point as known and returns it, with whole numbers and words moved to the middle of their part of the
+    /// axis. Returns `None` if the point was known already.
+    fn unknown(&mut self, point: Vec<f64>) -> Option<Vec<f64>> {
+        let point = self.space.settled(point);
+        self.keys.insert(key(&point)).then_some(point)
+    }
+
+    fn near(&mut self, from: usize, step: f64) -> Vec<f64> {
+        self.space.near(&self.known[from].point, step, &mut self.chance)
+    }
+
+    /// Returns the candidate that promises the largest improvement. The candidates lie around the centre, with the
+    /// deviation `step`, or anywhere if there is no `step`.
+    fn chosen(&mut self, models: &Models, step: Option<f64>) -> Vec<f64> {
+        let gain = self.gain(models, if step.is_some() { self.centre } else { self.best });
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for place in 0..CANDIDATES {
+            let point = match (step, place % 3) {
+                (Some(step), _) => self.near(self.centre, step),
+                (None, 0) => (0..self.space.len()).map(|_| self.chance.part()).collect(),
+                (None, 1) => {
+                    let good = self.good();
+                    self.near(good, STEPS.2)
+                }
+                (None, _) => self.mixed(),
+            };
+            let point = self.space.settled(point);
+            if !self.keys.contains(&key(&point)) {
+                let own = gain(&point);
+                if best.as_ref().is_none_or(|(most, _)| own > *most) {
+                    best = Some((own, point));
+                }
+            }
+        }
+        best.map_or_else(|| self.near(self.best, STEPS.2), |(_, point)| point)
+    }
+
+    /// Draws one of the best points: one in eight of all points is among them.
+    fn good(&mut self) -> usize {
+        let mut order: Vec<usize> = (0..self.known.len()).collect();
+        let count = (order.len() / 8).max(8).min(order.len());
+        let value = |own: usize| self.known[own].value;
+        order.select_nth_unstable_by(count - 1, |a, b| value(*a).total_cmp(&value(*b)));
+        order[self.chance.below(count)]
+    }
+
+    /// Moves one of the good points towards the best, and by the difference of two others, as differential evolution
+    /// does, and then around that place.
+    fn mixed(&mut self) -> Vec<f64> {
+        let [own, a, b] = std::array::from_fn(|_| self.good());
+        let at = |place: usize, axis: usize| self.known[place].point[axis];
+        let moved = |axis| {
+            let towards = at(self.best, axis) - at(own, axis);
+            at(own, axis) + 0.5 * towards + 0.5 * (at(a, axis) - at(b, axis))
+        };
+        let point: Vec<f64> =
+            (0..self.space.len()).map(moved).map(|own: f64| own.clamp(0.0, 1.0)).collect();
+        self.space.near(&point, 0.03, &mut self.chance)
+    }
+
+    /// Returns a function that gives the logarithm of the improvement to expect at a point, compared with the known
+    /// point `from`. If `from` breaks a limit, this is the logarithm of the probability that the point meets the goal's.
+    fn gain<'b>(&self, models: &'b Models, from: usize) -> impl Fn(&[f64]) -> f64 + use<'b> {
+        const LEAST: f64 = 1e-300;
+        let (wanted, limited, limit) = self.outputs();
+        let (wanted, limited) = (&models[wanted], &models[limited]);
+        let from = &self.known[from];
+        let wanted = wanted.as_ref().filter(|_| from.value < NOT_ALLOWED);
+        // What the model expects at the point: its own value may be a lucky one that nothing around it reaches.
+        let wanted = wanted.map(|model| (model, model.at(&from.point).0));
+        move |point| {
+            let limited = limited.as_ref().map_or(0.0, |model| {
+                let (mean, deviation) = model.at(point);
+                normal((limit - mean) / deviation).max(LEAST).ln()
+            });
+            wanted.map_or(limited, |(model, least)| {
+                let (mean, deviation) = model.at(point);
+                let z = (least - mean) / deviation;
+                let density = (-0.5 * z * z).exp() / TAU.sqrt();
+                (deviation * (z * normal(z) + density)).max(LEAST).ln() + limited
+            })
+        }
+    }
+
+    /// Returns the index in [`Models`] of what is to be small, that of what the goal limits, and the limit.
+    fn outputs(&self) -> (usize, usize, f64) {
+        let samples = self.problem.train.iter().map(Stretch::samples).sum();
+        match self.goal {
+            Goal::LeastError(efficiency) => {
+                (1, 0, (1.5 + most_spikes(efficiency, samples) as f64).ln())
+            }
+            Goal::MostEfficient(rmse) => (0, 1, 2.0 * rmse.ln()),
+            Goal::Front => (1, 0, f64::INFINITY),
+        }
+    }
+
+    /// Fits models to the points nearest to the centre or, if not `is_near`, to the best points and some others.
+    fn models(&mut self, is_near: bool) -> Models {
+        let mut order: Vec<(f64, usize)> = Vec::new();
+        for (place, known) in self.known.iter().enumerate() {
+            let rank = if is_near {
+                let pairs = known.point.iter().zip(&self.known[self.centre].point);
+                pairs.map(|(a, b)| (a - b).powi(2)).sum()
+            } else if place % 2 == 0 {
+                known.value
+            } else {
+                self.chance.part() * NOT_ALLOWED
+            };
+            order.extend(known.modelled.map(|_| (rank, place)));
+        }
+        order.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        order.truncate(MODELLED);
+        let known: Vec<&Known> = order.iter().map(|(_, place)| &self.known[*place]).collect();
+        let points: Vec<&[f64]> = known.iter().map(|own| &own.point[..]).collect();
+        let is_fitted = self.round <= 2 * REFIT || self.round.is_multiple_of(REFIT);
+        let (_, limited, limit) = self.outputs();
+        let hypers = &mut self.hypers[usize::from(is_near)];
+        std::array::from_fn(|output| {
+            let values = known.iter().filter_map(|own| own.modelled.map(|own| own[output]));
+            let mut values: Vec<f64> = values.collect();
+            if output != limited {
+                limit_outliers(&mut values);
+            } else if limit.is_finite() {
+                // Only near the limit do differences matter.
+                for own in &mut values {
+                    *own = own.clamp(limit - 1.0, limit + 1.0);
+                }
+            }
+            Surrogate::fit(&points, &values, &mut hypers[output], is_fitted)
+        })
+    }
+}
+
+/// Lowers values that are far above the others, which would hide how the others differ.
+fn limit_outliers(values: &mut [f64]) {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let quarter = sorted.len() / 4;
+    let (Some(low), Some(high)) = (sorted.get(quarter), sorted.iter().rev().nth(quarter)) else {
+        return;
+    };
+    let most = 2.0 * high - low;
+    for own in values {
+        *own = own.min(most);
+    }
+}
+
+fn key(point: &[f64]) -> Vec<u64> {
+    point.iter().map(|own| own.to_bits()).collect()
+}
+
+/// Returns the probability that a normally distributed number of mean 0 and deviation 1 is below `z`, to 2e-4.
+fn normal(z: f64) -> f64 {
+    1.0 / (1.0 + (-z * (1.5976 + 0.070_565 * z * z)).exp())
+}
+
+impl Space {
+    /// Moves a point by normally distributed amounts of deviation `step` along about half of the axes. On an axis of
+    /// whole numbers or words, the amount is at least one.
+    fn near(&self, point: &[f64], step: f64, chance: &mut Chance) -> Vec<f64> {
+        let always = chance.below(point.len());
+        let moved = self.axes().iter().zip(point).enumerate().map(|(place, (axis, own))| {
+            let (is_moved, amount) = (chance.part() < 0.5, step * chance.normal());
+            if !is_moved && place != always {
+                return *own;
+            }
+            let one = if is_whole(axis.role) { 1.0 / (axis.high - axis.low).max(1.0) } else { 0.0 };
+            (own + amount.signum() * amount.abs().max(one)).clamp(0.0, 1.0)
+        });
+        moved.collect()
+    }
+
+    /// Moves whole numbers and words of a point to the middle of the part of the axis that means the same.
+    fn settled(&self, mut point: Vec<f64>) -> Vec<f64> {
+        for (place, (axis, own)) in self.axes().iter().zip(&mut point).enumerate() {
+            let number = self.number(place, *own);
+            let number = match axis.role {
+                role if is_whole(role) => number.round(),
+                Role::Length => number.exp().round().ln(),
+                _ => continue,
+            };
+            *own = (number - axis.low) / (axis.high - axis.low).max(f64::MIN_POSITIVE);
+        }
+        point
+    }
+}
+
+fn is_whole(role: Role) -> bool {
+    matches!(role, Role::Whole | Role::Most | Role::Words(_) | Role::Shape)
+}
