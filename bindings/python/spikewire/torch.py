@@ -83,7 +83,7 @@ class Encode(nn.Module):
         _LAYERS[self._number] = self
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in super().__getstate__().items() if name != "_number"}
+        return {name: value for name, value in self.__dict__.items() if name != "_number"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         super().__setstate__(state)
