@@ -168,7 +168,9 @@ _encode.register_autograd(_backward, setup_context=_keep)
 
 
 class TinyOdin(nn.Module):
-    """Layers of neurons in the chip tinyODIN's arithmetic, to be trained: what they compute is what the chip does.
+    """Layers of neurons in the chip tinyODIN's arithmetic, to be trained.
+
+    The chip fires as they do if its neurons compare once a step: ``spikewire network --compare step``.
 
     Weights are whole numbers from -8 to 7, potentials from -2048 to 2047; a leak is an amount, and a neuron that reaches its
     threshold fires and starts again at 0. What is trained are real numbers, of which the chip's weights are the nearest: gradients
@@ -218,7 +220,7 @@ class TinyOdin(nn.Module):
         return self.layers(x)[-1][1]
 
     def save(self, path: str | Path) -> None:
-        """Writes a network that ``spikewire network`` reads: for the chip's words, constants in Rust, and its model."""
+        """Writes a network for ``spikewire network FILE --compare step``: the chip's words, constants in Rust, and its model."""
         # Potentials are whole numbers: above half a number less is at the threshold.
         rule = {"leak": self.leak, "threshold": self.threshold - 0.5}
         layers = [{"weights": own.detach().T.int().tolist(), **rule} for own in self.whole()]

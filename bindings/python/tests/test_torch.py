@@ -143,5 +143,6 @@ def test_tiny_odin_is_saved(tmp_path):
     network.save(tmp_path / "chip.json")
     (layer,) = json.loads((tmp_path / "chip.json").read_text())["layers"]
     assert layer["weights"] == network.whole()[0].T.tolist()
+    assert (layer["threshold"], layer["leak"]) == (15.5, 1)
     with pytest.raises(sw.Error, match="tinyODIN's"):
         sw.Network.from_nir(tmp_path / "chip.json")
