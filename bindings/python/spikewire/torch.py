@@ -48,7 +48,8 @@ class Encode(nn.Module):
         num_steps: Number of times that still samples (batch, …) are encoded; they have no axis of time.
         time: The axis of time of the samples: 0 for (time, batch, features), 1 for (batch, time, features).
         split: Whether spikes up and spikes down are inputs of their own: the last axis has all ups, then all downs.
-        dtype: Type of the spikes; any of torch, `torch.bfloat16` too.
+        dtype: Type of the spikes; any of torch, `torch.bfloat16` too. One without a sign, as `torch.bool`, needs `split` if the code
+            has spikes down.
         device: Where the spikes go, the samples' own unless given. The code runs on the CPU: samples on another device are
             copied there, and the spikes back, in each call.
         gradient: How gradients reach the samples. Spikes have none of their own, so ``None`` stops them. ``"straight"``
@@ -74,6 +75,8 @@ class Encode(nn.Module):
             raise ValueError("still samples have no axis of time: num_steps goes without time")
         if not (gradient is None or gradient == "straight" or callable(gradient)):
             raise ValueError(f"gradient is 'straight', a function of the samples or None, not {gradient!r}")
+        if scheme._info["is_signed"] and not (split or dtype.is_signed):
+            raise ValueError(f"{dtype} has no sign for spikes down: split=True keeps them apart")
         self.scheme, self.num_steps, self.time, self.split = scheme, num_steps, time, split
         self.dtype, self.device, self.gradient = dtype, device, gradient
         self._register()
@@ -111,7 +114,7 @@ class Encode(nn.Module):
         values = x.detach().to("cpu", torch.float32 if x.dtype == torch.bfloat16 else None)
         spikes = self.scheme.encode(values.numpy(), progress=False, axis=axis)
         codes = torch.from_numpy(spikes.array).reshape(*x.shape, spikes.slots, spikes.neurons).movedim(axis, 0)
-        codes = codes.reshape(-1, *self._rest(x, axis), spikes.slots, spikes.neurons).movedim(-2, 1)
+        codes = codes.reshape(x.shape[axis], *self._rest(x, axis), spikes.slots, spikes.neurons).movedim(-2, 1)
         if self.split:
             codes = torch.stack([codes.clamp(min=0), -codes.clamp(max=0)], -3)
         codes = codes.reshape(self._shape(x, axis)).contiguous()

@@ -54,6 +54,7 @@ def test_types(dtype):
     assert torch.equal(spikes.float(), Encode(scheme, time=1, split=True)(X))
     rounded = Encode(scheme, time=1)(X.bfloat16())
     assert torch.equal(rounded, Encode(scheme, time=1)(X.bfloat16().float()))
+    assert Encode(scheme, time=1)(X[:0]).shape == (50, 0, 6)
     assert Encode(sw.WeightedPhase(min=0, max=256), num_steps=1)(torch.arange(256, dtype=torch.uint8)).shape == (8, 256)
 
 
@@ -73,6 +74,13 @@ def test_gradients(split):
     half = X.bfloat16().requires_grad_()
     Encode(sw.StepForward(threshold=0.1), time=1, gradient="straight", dtype=torch.bfloat16)(half).sum().backward()
     assert half.grad.dtype == torch.bfloat16
+
+
+@pytest.mark.parametrize("dtype", [torch.uint8, torch.bool])
+def test_types_without_a_sign(dtype):
+    with pytest.raises(ValueError, match="has no sign for spikes down"):
+        Encode(sw.StepForward(threshold=0.1), dtype=dtype)
+    assert torch.equal(Encode(SLOTS, time=1, dtype=dtype)(X).float(), Encode(SLOTS, time=1)(X))
 
 
 def test_compiles_as_one_operator():
