@@ -53,10 +53,10 @@ class Encode(nn.Module):
         device: Where the spikes go, the samples' own unless given. The code runs on the CPU: samples on another device are
             copied there, and the spikes back, in each call.
         gradient: How gradients reach the samples. Spikes have none of their own, so ``None`` stops them. ``"straight"``
-            passes them on: a sample's is the sum of those of its spikes, where a spike down counts negative if `split`. A
-            function of the samples gives factors for that sum, such as ``lambda x: 1 / (1 + x.abs()) ** 2``.
+            passes them on: a sample's is the sum of those of all its cells, where cells of spikes down count negative if
+            `split`. A function of the samples gives factors for that sum, such as ``lambda x: 1 / (1 + x.abs()) ** 2``.
 
-    Under `torch.compile` it is one opaque operator, `spikewire::encode`.
+    Under `torch.compile` it is one opaque operator, `spikewire::encode`; two calls with the same samples may share their draws.
     """
 
     def __init__(
@@ -134,7 +134,7 @@ class Encode(nn.Module):
         own, axis = self._with_time(x)
         steps, (*outer, last), signs = own.shape[axis], self._rest(own, axis), 2 if self.split else 1
         grown = gradient.reshape(steps, self.scheme.slots, *outer, signs, last, self.scheme.neurons)
-        grown = grown.sum((1, -1), dtype=torch.float32)
+        grown = grown.sum((1, -1), dtype=torch.promote_types(gradient.dtype, torch.float32))
         grown = grown[..., 0, :] - grown[..., 1, :] if self.split else grown[..., 0, :]
         if self.num_steps is not None:
             grown = grown.sum(0).reshape(x.shape)
@@ -144,7 +144,8 @@ class Encode(nn.Module):
         return grown * self.gradient(x) if callable(self.gradient) else grown
 
 
-@torch.library.custom_op("spikewire::encode", mutates_args=())
+# With its schema: not every torch from 2.4 reads one from annotations that are texts.
+@torch.library.custom_op("spikewire::encode", mutates_args=(), schema="(Tensor x, int layer) -> Tensor")
 def _encode(x: Tensor, layer: int) -> Tensor:
     return _LAYERS[layer]._spikes(x)
 

@@ -74,6 +74,9 @@ def test_gradients(split):
     half = X.bfloat16().requires_grad_()
     Encode(sw.StepForward(threshold=0.1), time=1, gradient="straight", dtype=torch.bfloat16)(half).sum().backward()
     assert half.grad.dtype == torch.bfloat16
+    double = X.double().requires_grad_()
+    Encode(sw.StepForward(threshold=0.1), time=1, gradient="straight", dtype=torch.float64)(double).div(3).sum().backward()
+    assert torch.equal(double.grad, torch.full_like(double, 1 / 3))
 
 
 @pytest.mark.parametrize("dtype", [torch.uint8, torch.bool])
