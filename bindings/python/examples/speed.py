@@ -1,6 +1,7 @@
 """Million samples a second of each scheme, beside plain Python, NumPy and other libraries, in one run.
 
     python bindings/python/examples/speed.py            # tables: medians, with the least and the most of all rounds
+    python bindings/python/examples/speed.py --shapes   # only arrays as batches have them
     python bindings/python/examples/speed.py --check    # fails if a scheme is not as many times faster as it should be
 
 Plain Python is the pseudo-code of the paper line by line, on NumPy arrays: what one writes first. NumPy is the same
@@ -170,12 +171,15 @@ def others(x, long, ends):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="fail where it is slower than it should be")
-    check = parser.parse_args().check
-    bench = plain()
+    parser.add_argument("--shapes", action="store_true", help="print only arrays as batches have them")
+    given = parser.parse_args()
     x = signal(SHORT)
     long = np.tile(x, TIMES)
     low = {"shift": float(x.min())}
     ends = {"min": float(x.min()), "max": float(x.max())}
+    if given.shapes:
+        return shapes(long, ends)
+    bench = plain()
     nine, fifteen = bench.triang(9), bench.triang(15)
     rows = [
         ("TBR", 10, sw.TemporalContrast(threshold=0.3), lambda: bench.contrast(x, 0.5)),
@@ -222,7 +226,7 @@ def main():
             flush=True,
         )
     shapes(long, ends)
-    if check and slow:
+    if given.check and slow:
         sys.exit("; ".join(slow))
 
 
