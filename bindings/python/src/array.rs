@@ -232,7 +232,7 @@ fn grid<'a, T>(
     let time = Axis(view.ndim().checked_sub(1)?);
     let length = view.len_of(time);
     let step = if length == 1 { 0 } else { usize::try_from(view.stride_of(time)).ok()? };
-    // A sample that is repeated stands in memory once.
+    // Without the axis of time where its step is 0, as a repeated sample is stored once.
     let once =
         if step == 0 { view.clone().index_axis_move(time, 0).into_dyn() } else { view.clone() };
     let start = once.as_ptr();

@@ -137,18 +137,19 @@ impl Coder {
         let (scheme, sample, count) = (self.scheme, self.sample, samples.count());
         let past = samples.length().min(self.looks_back());
         let has_own_start = self.asked.get("start").is_none() && scheme.info().has_first_value();
-        if !is_shared
-            && count > 1
-            && let Some(grid) = samples.grid()
-            && self.is_same_for_all()?
-        {
-            let settings = self.settle(&grid.firsts(0..1, past), None)?;
-            let samples = has_own_start.then(|| grid.firsts(0..count, past));
-            let begins = samples.map(|samples| Begins { past, samples });
+        let first = |lane: &Lane| lane.part(0..past).to_vec();
+        if !is_shared && count > 1 && self.is_same_for_all()? {
+            let grid = samples.grid();
+            let lanes = if grid.is_some() { Vec::new() } else { samples.lanes() };
+            let firsts = |channels: Range<usize>| match &grid {
+                Some(grid) => grid.firsts(channels, past),
+                None => lanes[channels].iter().flat_map(first).collect(),
+            };
+            let settings = self.settle(&firsts(0..1), None)?;
+            let begins = has_own_start.then(|| Begins { past, samples: firsts(0..count) });
             return Ok(Fitted::new(scheme, sample, vec![settings], begins, count));
         }
         let lanes = &samples.lanes()[..];
-        let first = |lane: &Lane| lane.part(0..past).to_vec();
         let needs_signal = self.scheme.needs_signal(&self.asked).is_some();
         let is_one = self.asked.channels(scheme.info())?.is_none();
         let settle = |(place, group): (usize, &[Lane])| {
@@ -176,12 +177,6 @@ impl Coder {
         if is_shared {
             let channels = vec![settle((0, lanes))?];
             return Ok(Fitted::new(scheme, sample, channels, None, 1));
-        }
-        if count > 1 && self.is_same_for_all()? {
-            let channels = vec![settle((0, &lanes[..1]))?];
-            let samples = has_own_start.then(|| lanes.iter().flat_map(first).collect());
-            let begins = samples.map(|samples| Begins { past, samples });
-            return Ok(Fitted::new(scheme, sample, channels, begins, count));
         }
         let channels: Vec<_> = if is_wide(count, count * samples.length()) {
             lanes.par_chunks(1).enumerate().map(settle).collect::<Result<_>>()?
@@ -369,10 +364,10 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
 
-/// Number of channels of this length that a thread codes in one go: their samples stay in the cache.
-fn run_of(length: usize) -> usize {
+/// Returns how many channels with this many cells each a thread encodes in one go, so that they stay in the cache.
+fn run_of(cells: usize) -> usize {
     const CACHED: usize = 1 << 13;
-    (CACHED / length.max(1)).clamp(1, CACHED).next_multiple_of(RUN)
+    (CACHED / cells.max(1)).clamp(1, CACHED).next_multiple_of(RUN)
 }
 
 /// Returns whether so many channels of so many numbers in all are worth more threads than one.
@@ -425,7 +420,7 @@ impl Fitted {
         let is_short = RUN * length <= PIECE && self.channels.len() == 1 && self.count == count;
         let grid = samples.grid().filter(|_| is_short);
         let lanes = if grid.is_some() { Vec::new() } else { samples.lanes() };
-        let run = if grid.is_some() { run_of(length) } else { 1 };
+        let run = if grid.is_some() { run_of(length * width) } else { 1 };
         let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {
             let encode = |bench: &mut Bench, (place, room): (usize, &mut [i8])| {
                 let from = place * run;
