@@ -69,6 +69,18 @@ def test_many_channels_with_the_same_parameters(scheme, sample, x):
 
 
 @pytest.mark.parametrize("scheme, sample", cases())
+def test_runs_of_channels(scheme, sample, x):
+    """Channels without gaps in memory are encoded in runs, of which this is several; others one by one."""
+    own, _ = of(scheme, sample, x)
+    own = own.fit(x)
+    many = np.stack([np.roll(x[0], 7 * place)[:20] for place in range(2100)]).reshape(3, 700, 20)
+    apart = own.encode(np.repeat(many, 2, axis=-1)[..., ::2]).array
+    assert np.array_equal(own.encode(many).array, apart)
+    beside = own.encode(np.ascontiguousarray(np.moveaxis(many, -1, 0)), axis=0).array
+    assert np.array_equal(np.moveaxis(beside, 0, 2), apart)
+
+
+@pytest.mark.parametrize("scheme, sample", cases())
 def test_chunks_are_coded_as_the_whole(scheme, sample, x):
     own, _ = of(scheme, sample, x)
     own = own.fit(x)
