@@ -4,7 +4,7 @@ use embedded_hal::spi::SpiDevice;
 
 use super::{Outcome, ReckOnAnswer, ReckOnPort, ReckOnSample, ReckOnStep};
 use crate::ChipError;
-use crate::error::at_most;
+use crate::error::in_range;
 
 /// Describes how `ReckOn` runs a time step of a network, and what its outputs mean. [`ReckOnSample::run`] runs such a
 /// step. The command `spikewire network` writes such a constant beside the network.
@@ -132,20 +132,21 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOnSample<'_, D, P> {
     /// [`ReckOnStepsState::REST`], and run the chip with [`ReckOnSettings::POTENTIALS`](super::ReckOnSettings::POTENTIALS).
     ///
     /// # Errors
-    /// Returns an error if the network has no such input, or if the settings do not answer in each step. Also returns
-    /// the errors of [`step`](Self::step). The step is then incomplete: begin a new sample, or reset the chip if the
-    /// driver refuses that.
+    /// Returns an error if the network has no such input, if `steps` has no ticks or more than 255, or if the settings do
+    /// not answer in each step. Also returns the errors of [`step`](Self::step). The step is then incomplete: begin a
+    /// new sample, or reset the chip if the driver refuses that.
     pub fn run(
         &mut self,
         steps: &ReckOnSteps<'_>,
         state: &mut ReckOnStepsState,
         inputs: impl IntoIterator<Item = u16>,
     ) -> Outcome<[f32; 16], D, P> {
+        let count = steps.ticks.len();
+        in_range("ticks", count.min(256) as i64, 1, 255)?;
         for input in inputs {
-            at_most("input", input.into(), steps.inputs.saturating_sub(1).into())?;
+            in_range("input", input.into(), 0, i64::from(steps.inputs.min(256)) - 1)?;
             self.send(input as u8)?;
         }
-        let count = steps.ticks.len();
         let shown = usize::from(steps.late).checked_rem(count).unwrap_or(0);
         for (at, ReckOnTick { always, raises }) in steps.ticks.iter().enumerate() {
             let is_due = state.has_run || at.saturating_add(1) == count;
