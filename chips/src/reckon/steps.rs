@@ -110,7 +110,8 @@ impl ReckOnOutputs<'_> {
     const FIRED: u8 = 12;
 }
 
-/// The state that a network in [`ReckOnSteps`] has between two steps: 132 bytes.
+/// What a network in [`ReckOnSteps`] keeps between two steps: the last answer, and the values of the outputs. Takes 100
+/// bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReckOnStepsState {
     has_run: bool,
