@@ -18,6 +18,8 @@ pub(super) const KEEP: f64 = 32_768.0;
 /// The integer that stands for an output's decay factor of 1. Each tick of the chip multiplies the output's potential
 /// by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
+/// Largest difference between a neuron's decay factor of a step on the chip and the trained one that is not reported.
+const KEEP_TOLERANCE: f64 = 1e-4;
 /// Largest relative error of a leak of the chip's outputs. Beyond it, the driver leaks the outputs.
 const LEAK_TOLERANCE: f64 = 0.02;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
@@ -66,10 +68,9 @@ pub(super) struct Quantised {
     /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
     /// weights of the outputs.
     pub(super) changes: Vec<Change>,
-    /// Two figures about the differences between the leaks on the chip and the trained leaks. The first is the number
-    /// of neurons and outputs whose leak differs. The second is the largest difference between a decay factor on the
-    /// chip and the trained factor. Leaks differ because the two neurons of a pair have a common leak on the chip, and
-    /// all outputs have a common leak.
+    /// Number of neurons whose leak on the chip differs from the trained one, and the largest difference between the two
+    /// decay factors of a step. Leaks differ because the two neurons of a pair share one, and because a tick keeps at
+    /// least [`LEAST_KEEP`].
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -270,7 +271,7 @@ pub(super) fn quantise(
         network.pairs.push(ReckOnPair { keep: *keep, threshold: fires_at(*scale, at) as i16 });
         for (source, rounded) in pair.iter().zip(rounded) {
             network.put(source, rounded, *scale, shifts);
-            network.tell_keep(source.keep, (f64::from(*keep) / KEEP).powi(ticks as i32), 1e-4);
+            network.tell_keep(source.keep, (f64::from(*keep) / KEEP).powi(ticks as i32));
         }
     }
     network.put_bias(&pairs, &chosen, shifts[0]);
@@ -647,10 +648,10 @@ impl Quantised {
         }
     }
 
-    fn tell_keep(&mut self, trained: f64, held: f64, tolerance: f64) {
+    fn tell_keep(&mut self, trained: f64, held: f64) {
         let (count, most) = &mut self.shared_keeps;
         let difference = (trained - held).abs();
-        *count += usize::from(difference > tolerance);
+        *count += usize::from(difference > KEEP_TOLERANCE);
         *most = most.max(difference);
     }
 
