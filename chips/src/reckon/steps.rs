@@ -87,12 +87,12 @@ pub enum ReckOnOutputs<'a> {
         /// Value of 1 in an answer, in the units of the trained network.
         unit: f32,
     },
-    /// The outputs are neurons that never fire, and that leak differently. The chip's outputs share one leak, so the chip
-    /// only adds up the weights of each step, and the driver adds them to potentials that leak.
+    /// The outputs are neurons that never fire, and whose leaks the chip's one leak for all outputs does not match. The
+    /// chip only adds up the weights of each step; the driver adds these sums to potentials that leak.
     Leaky {
         /// Value of 1 in a sum of weights, in the units of the trained network.
         unit: f32,
-        /// For each output, the share of its potential that a step keeps.
+        /// For each output, the factor by which a step multiplies its potential.
         keeps: &'a [f32],
     },
 }
