@@ -117,7 +117,6 @@ impl Change {
     /// weight and its change to the statistics in `self`.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let held = clipped(weight * scale) as i8;
-        self.clipped += usize::from(f64::from(held) != (weight * scale).round());
         self.held(weight, held, scale);
         held
     }
@@ -125,6 +124,7 @@ impl Change {
     /// Adds a weight to the statistics that the chip holds as the integer `held`.
     fn held(&mut self, weight: f64, held: i8, scale: f64) {
         self.weights += 1;
+        self.clipped += usize::from(clipped(weight * scale) != (weight * scale).round());
         self.vanished += usize::from(held == 0 && weight != 0.0);
         let change = f64::from(held) / scale - weight;
         self.sums[0] += weight * weight;
@@ -585,7 +585,8 @@ impl Quantised {
                     if source.layer % self.ticks.len() == tick && source.bias != 0.0 {
                         weights.push((self.places.of(source.layer, source.neuron), rounded.bias));
                         let scale = scale / f64::from(1 << shift);
-                        self.changes[source.layer].held(source.bias, rounded.bias, scale);
+                        let change = &mut self.changes[source.layer];
+                        change.held(rounded.exact_bias, rounded.bias, scale);
                     }
                 }
             }

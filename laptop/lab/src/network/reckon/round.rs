@@ -109,6 +109,9 @@ impl Traces {
 pub(super) struct Rounded {
     pub(super) inputs: Vec<i8>,
     pub(super) bias: i8,
+    /// The bias that is rounded. If the neuron has no gates, it makes up for the potential that is lost because the chip
+    /// rounds down.
+    pub(super) exact_bias: f64,
     pub(super) recurrent: Vec<(usize, i8)>,
     /// Amounts by which gates lower and raise the neuron. Gates are inputs that keep the neuron from firing before its
     /// layer compares again. They also make up for the mean error of the other weights, and for the potential that is
@@ -170,6 +173,7 @@ impl Rounded {
         Self {
             inputs: inputs[..bias].iter().map(|weight| *weight as i8).collect(),
             bias: held[bias] as i8,
+            exact_bias: own,
             recurrent: source
                 .recurrent
                 .iter()
