@@ -194,9 +194,10 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
 }
 
 /// Quantises a network for the chip. First chooses the left shifts of weights at which rounding changes the weights
-/// least. Then chooses, for each pair of neurons, the scale at which the pair's spikes are nearest to those in double
-/// precision; all other neurons are assumed to fire as in double precision. Calls `progress` with the number of
-/// finished neurons and the total number of neurons.
+/// least. Then chooses a scale for each pair of neurons: among those at which rounding changes the potentials least, the
+/// one with the smallest sum of two numbers: the distance of the spikes from those in double precision, and the mean
+/// squared error of the potentials. All other neurons are assumed to fire as in double precision. Calls `progress` with
+/// the number of finished neurons and the total number of neurons.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip.
@@ -374,9 +375,8 @@ struct Chosen {
 }
 
 impl Chosen {
-    /// Chooses the scale at which a pair's spikes are nearest to those in double precision. The pair belongs to one
-    /// layer: `drives` are the spikes that act on the layer, and `fired` those that it fires. All other neurons are
-    /// assumed to fire as in double precision.
+    /// Chooses the scale of a pair, as [`quantise`] says. The pair belongs to one layer: `drives` are the spikes that act
+    /// on the layer, and `fired` those that it fires.
     fn new(
         pair: &[Source],
         drives: &[Drive],
