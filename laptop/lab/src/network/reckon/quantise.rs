@@ -391,7 +391,6 @@ impl Chosen {
         let most = scale(pair, shifts);
         let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
             .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))
-            .filter(|scale| fires_at(*scale, rule.fires) <= f64::from(i16::MAX))
             .map(|scale| {
                 let of = |(source, traces): (&Source, &Traces)| {
                     Rounded::new(source, traces, keep, scale, shifts, rule.ticks)
@@ -411,7 +410,7 @@ impl Chosen {
             (distance + error, Self { keep, scale, rounded: all })
         });
         let best = simulated.min_by(|(one, _), (other, _)| one.total_cmp(other));
-        best.map_or(Self { keep, scale: 1.0, rounded: vec![] }, |(_, chosen)| chosen)
+        best.expect("several scales are simulated").1
     }
 }
 
