@@ -68,9 +68,9 @@ pub(super) struct Quantised {
     /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
     /// weights of the outputs.
     pub(super) changes: Vec<Change>,
-    /// Number of neurons whose leak on the chip differs from the trained one, and the largest difference between the two
-    /// decay factors of a step. Leaks differ because the two neurons of a pair share one, and because a tick keeps at
-    /// least [`LEAST_KEEP`].
+    /// Number of neurons whose leak on the chip differs from the trained one, and the largest difference between the
+    /// two decay factors of a step. Leaks differ because the two neurons of a pair share one, and because a tick keeps
+    /// at least [`LEAST_KEEP`].
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -194,10 +194,10 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
 }
 
 /// Quantises a network for the chip. First chooses the left shifts of weights at which rounding changes the weights
-/// least. Then chooses a scale for each pair of neurons: among those at which rounding changes the potentials least, the
-/// one with the smallest sum of two numbers: the distance of the spikes from those in double precision, and the mean
-/// squared error of the potentials. All other neurons are assumed to fire as in double precision. Calls `progress` with
-/// the number of finished neurons and the total number of neurons.
+/// least. Then chooses a scale for each pair of neurons: among those at which rounding changes the potentials least,
+/// the one with the smallest sum of two numbers: the distance of the spikes from those in double precision, and the
+/// mean squared error of the potentials. All other neurons are assumed to fire as in double precision. Calls `progress`
+/// with the number of finished neurons and the total number of neurons.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip.
@@ -375,8 +375,8 @@ struct Chosen {
 }
 
 impl Chosen {
-    /// Chooses the scale of a pair, as [`quantise`] says. The pair belongs to one layer: `drives` are the spikes that act
-    /// on the layer, and `fired` those that it fires.
+    /// Chooses the scale of a pair, as [`quantise`] says. The pair belongs to one layer: `drives` are the spikes that
+    /// act on the layer, and `fired` those that it fires.
     fn new(
         pair: &[Source],
         drives: &[Drive],
@@ -656,8 +656,8 @@ impl Quantised {
     }
 
     /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
-    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are the
-    /// spikes of the last layer.
+    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are
+    /// the spikes of the last layer.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>], fired: &[Vec<u16>]) {
         let Readout { name, weights, keep } = readout;
         let ticks = self.ticks.len();
