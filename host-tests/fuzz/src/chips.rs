@@ -13,8 +13,8 @@ use spikewire::Tick;
 use spikewire_chips::{
     AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, NetworkBytes, Odin, OdinChip,
     OdinInput, OdinRegisters, OdinSynapse, OutputSource, ReckOn, ReckOnOutputs, ReckOnPort,
-    ReckOnSettings, ReckOnStep, ReckOnSteps, ReckOnStepsState, ReckOnTarget, ReckOnTick, Registers, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput,
-    TinyOdinRegisters, Xylo, XyloMap,
+    ReckOnSettings, ReckOnStep, ReckOnSteps, ReckOnStepsState, ReckOnTarget, ReckOnTick, Registers,
+    Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinRegisters, Xylo, XyloMap,
 };
 
 use crate::script::Script;
