@@ -87,8 +87,9 @@ pub(super) struct Quantised {
 pub(super) struct Tick {
     /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
     pub(super) always: Vec<u8>,
-    /// Numbers of the gates (which are inputs) that raise neurons before this tick. In the first step, only the gates
-    /// of the last tick fire: the neurons that the other gates raise have not been lowered yet.
+    /// Numbers of the gates (which are inputs) that raise neurons before this tick. In the first step, only the last
+    /// tick's gates fire, as only the neurons that they raise have been lowered by then: at the first tick. All other
+    /// neurons are lowered for the first time after they have been compared with their thresholds.
     pub(super) raises: Vec<u8>,
 }
 
