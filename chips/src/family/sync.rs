@@ -192,9 +192,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         Err(ChipError::ReadBack { address, written, read: u32::from(read & !ignored) })
     }
 
-    /// Stores the byte `value` at `address` as the [`Beacon`]. The beacon leaves out bits that are 0 in `mask`. It also
-    /// leaves out bits outside a neuron's parameters, because the chip can change those bits. Does nothing if all other
-    /// bits of `value` are 0, or if `address` is not in the memory of neurons.
+    /// Stores the byte `value` at `address` as the [`Beacon`]. The beacon covers the bits that are 1 in `mask` and
+    /// belong to a neuron's parameters: the chip can change the other bits of a neuron. Does nothing if the bits of
+    /// `value` that the beacon would cover are all 0, or if `address` is not in the memory of neurons.
     pub(super) fn note(&mut self, address: Address, mask: u8, value: u8) {
         let Some(byte) = address.neuron_byte() else { return };
         let mask = mask & I::PARAMETERS.get(usize::from(byte)).copied().unwrap_or(0);

@@ -4,13 +4,13 @@ use embedded_hal::spi::SpiDevice;
 
 use super::{Outcome, ReckOnAnswer, ReckOnPort, ReckOnSample, ReckOnStep};
 use crate::ChipError;
-use crate::error::at_most;
+use crate::error::in_range;
 
 /// Describes how `ReckOn` runs a time step of a network, and what its outputs mean. [`ReckOnSample::run`] runs such a
 /// step. The command `spikewire network` writes such a constant beside the network.
 ///
-/// A tick keeps at least 0.875 of a neuron's potential. If the neurons keep less in a step, a step has several ticks, of
-/// which each keeps a root of it.
+/// A tick keeps at least 0.875 of a neuron's potential. If the neurons keep less in a step, a step has several ticks,
+/// of which each keeps a root of it.
 ///
 /// # Examples
 /// A network whose outputs are the neurons of a population code: [`Readout`](spikewire::Readout) decodes their spikes.
@@ -66,14 +66,14 @@ pub struct ReckOnSteps<'a> {
     pub outputs: ReckOnOutputs<'a>,
 }
 
-/// Inputs that fire before a tick of a step in addition to the network's own: biases, and gates. A gate is an input that
-/// lowers the potentials of neurons, so that they do not fire at some ticks.
+/// Inputs that fire before a tick of a step in addition to the network's own: biases, and gates. A gate is an input
+/// that lowers the potentials of neurons, so that they do not fire at some ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReckOnTick<'a> {
     /// Inputs that fire in every step.
     pub always: &'a [u8],
-    /// Gates that raise neurons again. In the first step they fire only before the last tick, because the neurons of the
-    /// other ticks have not been lowered yet.
+    /// Gates that raise neurons again. In the first step they fire only before the last tick, because the neurons of
+    /// the other ticks have not been lowered yet.
     pub raises: &'a [u8],
 }
 
@@ -87,12 +87,12 @@ pub enum ReckOnOutputs<'a> {
         /// Value of 1 in an answer, in the units of the trained network.
         unit: f32,
     },
-    /// The outputs are neurons that never fire, and that leak differently. The chip's outputs share one leak, so the chip
-    /// only adds up the weights of each step, and the driver adds them to potentials that leak.
+    /// The outputs are neurons that never fire, and whose leaks the chip's one leak for all outputs does not match. The
+    /// chip only adds up the weights of each step; the driver adds these sums to potentials that leak.
     Leaky {
         /// Value of 1 in a sum of weights, in the units of the trained network.
         unit: f32,
-        /// For each output, the share of its potential that a step keeps.
+        /// For each output, the factor by which a step multiplies its potential.
         keeps: &'a [f32],
     },
 }
@@ -102,15 +102,16 @@ impl ReckOnOutputs<'_> {
     /// tick of the chip halves the output's potential. The bits of the potential therefore show in which of the last
     /// ticks the neuron fired.
     pub const SPIKES: (i8, u8, u8) = (64, 7, 64);
-    /// The [`keep`](super::ReckOnShared::keep) of outputs that are [`Leaky`](Self::Leaky). Their left shift is at least 1.
-    /// Each tick of the chip halves the output's potential. The driver calculates the sum of a tick's weights from two
-    /// answers.
+    /// The [`keep`](super::ReckOnShared::keep) of outputs that are [`Leaky`](Self::Leaky). Their left shift is
+    /// 1 or more. Each tick of the chip halves the output's potential. The driver calculates the sum of a tick's weights
+    /// from two answers.
     pub const LEAKY_KEEP: u8 = 64;
     /// The bit of an answer that says whether the neuron of an output that reports spikes fired.
     const FIRED: u8 = 12;
 }
 
-/// The state that a network in [`ReckOnSteps`] has between two steps: 132 bytes.
+/// What a network in [`ReckOnSteps`] keeps between two steps: the last answer, and the values of the outputs. Takes 100
+/// bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReckOnStepsState {
     has_run: bool,
@@ -126,26 +127,28 @@ impl ReckOnStepsState {
 
 impl<D: SpiDevice, P: ReckOnPort> ReckOnSample<'_, D, P> {
     /// Runs one time step of a network: sends the numbers of the inputs that fire, and the ticks of a step with their
-    /// biases and gates. Returns the values of the outputs, which show the effect of the inputs of `late / ticks` steps
-    /// before, rounded down. The value of an output that reports spikes is 1 if its neuron fired, and 0 otherwise.
-    /// Other outputs' values are potentials in the units of the trained network. Begin each sample with
-    /// [`ReckOnStepsState::REST`], and run the chip with [`ReckOnSettings::POTENTIALS`](super::ReckOnSettings::POTENTIALS).
+    /// biases and gates. Returns the values of the outputs. They show the effect of the inputs that were sent
+    /// `late / ticks` (rounded down) calls earlier. The value of an output that reports spikes is 1 if its neuron
+    /// fired, and 0 otherwise. Other outputs' values are potentials in the units of the trained network. Begin each
+    /// sample with [`ReckOnStepsState::REST`], and run the chip with
+    /// [`ReckOnSettings::POTENTIALS`](super::ReckOnSettings::POTENTIALS).
     ///
     /// # Errors
-    /// Returns an error if the network has no such input, or if the settings do not answer in each step. Also returns
-    /// the errors of [`step`](Self::step). The step is then incomplete: begin a new sample, or reset the chip if the
-    /// driver refuses that.
+    /// Returns an error if the network has no such input, if `steps` has no ticks or more than 255, or if the settings
+    /// do not answer in each step. Also returns the errors of [`step`](Self::step). The step is then incomplete: begin
+    /// a new sample, or reset the chip if the driver refuses that.
     pub fn run(
         &mut self,
         steps: &ReckOnSteps<'_>,
         state: &mut ReckOnStepsState,
         inputs: impl IntoIterator<Item = u16>,
     ) -> Outcome<[f32; 16], D, P> {
+        let count = steps.ticks.len();
+        in_range("ticks", count.min(256) as i64, 1, 255)?;
         for input in inputs {
-            at_most("input", input.into(), steps.inputs.saturating_sub(1).into())?;
+            in_range("input", input.into(), 0, i64::from(steps.inputs.min(256)) - 1)?;
             self.send(input as u8)?;
         }
-        let count = steps.ticks.len();
         let shown = usize::from(steps.late).checked_rem(count).unwrap_or(0);
         for (at, ReckOnTick { always, raises }) in steps.ticks.iter().enumerate() {
             let is_due = state.has_run || at.saturating_add(1) == count;
@@ -181,8 +184,8 @@ impl ReckOnStepsState {
                 for ((value, keep), (before, answer)) in
                     self.values.iter_mut().zip(*keeps).zip(before)
                 {
-                    // The sums are even, so the bit that was lost when the potential was halved is the lowest bit of the
-                    // answer before.
+                    // The sums are even, so the bit that was lost when the potential was halved is the lowest bit of
+                    // the answer before.
                     let sum = 2 * i32::from(answer) - i32::from(before & !1);
                     *value = *value * keep + sum as f32 * unit;
                 }

@@ -3,7 +3,8 @@
 use core::hint::black_box;
 use embedded_hal::spi::ErrorKind;
 use spikewire_chips::{
-    ReckOn, ReckOnBytes, ReckOnLearning, ReckOnPort, ReckOnSettings, ReckOnStep, ReckOnTarget,
+    ReckOn, ReckOnBytes, ReckOnLearning, ReckOnOutputs, ReckOnPort, ReckOnSettings, ReckOnStep,
+    ReckOnSteps, ReckOnStepsState, ReckOnTarget, ReckOnTick,
 };
 
 use crate::exercise::hide;
@@ -47,6 +48,18 @@ pub fn reckon() {
             hide(sample.send(a).is_ok());
             let step = ReckOnStep { counts: black_box(true), target: Some(target) };
             hide(sample.step(step).is_ok());
+        }
+        let keeps = black_box([0.5; 3]);
+        let (ticks, unit) = black_box(([ReckOnTick { always: &[1], raises: &[2] }; 2], 0.1));
+        for outputs in [
+            ReckOnOutputs::Spikes,
+            ReckOnOutputs::Potentials { unit },
+            ReckOnOutputs::Leaky { unit, keeps: &keeps },
+        ] {
+            let (inputs, late) = black_box((4, 3));
+            let steps = black_box(ReckOnSteps { inputs, ticks: &ticks, late, outputs });
+            let mut state = black_box(ReckOnStepsState::REST);
+            hide(sample.run(&steps, &mut state, black_box([1, 2])).is_ok());
         }
         hide(sample.end().is_ok());
     }

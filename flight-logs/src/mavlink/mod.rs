@@ -88,8 +88,8 @@ fn look(left: &[u8]) -> Ahead<'_> {
 }
 
 impl Packet<'_> {
-    /// Returns whether the packet at the start of `left` is valid. If its message is known, the checksum must
-    /// be right. If not, another packet must follow.
+    /// Returns whether the packet at the start of `left` is valid. If its message is known, the checksum must be right.
+    /// If its message is unknown, the checksum cannot be calculated; instead, another packet must follow.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
             Some(message) => {
@@ -103,8 +103,8 @@ impl Packet<'_> {
     }
 }
 
-/// Returns whether `next` can be a time stamp and then a packet: the byte after the time stamp is one with which packets
-/// start, or there is no such byte.
+/// Returns whether `next` can be a time stamp and then a packet: the byte after the time stamp is one with which
+/// packets start, or there is no such byte.
 fn is_followed(next: &[u8]) -> bool {
     next.get(TIME).is_none_or(|start| matches!(start, 0xfd | 0xfe))
 }

@@ -12,9 +12,9 @@ use silicon::board::CallFault;
 use spikewire::Tick;
 use spikewire_chips::{
     AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, NetworkBytes, Odin, OdinChip,
-    OdinInput, OdinRegisters, OdinSynapse, OutputSource, ReckOn, ReckOnPort, ReckOnSettings,
-    ReckOnStep, ReckOnTarget, Registers, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput,
-    TinyOdinRegisters, Xylo, XyloMap,
+    OdinInput, OdinRegisters, OdinSynapse, OutputSource, ReckOn, ReckOnOutputs, ReckOnPort,
+    ReckOnSettings, ReckOnStep, ReckOnSteps, ReckOnStepsState, ReckOnTarget, ReckOnTick, Registers,
+    Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinRegisters, Xylo, XyloMap,
 };
 
 use crate::script::Script;
@@ -203,7 +203,7 @@ pub fn junk(bytes: &[u8]) {
                 OdinInput::DISABLED,
             );
         }
-        2 => reckon(&Junk::new(&mut script)),
+        2 => reckon(&mut script),
         3 => {
             let mut chip = Akd1500::new(Junk::new(&mut script));
             let mut words = [0; 70];
@@ -330,7 +330,21 @@ fn stepped(script: &mut Script) {
     }
 }
 
-fn reckon(bus: &Junk) {
+fn reckon(script: &mut Script) {
+    let ticks = [ReckOnTick { always: &[1, 2], raises: &[3] }; 8];
+    let outputs = [
+        ReckOnOutputs::Spikes,
+        ReckOnOutputs::Potentials { unit: 0.5 },
+        ReckOnOutputs::Leaky { unit: 0.5, keeps: &[0.5; 20] },
+    ];
+    let steps = ReckOnSteps {
+        inputs: script.byte().into(),
+        ticks: &ticks[..script.below(9)],
+        late: script.byte().into(),
+        outputs: outputs[script.below(3)],
+    };
+    let inputs = [script.byte().into(), u16::from(script.byte()) << script.below(9)];
+    let bus = Junk::new(script);
     let mut chip = ReckOn::new(bus.clone(), bus.clone(), 3);
     for settings in [ReckOnSettings::POTENTIALS, ReckOnSettings::LABEL] {
         let Ok(mut programmed) = chip.reset(&mut bus.clone()) else { continue };
@@ -341,6 +355,10 @@ fn reckon(bus: &Junk) {
             let _ = sample.send(step);
             let target = Some(ReckOnTarget::Label(1)).filter(|_| step > 1);
             let _ = sample.step(ReckOnStep { counts: true, target });
+        }
+        let mut state = ReckOnStepsState::REST;
+        for _ in 0..3 {
+            let _ = sample.run(&steps, &mut state, inputs);
         }
         let _ = sample.end().is_ok();
     }

@@ -156,8 +156,8 @@ option_group!(
 const PARAMETERS: &str = "Parameters";
 const CALIBRATION: &str = "Instead of calibration";
 
-/// Adds an option to `command` for each parameter of any scheme that `is_taken` accepts. Schemes with a parameter of
-/// the same name share one option.
+/// Adds options to `command` for the parameters of all schemes, except for parameters for which `is_taken` returns
+/// false. Schemes with a parameter of the same name share one option.
 pub(crate) fn augment(mut command: Command, is_taken: fn(&Parameter) -> bool) -> Command {
     for (name, owners) in parameters(is_taken) {
         let Some(&(_, parameter)) = owners.first() else { continue };

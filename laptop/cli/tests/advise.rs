@@ -123,7 +123,8 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
             "{scheme}"
         );
     }
-    // The turn rates are coded no coarser than in the flights, although a fifth of their deviation is much more.
+    // Turn rates are coded about as finely as in the flights (thresholds within 1.2 times, as the same RMSE has another
+    // threshold here), although a fifth of their deviation is much more.
     let threshold = report["channels"][0]["reaching"].as_array().unwrap().iter();
     let threshold = threshold.filter(|one| one["scheme"] == "sod");
     let threshold = threshold.map(|one| one["parameters"]["threshold"].as_f64().unwrap()).next();

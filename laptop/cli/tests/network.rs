@@ -162,7 +162,7 @@ fn changes_by_a_chip_are_reported_and_a_recording_is_held_out() {
     let little = r#"{"weights": [[0.4, -0.3]], "keep": 0.05, "threshold": 0.3}]"#;
     let (_directory, command) = driven(little, 0.05, "--chip reckon");
     let report = good(&command, "").stderr;
-    let leaks = "warning: 1 neurons or outputs leak otherwise than trained, by up to 0.0681";
+    let leaks = "warning: 1 neurons leak otherwise than trained, by up to 0.0681";
     assert!(report.contains(leaks), "{report}");
 
     let silent = r#"{"weights": [[1, 1]], "threshold": 1e9}]"#;

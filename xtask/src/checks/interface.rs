@@ -64,7 +64,9 @@ fn of(own: &Crate) -> Result<String> {
         let line = item.to_string();
         if line.starts_with("impl") {
             of_trait = line.contains(" for ");
-        } else if of_trait && is_member(&line) {
+        } else if !is_member(&line) {
+            of_trait = false;
+        } else if of_trait {
             continue;
         }
         text.push_str(

@@ -14,9 +14,10 @@ pub(super) struct Learning {
     pub(super) input_weights: Access,
     pub(super) recurrent_weights: Access,
     pub(super) output_weights: Access,
-    /// For each kind of weights, whether it uses random numbers in this clock cycle: weights from inputs, between
-    /// neurons, and to outputs.
+    /// For each of three kinds of weights (from inputs, between neurons, and to outputs), whether this clock cycle uses
+    /// random numbers for it.
     pub(super) draws: [bool; 3],
+    /// Slope of the surrogate gradient at the neuron's potential.
     slope: i8,
     signal: i16,
     regularised: u16,
@@ -228,8 +229,8 @@ impl Learning {
         self.neuron
     }
 
-    /// Advances the counters of learning. Stores the slope and the learning signal of the current neuron; the chip
-    /// holds these values for sixteen neurons at a time.
+    /// Advances the counters of learning. Stores the current neuron's slope of the surrogate gradient and its learning
+    /// signal. The chip holds these values for sixteen neurons at a time.
     pub(super) fn clock(&self, chip: &ReckOn, new: &mut Clocked, next: State) {
         let now = &chip.now;
         let only_outputs = chip.register(9) == 4;

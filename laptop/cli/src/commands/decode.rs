@@ -152,9 +152,10 @@ struct Decoding {
     is_single: bool,
     is_timed: bool,
     timeline: Timeline,
-    /// Index of the next sample to write. Samples that the encoder skipped have indices too.
+    /// Index of the next sample to write. Samples that the encoder skipped are counted, as they are written too (as
+    /// NaN).
     next: u64,
-    /// Number of samples before `next` that the encoder skipped because a value was missing.
+    /// Number of samples that the encoder skipped because a value was missing, among those with indices below `next`.
     skipped: u64,
     columns: Vec<Vec<f64>>,
     line: Vec<u8>,

@@ -83,8 +83,8 @@ impl OnChip for Quantised {
         if self.shared_keeps.0 > 0 {
             let (count, most) = self.shared_keeps;
             notes.push(format!(
-                "warning: {count} neurons or outputs leak otherwise than trained, by up to {most:.4} of the potential \
-                 a step: neurons keep 0.875 at least, two share a leak, all outputs have one"
+                "warning: {count} neurons leak otherwise than trained, by up to {most:.4} of the potential a step: \
+                 neurons keep 0.875 a tick at least, and two share a leak"
             ));
         }
         notes

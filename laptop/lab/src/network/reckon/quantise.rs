@@ -18,6 +18,8 @@ pub(super) const KEEP: f64 = 32_768.0;
 /// The integer that stands for an output's decay factor of 1. Each tick of the chip multiplies the output's potential
 /// by its decay factor.
 const OUTPUT_KEEP: f64 = 128.0;
+/// Largest difference between a neuron's decay factor of a step on the chip and the trained one that is not reported.
+const KEEP_TOLERANCE: f64 = 1e-4;
 /// Largest relative error of a leak of the chip's outputs. Beyond it, the driver leaks the outputs.
 const LEAK_TOLERANCE: f64 = 0.02;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
@@ -66,10 +68,9 @@ pub(super) struct Quantised {
     /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
     /// weights of the outputs.
     pub(super) changes: Vec<Change>,
-    /// Two figures about the differences between the leaks on the chip and the trained leaks. The first is the number
-    /// of neurons and outputs whose leak differs. The second is the largest difference between a decay factor on the
-    /// chip and the trained factor. Leaks differ because the two neurons of a pair have a common leak on the chip, and
-    /// all outputs have a common leak.
+    /// Number of neurons whose leak on the chip differs from the trained one, and the largest difference between the
+    /// two decay factors of a step. Leaks differ because the two neurons of a pair share one, and because a tick keeps
+    /// at least [`LEAST_KEEP`].
     pub(super) shared_keeps: (usize, f64),
 }
 
@@ -86,8 +87,9 @@ pub(super) struct Quantised {
 pub(super) struct Tick {
     /// Numbers of the inputs that fire before this tick in every step: biases, and gates that lower neurons.
     pub(super) always: Vec<u8>,
-    /// Numbers of the gates (which are inputs) that raise neurons before this tick. In the first step, only the gates
-    /// of the last tick fire: the neurons that the other gates raise have not been lowered yet.
+    /// Numbers of the gates (which are inputs) that raise neurons before this tick. In the first step, only the last
+    /// tick's gates fire, as only the neurons that they raise have been lowered by then: at the first tick. All other
+    /// neurons are lowered for the first time after they have been compared with their thresholds.
     pub(super) raises: Vec<u8>,
 }
 
@@ -116,7 +118,6 @@ impl Change {
     /// weight and its change to the statistics in `self`.
     fn weight(&mut self, weight: f64, scale: f64) -> i8 {
         let held = clipped(weight * scale) as i8;
-        self.clipped += usize::from(f64::from(held) != (weight * scale).round());
         self.held(weight, held, scale);
         held
     }
@@ -124,6 +125,7 @@ impl Change {
     /// Adds a weight to the statistics that the chip holds as the integer `held`.
     fn held(&mut self, weight: f64, held: i8, scale: f64) {
         self.weights += 1;
+        self.clipped += usize::from(clipped(weight * scale) != (weight * scale).round());
         self.vanished += usize::from(held == 0 && weight != 0.0);
         let change = f64::from(held) / scale - weight;
         self.sums[0] += weight * weight;
@@ -193,9 +195,10 @@ fn change(pair: &[Source], shifts: [u8; 2]) -> f64 {
 }
 
 /// Quantises a network for the chip. First chooses the left shifts of weights at which rounding changes the weights
-/// least. Then chooses, for each pair of neurons, the scale at which the pair's spikes are nearest to those in double
-/// precision; all other neurons are assumed to fire as in double precision. Calls `progress` with the number of
-/// finished neurons and the total number of neurons.
+/// least. Then chooses a scale for each pair of neurons: among those at which rounding changes the potentials least,
+/// the one with the smallest sum of two numbers: the distance of the spikes from those in double precision, and the
+/// mean squared error of the potentials. All other neurons are assumed to fire as in double precision. Calls `progress`
+/// with the number of finished neurons and the total number of neurons.
 ///
 /// # Errors
 /// Returns an error if the network does not fit the chip.
@@ -270,7 +273,7 @@ pub(super) fn quantise(
         network.pairs.push(ReckOnPair { keep: *keep, threshold: fires_at(*scale, at) as i16 });
         for (source, rounded) in pair.iter().zip(rounded) {
             network.put(source, rounded, *scale, shifts);
-            network.tell_keep(source.keep, (f64::from(*keep) / KEEP).powi(ticks as i32), 1e-4);
+            network.tell_keep(source.keep, (f64::from(*keep) / KEEP).powi(ticks as i32));
         }
     }
     network.put_bias(&pairs, &chosen, shifts[0]);
@@ -373,9 +376,8 @@ struct Chosen {
 }
 
 impl Chosen {
-    /// Chooses the scale at which a pair's spikes are nearest to those in double precision. The pair belongs to one
-    /// layer: `drives` are the spikes that act on the layer, and `fired` those that it fires. All other neurons are
-    /// assumed to fire as in double precision.
+    /// Chooses the scale of a pair, as [`quantise`] says. The pair belongs to one layer: `drives` are the spikes that
+    /// act on the layer, and `fired` those that it fires.
     fn new(
         pair: &[Source],
         drives: &[Drive],
@@ -390,7 +392,6 @@ impl Chosen {
         let most = scale(pair, shifts);
         let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
             .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))
-            .filter(|scale| fires_at(*scale, rule.fires) <= f64::from(i16::MAX))
             .map(|scale| {
                 let of = |(source, traces): (&Source, &Traces)| {
                     Rounded::new(source, traces, keep, scale, shifts, rule.ticks)
@@ -410,7 +411,7 @@ impl Chosen {
             (distance + error, Self { keep, scale, rounded: all })
         });
         let best = simulated.min_by(|(one, _), (other, _)| one.total_cmp(other));
-        best.map_or(Self { keep, scale: 1.0, rounded: vec![] }, |(_, chosen)| chosen)
+        best.expect("several scales are simulated").1
     }
 }
 
@@ -584,7 +585,8 @@ impl Quantised {
                     if source.layer % self.ticks.len() == tick && source.bias != 0.0 {
                         weights.push((self.places.of(source.layer, source.neuron), rounded.bias));
                         let scale = scale / f64::from(1 << shift);
-                        self.changes[source.layer].held(source.bias, rounded.bias, scale);
+                        let change = &mut self.changes[source.layer];
+                        change.held(rounded.exact_bias, rounded.bias, scale);
                     }
                 }
             }
@@ -647,16 +649,16 @@ impl Quantised {
         }
     }
 
-    fn tell_keep(&mut self, trained: f64, held: f64, tolerance: f64) {
+    fn tell_keep(&mut self, trained: f64, held: f64) {
         let (count, most) = &mut self.shared_keeps;
         let difference = (trained - held).abs();
-        *count += usize::from(difference > tolerance);
+        *count += usize::from(difference > KEEP_TOLERANCE);
         *most = most.max(difference);
     }
 
     /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
-    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are the
-    /// spikes of the last layer.
+    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are
+    /// the spikes of the last layer.
     fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>], fired: &[Vec<u16>]) {
         let Readout { name, weights, keep } = readout;
         let ticks = self.ticks.len();

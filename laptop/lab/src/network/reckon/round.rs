@@ -42,7 +42,8 @@ fn gates(gate: f64, more: f64, keep: u16, ticks: usize, shift: u8) -> (i32, i32)
 ///
 /// The weights are listed in this order: those of the inputs, the bias, and those of [`Source::recurrent`].
 pub(super) struct Traces {
-    /// If the neuron has gates, without the part that is the same in each step: the gates make up for it.
+    /// The products, by pairs of weights. If the neuron has gates, the part of each trace that is the same in every
+    /// step is left out, because the gates make up for it.
     products: Vec<Vec<f64>>,
     /// For each weight, the constant trace that is nearest to its trace, as a share of the trace of the bias.
     means: Vec<f64>,
@@ -50,7 +51,8 @@ pub(super) struct Traces {
 }
 
 impl Traces {
-    /// Maximum number of products to sum, by which the steps of long recordings are limited.
+    /// Limit of the work: the number of steps that are summed, times the number of products in a step. Of long
+    /// recordings only the first steps are summed, but at least 100.
     const WORK: usize = 20_000_000;
 
     pub(super) fn new(
@@ -109,6 +111,9 @@ impl Traces {
 pub(super) struct Rounded {
     pub(super) inputs: Vec<i8>,
     pub(super) bias: i8,
+    /// The bias that is rounded. If the neuron has no gates, it makes up for the potential that is lost because the
+    /// chip rounds down.
+    pub(super) exact_bias: f64,
     pub(super) recurrent: Vec<(usize, i8)>,
     /// Amounts by which gates lower and raise the neuron. Gates are inputs that keep the neuron from firing before its
     /// layer compares again. They also make up for the mean error of the other weights, and for the potential that is
@@ -170,6 +175,7 @@ impl Rounded {
         Self {
             inputs: inputs[..bias].iter().map(|weight| *weight as i8).collect(),
             bias: held[bias] as i8,
+            exact_bias: own,
             recurrent: source
                 .recurrent
                 .iter()

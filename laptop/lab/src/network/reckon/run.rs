@@ -63,6 +63,7 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
             let Some((layer, place)) = network.places.neurons[usize::from(neuron)] else {
                 return Err(ModelKind::StrayNeuron { neuron }.into());
             };
+            // A layer fires only at its own tick, unless a gate is too weak.
             if let Some(step) = step.checked_sub((layer + 1) / ticks.len())
                 && layer < read_out
                 && let Some(step) = ran.fired[layer].get_mut(step)

@@ -226,10 +226,10 @@ fn own_leaks(layer: &Layer, at: usize, shape: &Shape, choice: Choice) -> i32 {
 
 impl GatedNeuron {
     /// Runs the neuron on the spikes that act on it in `aim`, and returns the distance between the neuron's spikes and
-    /// the target of `aim`, plus the squared errors of its potentials in units of its threshold. (Of several neurons
-    /// with the same spikes, that with the nearest potentials is the most likely to suit other recordings.) `unit`
-    /// converts the chip's potentials to those units, and `threshold` is the trained one. Returns infinity as soon as
-    /// the result reaches `most`.
+    /// the target of `aim`, plus the squared errors of its potentials in units of its threshold, each step's at most 1.
+    /// (Of several neurons with the same spikes, that with the nearest potentials is the most likely to suit other
+    /// recordings.) `unit` converts the chip's potentials to those units, and `threshold` is the trained one. Returns
+    /// infinity as soon as the result reaches `most`.
     fn distance(&self, aim: &Aim, unit: f64, threshold: f64, most: f64) -> f64 {
         let mut distance = Distance::default();
         let (mut potential, mut first, mut errors) = (0_i32, 0, 0.0);

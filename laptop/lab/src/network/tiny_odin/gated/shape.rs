@@ -54,8 +54,8 @@ pub(super) struct Shape {
     pub share: Option<Share>,
 }
 
-/// Leaks at several heights, which together reduce a potential by a share of its value in each step. The height of a
-/// leak is the potential towards which the leak moves a neuron.
+/// Leaks that together reduce a potential by a share of its value in each step. Each leak moves a neuron's potential by
+/// a fixed amount towards another potential, which is the leak's *height*. The leaks of a step differ in height.
 ///
 /// The lowest leak acts first. The leaks below a potential move it down, each by an amount `a`. Then the leaks above
 /// the potential move it up, each by `a`. The heights of neighbouring leaks differ by `s`. From one leak below a
