@@ -175,6 +175,15 @@ fn fields_far_wider_than_their_range() {
     }
 }
 
+/// Fields that reach so far that their first bin would begin beyond 32 bits.
+#[test]
+fn fields_far_wider_than_16_bits() {
+    let x = [i16::MIN, -2, -1, 0, i16::MAX];
+    for beta in [1e-8, 1e-6, 1e-4] {
+        check_all(i16::MIN, i16::MAX, beta, &x);
+    }
+}
+
 /// Fields whose distances do not fit 32 bits, over a range whose distances do.
 #[test]
 fn wide_fields_over_a_short_range() {

@@ -87,7 +87,7 @@ impl Binary for f32 {
 }
 
 /// Whether the core divides in an instruction: every one but a Cortex-M0, which has no compare-and-swap either.
-const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
+pub(super) const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
 
 macro_rules! integer {
     // 16 digits of a range of 16 bits fit 32.

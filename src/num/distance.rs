@@ -48,7 +48,9 @@ pub(crate) trait Distance<S: Spaced>: Copy + PartialOrd {
 pub(crate) const fn even_bins<S: Sample>(origin: f64, width: f64, count: usize) -> EvenBins {
     match S::KIND {
         SampleKind::F32 => EvenBins::of_floats(origin, width),
-        _ => EvenBins::of_integers(origin, width, count),
+        // No value of 16 bits lies above this origin, and differences from it fit 32 bits.
+        SampleKind::Fixed16 { .. } => EvenBins::of_integers(origin.min(32_768.0), width, count),
+        SampleKind::Fixed32 { .. } => EvenBins::of_integers(origin, width, count),
     }
 }
 

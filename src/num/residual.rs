@@ -9,8 +9,8 @@ use super::{Nearer, Shortfall, Stored};
 pub(crate) trait Rated: Sized {
     type Residual: Residual;
 
-    /// How many pairs of a residual and a tap have distances whose sum fits 32 bits: in 16 bits each distance is less
-    /// than 2¹⁶ and the taps together.
+    /// Largest number of pairs whose sum of `|residual - tap|` fits 32 bits. In 16 bits a distance is at most 2¹⁶ plus the
+    /// taps' magnitudes: for 256 taps, 2¹⁶ + 2²³, and 256 of these are below 2³².
     const SHORT: usize = 0;
 
     /// `self - shift`. 32-bit fixed point is clamped so that no subtraction of taps overflows; `magnitude` is the

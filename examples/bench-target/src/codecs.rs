@@ -33,15 +33,16 @@ pub fn measure<S: Measured, const HALF: usize>(
         out,
         sample,
         source,
-        scaled: Scaled::new(Calibration::new()),
+        scaled: None,
         signal: [S::default(); LENGTH],
         spikes: [0; LENGTH],
     };
     counter.load();
     let mut calibration = Calibration::<S>::new();
     counter.signal.iter().for_each(|&sample| calibration.observe(sample));
-    counter.scaled = Scaled::new(calibration);
-    catalogue::count(&counter.scaled.clone(), &mut counter).map_err(|failure| {
+    let scaled = Scaled::new(calibration);
+    counter.scaled = Some(scaled);
+    catalogue::count(&scaled, &mut counter).map_err(|failure| {
         let _ = writeln!(counter.out, "{failure:?}");
         fmt::Error
     })
@@ -75,7 +76,8 @@ struct Counter<'a, S, W, const HALF: usize> {
     out: &'a mut W,
     sample: &'a str,
     source: Signal,
-    scaled: Scaled<S>,
+    /// Once the signal is known.
+    scaled: Option<Scaled<S>>,
     signal: [S; LENGTH],
     spikes: [i8; LENGTH],
 }
@@ -104,7 +106,7 @@ impl<S: Measured, W: Write, const HALF: usize> Counter<'_, S, W, HALF> {
 
     /// Returns the cost of the encoder in C and a digest of its spikes, if there is one.
     fn in_c(&mut self, codec: &str, taps: &[S]) -> Option<(Cost, u32)> {
-        let scaled = self.scaled;
+        let scaled = self.scaled?;
         let (signal, spikes) = self.slices();
         let cost = in_c::encode(codec, &scaled, taps, signal, spikes)?;
         Some((cost, self.digest()))

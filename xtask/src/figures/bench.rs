@@ -132,7 +132,7 @@ pub fn verify_stack() -> Result<()> {
 }
 
 /// Fails if small loops take other cycles than calculated, if anything takes more instructions on a core than it did,
-/// if 16-bit counts or plain C are passed by more than allowed, or if six channels take more than promised.
+/// if 16-bit counts or plain C are exceeded by more than allowed, or if six channels take more than promised.
 pub fn verify(core: &str) -> Result<()> {
     loops::verify(Board::with(core)?)?;
     let measured = measure(&[], &[core])?;
@@ -178,7 +178,7 @@ fn measure(programs: &[&str], cores: &[&str]) -> Result<Measured> {
             let one = run.join().unwrap_or_else(|_| bail!("its thread panicked"))?;
             measured.rows.extend(one.rows);
             measured.events.extend(one.events);
-            measured.rustc = one.rustc;
+            measured.compilers = one.compilers;
         }
         measured.group();
         Ok(measured)
@@ -197,10 +197,14 @@ fn boards(cores: &[&str]) -> Result<Vec<&'static Board>> {
 }
 
 fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Measured> {
-    let rustc = code::compiler(image)?;
+    let compilers = code::compilers(image)?;
     if [EVENTS, SETS].contains(&program) {
         let events = printed.lines().map(|line| Event::read(board, line));
-        return Ok(Measured { events: events.collect::<Result<_>>()?, rustc, rows: Vec::new() });
+        return Ok(Measured {
+            events: events.collect::<Result<_>>()?,
+            compilers,
+            rows: Vec::new(),
+        });
     }
     let (code, stack) = (Code::read(image)?, Stack::read(image)?);
     let row = |line: &str| {
@@ -229,5 +233,5 @@ fn read(board: &Board, program: &str, image: &Path, printed: &str) -> Result<Mea
         })
     };
     let rows = printed.lines().map(row).collect::<Result<Vec<_>>>()?;
-    Ok(Measured { rows, rustc, events: Vec::new() })
+    Ok(Measured { rows, compilers, events: Vec::new() })
 }

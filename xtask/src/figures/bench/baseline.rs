@@ -2,7 +2,7 @@
 
 use super::{
     figures::Row,
-    measured::Measured,
+    measured::{Compilers, Measured},
     slower::{self, Shares},
 };
 use crate::common::paths;
@@ -17,7 +17,7 @@ const ALLOWED: f64 = 1.05;
 
 #[derive(Serialize, Deserialize)]
 struct Baseline {
-    rustc: String,
+    compilers: Compilers,
     instructions_mean: BTreeMap<String, f64>,
     /// Codecs that take more than counts or plain C allow.
     above_bound: Shares,
@@ -40,7 +40,7 @@ fn key(row: &Row) -> String {
 
 pub fn write(measured: &Measured) -> Result<()> {
     let baseline = Baseline {
-        rustc: measured.rustc.clone(),
+        compilers: measured.compilers.clone(),
         instructions_mean: counts(measured),
         above_bound: slower::exceptions(&measured.rows),
     };
@@ -55,17 +55,21 @@ pub fn compare(core: &str, measured: &Measured) -> Result<()> {
         .context("no baseline; `cargo bench-target --baseline` writes it")?;
     let mut baseline: Baseline = serde_json::from_str(&file)?;
     baseline.instructions_mean.retain(|key, _| key.split(' ').next() == Some(core));
+    baseline.above_bound.retain(|key, _| key.split(' ').nth(1) == Some(core));
     let above = slower::unlisted(&measured.rows, &baseline.above_bound);
     let grown = above + differences(&baseline.instructions_mean, &counts(measured));
     if grown == 0 {
         println!("No count of {} has grown by more than 5 %.", baseline.instructions_mean.len());
         println!("All bounds hold but {} that the baseline lists.", baseline.above_bound.len());
-    } else if baseline.rustc == measured.rustc {
+    } else if baseline.compilers == measured.compilers {
         bail!("{grown} counts have grown by more than 5 %, are gone, or are above a bound");
     } else {
-        let (then, now) = (&baseline.rustc, &measured.rustc);
-        println!("{grown} counts have grown. No failure, as the compiler is another:");
-        println!("  baseline {then}\n  here     {now}");
+        println!("{grown} counts have grown. No failure, as a compiler is another:");
+        for (whose, Compilers { rustc, gcc }) in
+            [("baseline", &baseline.compilers), ("here    ", &measured.compilers)]
+        {
+            println!("  {whose} {rustc}, {gcc}");
+        }
     }
     Ok(())
 }

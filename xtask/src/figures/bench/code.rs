@@ -1,6 +1,6 @@
 //! Measures the size of a codec's code, from the image's symbols and its disassembly.
 
-use super::listing;
+use super::{listing, measured::Compilers};
 use crate::common::shell;
 use anyhow::{Context, Result};
 use std::{
@@ -64,12 +64,14 @@ fn function(line: &str) -> Option<(u32, Function)> {
     counts.then(|| (address, Function { bytes, ..Function::default() }))
 }
 
-/// Returns `rustc version 1.96.0 (…)`, as the compiler wrote it into the image.
-pub fn compiler(image: &Path) -> Result<String> {
+/// Returns `rustc version 1.96.0 (…)`, as the compiler wrote it into the image, and the first line of GCC's version.
+pub fn compilers(image: &Path) -> Result<Compilers> {
     let mut readelf = shell::command("arm-none-eabi-readelf");
     let comment = shell::output(readelf.args(["-p", ".comment"]).arg(image))?;
     let line = comment.lines().find_map(|line| line.find("rustc").map(|at| line[at..].to_owned()));
-    line.context("the image does not say which compiler made it")
+    let rustc = line.context("the image does not say which compiler made it")?;
+    let gcc = shell::output(shell::command("arm-none-eabi-gcc").arg("--version"))?;
+    Ok(Compilers { rustc, gcc: gcc.lines().next().unwrap_or_default().to_owned() })
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ pub struct Row {
     pub stack_bound_bytes: Option<u32>,
 }
 
-/// Energy of a cycle in nJ: what a data sheet has for code in flash, times the voltage. An STM32F405's (DS8626) 238 µA a
+/// Energy of a cycle in nJ: the data sheet's current for code in flash, times the voltage. An STM32F405's (DS8626) 238 µA a
 /// MHz at 168 MHz, its accelerator on and its peripherals off, at 3.3 V; an nRF51822's (PS v3.1) 275 µA a MHz at 3 V.
 pub const ENERGY: [(&str, f64); 2] = [("M4F", 0.238 * 3.3), ("M0", 0.275 * 3.0)];
 

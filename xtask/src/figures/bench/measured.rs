@@ -1,13 +1,21 @@
 //! Everything that one run has counted.
 
 use super::{events::Event, figures::Row};
+use serde::{Deserialize, Serialize};
 
-/// The figures, and the compiler that built the programs.
+/// The compilers that built the programs, as they name themselves: Rust's, and that of plain C.
+#[derive(Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Compilers {
+    pub rustc: String,
+    pub gcc: String,
+}
+
+/// The figures, and what built the programs.
 #[derive(Default)]
 pub struct Measured {
     pub rows: Vec<Row>,
     pub events: Vec<Event>,
-    pub rustc: String,
+    pub compilers: Compilers,
 }
 
 impl Measured {
