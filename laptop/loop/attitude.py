@@ -42,8 +42,9 @@ MOST = 7
 #: The digit that the inputs of far turns count, each of whose spikes is NEARBY steps.
 COARSE = 3
 NEARBY = 3**COARSE
-#: The digit of a tilt that corrects the yaw, and the threshold of the relays. Digit 4 is 18°, and 0 for tilts below 9°. By the
-#: formula the threshold is 354; half of it flies best, as it makes up for small tilts.
+#: The digit of a tilt that corrects the yaw, and the threshold of the relays. Digit 4 is 1 for tilts of 9 to 27° only: from 27
+#: to 45° it is -1, so that the yaw is moved the wrong way, and from 45 to 63° it is 0. By the formula the threshold is 354; half
+#: of it flies best, as it makes up for small tilts.
 TILT, CROSS = 4, 177
 
 #: First inputs of each kind, up before down: gyroscopes by axis, accelerometers ahead and aside, wanted turns by axis, the rate
