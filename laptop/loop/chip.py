@@ -72,7 +72,12 @@ class Network:
         self.thresholds = np.ceil(self.nodes["neurons"].v_threshold).astype(int)
         self.worth = self.nodes["worth"].weight
         layout = Layout()
-        for own, laid_out in [(self.inputs, layout.inputs), (self.recurrent, layout.recurrent), (self.worth, layout.worth)]:
+        for own, laid_out in [
+            (self.inputs, layout.inputs),
+            (self.recurrent, layout.recurrent),
+            (self.thresholds, layout.thresholds),
+            (self.worth, layout.worth),
+        ]:
             if not np.array_equal(own, laid_out):
                 raise SystemExit(f"{NETWORK.name} is not what attitude.py lays out")
 
