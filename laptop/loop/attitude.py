@@ -10,9 +10,10 @@ ternary digits, -1, 0 or 1 times a power of three. Eight neurons keep a digit:
 - Two *answers*, one for 1 and one for -1, are set along with these. A question, sent once a sample, makes those that are set
   fire and sets them again. They are outputs.
 
-Other neurons are relays: a gyroscope's spike passes one to be an output itself, which makes the rate; four an axis count
-numbers back to 0 within some 1 / FADES samples, so that over minutes the accelerometer says what is level; two correct the yaw by
-what a roll and a pitch make together.
+Other neurons are relays: a gyroscope's spike passes one to be an output itself, which makes the rate; four each for roll and
+pitch count the number back to 0 within some 1 / FADES samples, so that over minutes the accelerometer says what is level; 16 are
+set with a digit of roll or pitch and asked by the turns of the other, and by their spikes two more correct the yaw by what a roll
+and a pitch make together.
 
 The last layer of the graph says what a spike of each neuron is worth, in rad/s² for a sample. It is the microcontroller's.
 """

@@ -30,9 +30,9 @@ from network_flies import LONG, Flown, check
 from network_pilot import Encoder, Networked
 from world import CRAZYFLIE, Drone, World
 
-#: What a spike of each signal is worth, in its unit times a sample: the number's steps, and those of a lean that the
-#: accelerometer moves by `network_pilot.FADES`.
+#: Force times samples, in m/s², by which the accelerometer moves a number by one step: STEP * 9.81 / FADES.
 LEAN = 96.0
+#: What a spike of each signal is worth, in its unit times a sample.
 THRESHOLD = np.array([*(step / DT for step in STEP), LEAN, LEAN, LEAN, *STEP, STEP[0] / DT], np.float32)
 #: The most spikes of a signal in a sample.
 MOST = 127

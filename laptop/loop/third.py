@@ -53,7 +53,7 @@ def model(mass: float, step: float) -> mujoco.MjModel:
             velocities="".join(f'<velocimeter site="{at}"/>' for at in range(4)),
         )
     )
-    # The text may not have them: about the third axis they are 1 % more than a body of that mass can have.
+    # MuJoCo refuses them in the text: Izz is 1 % more than Ixx + Iyy, which no rigid body's can exceed.
     made.body_inertia[1] = P["Ixx"], P["Iyy"], P["Izz"]
     mujoco.mj_setConst(made, mujoco.MjData(made))
     return made
