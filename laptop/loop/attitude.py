@@ -10,9 +10,10 @@ ternary digits, -1, 0 or 1 times a power of three. Eight neurons keep a digit:
 - Two *answers*, one for 1 and one for -1, are set along with these. A question, sent once a sample, makes those that are set
   fire and sets them again. They are outputs.
 
-Other neurons are relays: a gyroscope's spike passes one to be an output itself, which makes the rate; four an axis count
-numbers back to 0 within some 1 / FADES samples, so that over minutes the accelerometer says what is level; two correct the yaw by
-what a roll and a pitch make together.
+Other neurons are relays: a gyroscope's spike passes one to be an output itself, which makes the rate; four each for roll and
+pitch count the number back to 0 within some 1 / FADES samples, so that over minutes the accelerometer says what is level; 16 are
+set with a digit of roll or pitch and asked by the turns of the other, and by their spikes two more correct the yaw by what a roll
+and a pitch make together.
 
 The last layer of the graph says what a spike of each neuron is worth, in rad/s² for a sample. It is the microcontroller's.
 """
@@ -42,8 +43,9 @@ MOST = 7
 #: The digit that the inputs of far turns count, each of whose spikes is NEARBY steps.
 COARSE = 3
 NEARBY = 3**COARSE
-#: The digit of a tilt that corrects the yaw, and the threshold of the relays. Digit 4 is 18°, and 0 for tilts below 9°. By the
-#: formula the threshold is 354; half of it flies best, as it makes up for small tilts.
+#: The digit of a tilt that corrects the yaw, and the threshold of the relays. Digit 4 is 1 for tilts of 9 to 27° only: from 27
+#: to 45° it is -1, so that the yaw is moved the wrong way, and from 45 to 63° it is 0. By the formula the threshold is 354; half
+#: of it flies best, as it makes up for small tilts.
 TILT, CROSS = 4, 177
 
 #: First inputs of each kind, up before down: gyroscopes by axis, accelerometers ahead and aside, wanted turns by axis, the rate

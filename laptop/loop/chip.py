@@ -26,13 +26,13 @@ from brushless import Brushless
 from control import Control, F
 from flight import Registers
 from manoeuvres import ALL, Manoeuvre
-from network_flies import LONG, Flown, check
+from network_flies import LONG, Flown, check, mean
 from network_pilot import Encoder, Networked
 from world import CRAZYFLIE, Drone, World
 
-#: What a spike of each signal is worth, in its unit times a sample: the number's steps, and those of a lean that the
-#: accelerometer moves by `network_pilot.FADES`.
+#: Force times samples, in m/s², by which the accelerometer moves a number by one step: STEP * 9.81 / FADES.
 LEAN = 96.0
+#: What a spike of each signal is worth, in its unit times a sample.
 THRESHOLD = np.array([*(step / DT for step in STEP), LEAN, LEAN, LEAN, *STEP, STEP[0] / DT], np.float32)
 #: The most spikes of a signal in a sample.
 MOST = 127
@@ -72,7 +72,12 @@ class Network:
         self.thresholds = np.ceil(self.nodes["neurons"].v_threshold).astype(int)
         self.worth = self.nodes["worth"].weight
         layout = Layout()
-        for own, laid_out in [(self.inputs, layout.inputs), (self.recurrent, layout.recurrent), (self.worth, layout.worth)]:
+        for own, laid_out in [
+            (self.inputs, layout.inputs),
+            (self.recurrent, layout.recurrent),
+            (self.thresholds, layout.thresholds),
+            (self.worth, layout.worth),
+        ]:
             if not np.array_equal(own, laid_out):
                 raise SystemExit(f"{NETWORK.name} is not what attitude.py lays out")
 
@@ -121,7 +126,7 @@ def follow(row, potentials, thresholds, recurrent):
 class Chip:
     """The network on tinyODIN's model, in a process of its own: an event in, the neurons that fire out."""
 
-    #: The chip's clocks of each sample, and the most of an event.
+    #: The clocks of each start and sample of all chips, and the most of an event.
     clocks: list[int] = []
     longest = 0
 
@@ -142,6 +147,7 @@ class Chip:
             )
             # By the first answer, the files are read.
             self.fired = self.ask([START])
+        self.before = len(self.clocks)
         self.compare(self.plain.fired)
 
     def ask(self, events: list[int]) -> list[list[int]]:
@@ -158,7 +164,7 @@ class Chip:
 
     def compare(self, expected: list[list[int]]) -> None:
         if self.fired != expected:
-            raise SystemExit(f"sample {len(self.clocks)}: the chip fires {self.fired}, the graph {expected}")
+            raise SystemExit(f"sample {len(self.clocks) - self.before}: the chip fires {self.fired}, the graph {expected}")
 
     def step(self, events: list[int]) -> np.ndarray:
         """How often each neuron fires in a sample; the graph's neurons must fire in the same events and order."""
@@ -211,10 +217,6 @@ def flown(manoeuvre: Manoeuvre, make) -> list[flight.Flight]:
 
 #: All that have flown on the chip.
 HELD: list[Held] = []
-
-
-def mean(flights: list[flight.Flight]) -> float:
-    return float(np.mean([own.errors.mean() for own in flights if not own.lost]))
 
 
 def main(program: str) -> None:

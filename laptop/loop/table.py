@@ -292,7 +292,7 @@ def main(arguments: list[str]) -> None:
     kept = json.loads(VERDICTS.read_text()) if VERDICTS.exists() else {}
     if "--third" in options:
         for name in names:
-            print(third_row(name, rounded(third(found.get(name))), kept["banks"], kept["third"]), end="")
+            print(third_row(name, rounded(third(found[name] if name != CONTROL else None)), kept["banks"], kept["third"]), end="")
         return
     if "--no-vibration" in options:
         for name in names or all_banks:

@@ -5,7 +5,7 @@ import json
 import brushless
 import numpy as np
 import spikewire as sw
-from attitude import ACCEL, ASK, FAR, GYRO, NEARBY, SET, STEP, TURN, WANTED, Layout
+from attitude import ACCEL, ASK, FADE, FAR, GYRO, NEARBY, SET, STEP, TURN, WANTED, Layout
 from banks import banks
 from brushless import Brushless
 from chip import Network, Plain, counted
@@ -13,6 +13,7 @@ from codes import Coded, schemes
 from controllers import CONTROLLERS
 from flight import LowPass, Registers, fly
 from manoeuvres import ALL
+from network_pilot import FADES
 from table import CONTROL, VERDICTS, compared, in_rotorpy, verdicts
 from third import Third
 from vibration import BAND, LINES, NOISE, Vibration
@@ -134,15 +135,37 @@ def test_the_chips_network_counts():
         if (abs(expected) > [900, 900, 38]).any():
             continue
         plain.event(event)
-        answers = counted([plain.event(ASK)], len(plain.potentials))
-        told = np.rint(plain.network.worth @ answers / (np.array(TURN) * STEP)).astype(int)
-        assert np.array_equal(told[:2], expected[:2]) and abs(told[2] - expected[2]) <= 1, (event, told, expected)
-        numbers, yawed = told, yawed + int(told[2] != expected[2])
+        own = told(plain)
+        assert np.array_equal(own[:2], expected[:2]) and abs(own[2] - expected[2]) <= 1, (event, own, expected)
+        numbers, yawed = own, yawed + int(own[2] != expected[2])
         for up, down, answer in (digit for axis in layout.digits for digit in axis):
             value = plain.potentials[up : up + 3]
             assert sorted(value) == [0, 0, SET] and np.array_equal(value, plain.potentials[down : down + 3])
             assert np.array_equal(value[::-2], plain.potentials[answer : answer + 2])
     assert yawed > 20
+
+
+def test_the_chips_network_corrects_the_yaw_and_fades():
+    """A pitch on top of a roll turns the yaw, by its sign. Within 1 / FADES samples a number comes about half the way to 0."""
+    roll, pitch, pitch_down = [WANTED] * 46, [WANTED + 2] * 81, [WANTED + 3] * 81
+    for own, expected in (
+        (roll + pitch, [46, 81, 3]),
+        (roll + pitch_down, [46, -81, -3]),
+        (pitch + roll, [46, 81, -1]),
+        ([FAR] * 10, [270, 0, 0]),
+        ([FAR] * 10 + [ASK, FADE, FADE + 1] * round(1 / FADES), [140, 0, 0]),
+        ([FAR + 1] * 10 + [ASK, FADE, FADE + 1] * round(1 / FADES), [-140, 0, 0]),
+    ):
+        plain = Plain(Network())
+        for event in own:
+            plain.event(event)
+        assert np.array_equal(told(plain), expected), (told(plain), expected)
+
+
+def told(plain: Plain) -> np.ndarray:
+    """What the chip's network answers, as numbers of steps."""
+    answers = counted([plain.event(ASK)], len(plain.potentials))
+    return np.rint(plain.network.worth @ answers / (np.array(TURN) * STEP)).astype(int)
 
 
 if __name__ == "__main__":

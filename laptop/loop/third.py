@@ -25,7 +25,7 @@ THRUST, YAW, WAYS = P["k_eta"], P["k_m"], P["rotor_directions"]
 #: A body of the drone's mass. At each rotor a sensor of velocity, three forces, and a moment about the rotor's axis.
 MODEL = """
 <mujoco>
-  <option timestep="{step}" gravity="0 0 -9.81"/>
+  <option gravity="0 0 -9.81"/>
   <worldbody>
     <body name="drone">
       <freejoint/>
@@ -40,20 +40,19 @@ MODEL = """
 """
 
 
-def model(mass: float, step: float) -> mujoco.MjModel:
+def model(mass: float) -> mujoco.MjModel:
     """The drone of this mass, in kg."""
     text = lambda numbers: " ".join(map(repr, map(float, numbers)))
     gears = ["1 0 0 0 0 0", "0 1 0 0 0 0", "0 0 1 0 0 0", "0 0 0 0 0 1"]
     made = mujoco.MjModel.from_xml_string(
         MODEL.format(
-            step=step,
             mass=mass,
             sites="".join(f'<site name="{at}" pos="{text(place)}"/>' for at, place in enumerate(PLACES)),
             forces="".join(f'<general site="{at}" gear="{gear}"/>' for at in range(4) for gear in gears),
             velocities="".join(f'<velocimeter site="{at}"/>' for at in range(4)),
         )
     )
-    # The text may not have them: about the third axis they are 1 % more than a body of that mass can have.
+    # MuJoCo refuses them in the text: Izz is 1 % more than Ixx + Iyy, which no rigid body's can exceed.
     made.body_inertia[1] = P["Ixx"], P["Iyy"], P["Izz"]
     mujoco.mj_setConst(made, mujoco.MjData(made))
     return made
@@ -65,7 +64,7 @@ class Third(World):
     drone = CRAZYFLIE
 
     def __init__(self, mass: float = 1.0, weak: float = 1.0):
-        self.model = model(P["mass"] * mass, SUBSTEP)
+        self.model = model(P["mass"] * mass)
         self.data = mujoco.MjData(self.model)
         # Windows on MuJoCo's own memory: the rotors' velocities, the body's turn, and the forces.
         self.places = self.data.sensordata[6:], self.data.xmat[1], self.data.ctrl

@@ -54,9 +54,10 @@ pub struct AdviseRequest {
     pub recordings: Vec<Recording>,
     /// Sample type of the codecs.
     pub sample: SampleType,
-    /// Largest RMSE that the control loop tolerates, in the signal's unit. `None` stands for a fifth of the signal's
-    /// standard deviation. If `loop_bandwidth` is given as well, it is at most the usual error of the parameters with which
-    /// the simulated drone flew, on channels whose names tell their unit.
+    /// Largest RMSE that the control loop tolerates, in the signal's unit. It applies as given. With `None` it is a fifth
+    /// of the signal's standard deviation; if `loop_bandwidth` is given and the channel's name is that of a gyroscope or
+    /// accelerometer, it is also at most the RMSE, without the largest twentieth of the errors, of the parameters with
+    /// which the simulated drone flew.
     pub max_rmse: Option<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
@@ -123,6 +124,10 @@ pub struct Advice {
     is_cut_short: bool,
     /// Largest latency that the control loop tolerates, in samples. `None` if the bandwidth of the loop is unknown.
     loop_latency: Option<f64>,
+    /// The channel of an inertial sensor that this is, if no scheme may be coarser on it than it flew: in a control loop,
+    /// without an RMSE of the user's.
+    #[serde(skip)]
+    flown: Option<Inertial>,
     /// Bytes a second that the raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,
     #[serde(skip)]
@@ -259,9 +264,11 @@ impl Advice {
                 return Err(RequestKind::NotAboveZero.of(Given::new("loop_bandwidth", bandwidth)));
             }
         };
+        let is_limited = loop_latency.is_some() && request.max_rmse.is_none();
         Ok(Self {
             objection,
             loop_latency,
+            flown: Inertial::named(&recording.name).filter(|_| is_limited),
             max_rmse: request.max_rmse.unwrap_or(PART * look.deviation),
             reaching: Vec::new(),
             others: Vec::new(),
@@ -330,7 +337,12 @@ impl Advice {
         let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
         let whole = Stretch::whole(recording);
         let cut = Cut { name: recording.name.clone(), train, held_out, whole };
-        let max_rmse = self.allowed(request, scheme, recording);
+        let max_rmse = match self.allowed(scheme, recording) {
+            Ok(rmse) => rmse,
+            Err(error) => {
+                return Ok(Tuning::Missed(format!("cannot code it as it flew: {error}")));
+            }
+        };
         let delay = filtered.map_or(0.0, |own| own.delay);
         let borne = self.loop_latency.map(|borne| borne - delay);
         let latencies = [request.max_latency, borne].into_iter().flatten();
@@ -349,8 +361,9 @@ impl Advice {
                     format!("has a latency of {} samples", best.costs.latency)
                 }
                 _ => format!(
-                    "comes to {} at the nearest of {} settings",
+                    "comes to {}, allowed {}, at the nearest of {} settings",
                     short(best.tally.rmse()),
+                    short(max_rmse),
                     found.evaluated
                 ),
             };
@@ -360,7 +373,8 @@ impl Advice {
         let row = Row::new(&problem, &cut, &found, best, None)?;
         if let Some(held_out) = row.held_out.filter(|own| own.rmse > MARGIN * max_rmse) {
             return missed(format!(
-                "reaches it where it is tuned only: {} on held-out blocks",
+                "reaches {} where it is tuned only: {} on held-out blocks",
+                short(max_rmse),
                 short(held_out.rmse)
             ));
         }
@@ -384,15 +398,15 @@ impl Advice {
 
     /// Returns the largest RMSE that a scheme's settings may have on a filtered recording. In a control loop, they may
     /// be no coarser than the parameters that flew, unless the user says how coarse they may be.
-    fn allowed(&self, request: &AdviseRequest, scheme: Scheme, recording: &Recording) -> f64 {
-        if request.max_rmse.is_some() || self.loop_latency.is_none() {
-            return self.max_rmse;
-        }
-        let asked =
-            Inertial::named(&recording.name).and_then(|channel| flown::parameters(scheme, channel));
-        let trial =
-            asked.and_then(|asked| Trial::new(scheme, &asked, request.sample, recording).ok());
-        trial.map_or(self.max_rmse, |trial| usual_rmse(recording, &trial).min(self.max_rmse))
+    ///
+    /// # Errors
+    /// Returns an error if the recording cannot be coded with the parameters that flew.
+    fn allowed(&self, scheme: Scheme, recording: &Recording) -> Result<f64> {
+        let Some(asked) = self.flown.and_then(|channel| flown::parameters(scheme, channel)) else {
+            return Ok(self.max_rmse);
+        };
+        let trial = Trial::new(scheme, &asked, self.sample, recording)?;
+        Ok(usual_rmse(recording, &trial).min(self.max_rmse))
     }
 
     /// Returns the low-pass filter that stood before the scheme's encoder in the simulated flights. Returns `None` if
@@ -420,13 +434,13 @@ impl Advice {
 
     /// Returns the reason that no scheme is advised.
     pub fn why_not(&self) -> String {
-        self.objection.clone().unwrap_or_else(|| {
-            format!(
-                "{}: no scheme comes within an RMSE of {}",
-                self.look.name,
-                short(self.max_rmse)
-            )
-        })
+        self.objection.clone().unwrap_or_else(|| format!("{}: {}", self.look.name, self.none()))
+    }
+
+    /// Says that no scheme comes near enough.
+    fn none(&self) -> String {
+        let flown = if self.flown.is_some() { "as near as it flew and " } else { "" };
+        format!("no scheme comes {flown}within an RMSE of {}", short(self.max_rmse))
     }
 
     /// Formats the advice as text for people.
@@ -469,7 +483,7 @@ impl Advice {
         if let Some(best) = self.reaching.first() {
             lines.extend(self.reasons(best));
         } else if self.objection.is_none() {
-            lines.push(format!("  no scheme comes within an RMSE of {}", short(self.max_rmse)));
+            lines.push("  ".to_owned() + &self.none());
         }
         // With several channels, the page of the bank lists the schemes that did not fly, and the channels' pages leave
         // them out.
@@ -522,7 +536,7 @@ impl Advice {
                 row.costs.instructions()
             ),
             format!(
-                "    {} bytes a second on the link, where samples take {raw}: the fewest of {} schemes within an RMSE of {}{flown}; {next}",
+                "    {} bytes a second on the link, where samples take {raw}: the fewest of {} schemes that come near enough, this one within an RMSE of {}{flown}; {next}",
                 bytes(best),
                 self.reaching.len(),
                 short(best.max_rmse)

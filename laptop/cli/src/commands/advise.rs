@@ -45,7 +45,8 @@ pub(crate) struct Advise {
     #[arg(long, default_value_t)]
     sample: SampleType,
     /// Largest RMSE that the control loop tolerates, in the signal's unit; default: a fifth of the signal's standard
-    /// deviation, and with --loop-bandwidth at most the RMSE of the parameters with which simulated drones flew
+    /// deviation, and with --loop-bandwidth, on channels named as gyroscopes or accelerometers, at most the RMSE of the
+    /// parameters with which simulated drones flew
     #[arg(long, value_name = "RMSE", value_parser = lab::input::above_zero)]
     max_rmse: Option<f64>,
     /// Maximum delay of the code, in samples

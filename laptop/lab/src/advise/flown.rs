@@ -116,31 +116,47 @@ pub(crate) struct Inertial {
 }
 
 impl Inertial {
-    /// Returns the group and unit of the channel `name`. Returns `None` if the name tells neither a gyroscope nor an
-    /// accelerometer, or if the unit is unknown.
+    /// Returns the group and unit of the channel `name`. Returns `None` if the name tells neither an axis of a gyroscope
+    /// nor one of an accelerometer, or if the unit is unknown. The axis is `x`, `y`, `z`, `0`, `1` or `2` at the end of
+    /// the name, before the unit if there is one; `MAVLink` writes it first, as in `xgyro`.
     pub(crate) fn named(name: &str) -> Option<Self> {
         const RATES: [&str; 5] =
             ["gyr", "angular_velocity", "angular_rate", "rotation_rate", "body_rate"];
         const FORCES: [&str; 3] = ["acc", "linear_acceleration", "specific_force"];
-        /// Milli-g in 1 m/s².
-        const MILLI_G: f64 = 1000.0 / 9.806_65;
+        /// Words of units.
+        const UNITS: [&str; 9] = ["rad", "deg", "dps", "m", "s", "s2", "s²", "g", "mg"];
+        /// 1 g in m/s².
+        const G: f64 = 9.806_65;
         let name = name.to_ascii_lowercase();
         let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
-        let ends = |ends: &[&str]| ends.iter().any(|end| name.ends_with(end));
+        let words = || name.split(|own: char| !own.is_alphanumeric());
         let is_rate = has(&RATES);
-        if !is_rate && !has(&FORCES) || has(&["accsmooth"]) {
+        if !is_rate && !has(&FORCES) || has(&["accsmooth", "raw_imu"]) {
             return None;
         }
-        let unit = if has(&["deg", "gyroadc", "gyrounfilt"]) {
+        let last = words().rfind(|own| !own.is_empty() && !UNITS.contains(own))?;
+        let is_mavlink = matches!(last, "xgyro" | "ygyro" | "zgyro" | "xacc" | "yacc" | "zacc");
+        let mut letters = last.chars();
+        let letter = if is_mavlink { letters.next() } else { letters.next_back() };
+        let is_along_thrust = match letter? {
+            'x' | 'y' | '0' | '1' => false,
+            'z' | '2' => true,
+            _ => return None,
+        };
+        let is_word = |unit: &str| words().any(|own| own == unit);
+        let unit = if has(&["highres_imu", "hil_sensor"]) {
+            1.0
+        } else if is_rate && has(&["deg", "dps", "gyroadc", "gyrounfilt"]) {
             180.0 / std::f64::consts::PI
-        } else if ends(&["xgyro", "ygyro", "zgyro"]) {
-            1000.0
-        } else if ends(&["xacc", "yacc", "zacc"]) {
-            MILLI_G
+        } else if is_rate {
+            if is_mavlink { 1000.0 } else { 1.0 }
+        } else if is_mavlink || is_word("mg") {
+            1000.0 / G
+        } else if is_word("g") {
+            1.0 / G
         } else {
             1.0
         };
-        let is_along_thrust = name.contains("_z_") || ends(&["z", "[2]", "zacc"]);
         Some(Self { group: if is_rate { 0 } else { 1 + usize::from(is_along_thrust) }, unit })
     }
 }
@@ -249,8 +265,23 @@ mod tests {
         assert_eq!(of("sensor_combined.accelerometer_m_s2[0]"), Some((1, 1.0)));
         assert_eq!(of("AccZ"), Some((2, 1.0)));
         assert_eq!(of("zacc"), Some((2, 102.0)));
-        assert_eq!(of("accSmooth[2]"), None);
-        assert_eq!(of("baro"), None);
+        assert_eq!(of("gyro_x_dps"), Some((0, 57.0)));
+        assert_eq!(of("gyro_x [deg/s]"), Some((0, 57.0)));
+        assert_eq!(of("SCALED_IMU.xgyro"), Some((0, 1000.0)));
+        assert_eq!(of("HIGHRES_IMU.xgyro"), Some((0, 1.0)));
+        assert_eq!(of("HIL_SENSOR.zacc"), Some((2, 1.0)));
+        assert_eq!(Inertial::named("acc_z_g"), Some(Inertial { group: 2, unit: 1.0 / 9.806_65 }));
+        for name in [
+            "accSmooth[2]",
+            "baro",
+            "RAW_IMU.xgyro",
+            "GPS_RAW_INT.h_acc",
+            "GPS.HAcc",
+            "AHRS.accel_weight",
+            "accelerometer_m_s2",
+        ] {
+            assert_eq!(of(name), None, "{name}");
+        }
     }
 
     #[test]
