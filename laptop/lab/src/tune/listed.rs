@@ -5,7 +5,7 @@
 use super::problem::{Goal, most_spikes};
 use super::search::{BATCH, Run};
 use super::space::Space;
-use super::{Scored, Stretch};
+use super::{Over, Scored, Stretch};
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
@@ -34,12 +34,16 @@ impl Run<'_> {
     /// Lists the number of spikes and the error at all thresholds, for every combination of integer parameters. Scores
     /// the best of these outcomes with the codec, until the whole search has scored `until` settings. Returns whether
     /// the search is over. The search goes on if the scheme cannot list outcomes, if the user fixed the threshold, the
-    /// step, the factor or the start value, or if settings close to the best outcomes may be better, because the codec
-    /// rounds and the list does not.
+    /// step, the factor or the start value, if the error on the worst flight counts, or if settings close to the best
+    /// outcomes may be better, because the codec rounds and the list does not.
     pub(super) fn exactly(&mut self, space: &Space, until: usize) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];
         if decides.iter().any(|name| problem.fixed.get(name).is_some()) {
+            return false;
+        }
+        // The list knows only the error over all flights.
+        if problem.over == Over::Worst {
             return false;
         }
         let Some((combinations, mut all)) = self.listed(space) else { return false };
