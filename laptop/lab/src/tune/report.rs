@@ -3,7 +3,7 @@
 use super::RequestKind;
 use super::problem::{Goal, Tally};
 use super::search::Found;
-use super::{Bound, Costs, Figures, Problem, Scored, Stretch};
+use super::{Bound, Costs, Figures, Over, Problem, Scored, Stretch};
 use crate::Result;
 use crate::brief::{brief, json, short};
 use catalogue::run::{Asked, SampleType, Settings, Words};
@@ -149,6 +149,11 @@ impl Row {
         }
         if problem.scheme.info().drifts() {
             flags.push(DRIFTS.to_owned());
+        }
+        if problem.over == Over::Worst
+            && problem.train.chunk_by(|a, b| a.flight == b.flight).count() == 1
+        {
+            flags.push("tuned on one log only: there is no other whose error may be larger".to_owned());
         }
         flags.extend(found.bounds.iter().map(Bound::words));
         let judged = self.held_out.as_ref().unwrap_or(&self.tuned_on);
