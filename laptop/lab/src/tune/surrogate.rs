@@ -6,6 +6,9 @@ const NOISE: (f64, f64) = (1e-6, 0.3);
 /// Lengths of the kernel, in deviations of the points along an axis: the smallest, the likeliest, the largest.
 const LENGTHS: (f64, f64, f64) = (0.1, 3.0, 60.0);
 
+/// Deviation below which values count as equal, as a share of their size.
+const EQUAL: f64 = 1e-9;
+
 /// A fitted model.
 pub(super) struct Surrogate {
     /// Mean and deviation of the points along each axis, by which points are scaled.
@@ -61,12 +64,13 @@ impl Surrogate {
     ) -> Option<Self> {
         let axes = hyper.lengths.len();
         let (mean, deviation) = moments(values.iter().copied());
-        if deviation == 0.0 {
+        let least = EQUAL * mean.abs().max(1.0);
+        if !deviation.is_finite() || deviation <= least {
             return None;
         }
         let scales: Vec<(f64, f64)> = (0..axes)
             .map(|axis| moments(points.iter().map(|point| point[axis])))
-            .map(|(mean, deviation)| (mean, if deviation > 0.0 { deviation } else { 1.0 }))
+            .map(|(mean, deviation)| (mean, if deviation > EQUAL { deviation } else { 1.0 }))
             .collect();
         let points: Vec<Vec<f64>> = points.iter().map(|point| scaled(point, &scales)).collect();
         let targets: Vec<f64> = values.iter().map(|value| (value - mean) / deviation).collect();
@@ -210,6 +214,29 @@ mod tests {
             within += usize::from(error.abs() < 3.0 * deviation);
         }
         assert!((squares / 100.0_f64).sqrt() < 0.05 && within >= 90, "{squares} {within}");
-        assert!(Surrogate::fit(&points, &[1.0; 60], &mut hyper, true).is_none());
+        // The mean of sixty times 0.1 is not 0.1.
+        for equal in [[1.0; 60], [0.1; 60], [f64::NAN; 60]] {
+            assert!(Surrogate::fit(&points, &equal, &mut hyper, true).is_none(), "{equal:?}");
+        }
+    }
+
+    /// An axis along which all points are equal, up to rounding, does not change what a model predicts between them.
+    #[test]
+    fn an_axis_with_one_value_is_left_out() {
+        let mut chance = Chance::new(1);
+        let drawn: Vec<f64> = (0..60).map(|_| chance.part()).collect();
+        let values: Vec<f64> = drawn.iter().map(|own| (3.0 * own).sin()).collect();
+        let predicted = |rest: &[f64]| {
+            let points = drawn.iter().map(|own| [&[*own], rest].concat());
+            let points: Vec<Vec<f64>> = points.collect();
+            let points: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
+            let mut hyper = Hyper::new(1 + rest.len());
+            let model = Surrogate::fit(&points, &values, &mut hyper, false).unwrap();
+            // Beside the axis's only value, by little.
+            let beside = rest.iter().map(|own| own + 1e-6);
+            model.at(&[0.5].into_iter().chain(beside).collect::<Vec<_>>())
+        };
+        let ((mean, deviation), (one, own)) = (predicted(&[1.0 / 3.0]), predicted(&[]));
+        assert!((mean - one).abs() < 1e-6 && (deviation - own).abs() < 1e-6, "{mean} {one}");
     }
 }
