@@ -131,7 +131,7 @@ impl<'a> Guided<'a> {
         let (before, count) = (self.centre, points.len());
         for (point, own) in points.into_iter().zip(scored) {
             let value = own.as_ref().map(|own| self.problem.value(self.goal, own));
-            let value = value.unwrap_or(f64::INFINITY);
+            let value = value.filter(|own| !own.is_nan()).unwrap_or(f64::INFINITY);
             let modelled = own.as_ref().map(|own| {
                 let square = self.problem.mean_square(&own.tally).max(f64::MIN_POSITIVE);
                 [(1.0 + own.tally.spikes as f64).ln(), square.ln()]

@@ -46,7 +46,9 @@ pub struct TuneRequest {
     pub evaluations: usize,
     /// Seconds after which the search stops. If this limit ends the search, the result depends on the machine's speed.
     pub seconds: Option<f64>,
-    /// Seed of the search: the same seed and number of settings give the same result on every machine.
+    /// Seed of the search: the same seed and number of settings give the same result however busy a machine is and
+    /// however many cores it has. Another operating system or processor may round logarithms differently, and then the
+    /// result differs.
     pub seed: u64,
     /// Whether to search even if a recording is unfit for tuning: only noise, too short, full of holes, or clipped.
     pub anyway: bool,

@@ -227,7 +227,7 @@ mod tests {
         let drawn: Vec<f64> = (0..60).map(|_| chance.part()).collect();
         let values: Vec<f64> = drawn.iter().map(|own| (3.0 * own).sin()).collect();
         let predicted = |rest: &[f64]| {
-            let points = drawn.iter().map(|own| [&[*own], rest].concat());
+            let points = drawn.iter().map(|own| [&[*own][..], rest].concat());
             let points: Vec<Vec<f64>> = points.collect();
             let points: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
             let mut hyper = Hyper::new(1 + rest.len());
