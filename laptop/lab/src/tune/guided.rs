@@ -58,6 +58,8 @@ pub(super) struct Guided<'a> {
     best: usize,
     /// Index in `known` of the point around which most points are tried.
     centre: usize,
+    /// Indices in `known` of the best points, filled at the start of a round.
+    good: Vec<usize>,
     /// Former centres.
     left: Vec<usize>,
     step: f64,
@@ -84,6 +86,7 @@ impl<'a> Guided<'a> {
             keys: HashSet::new(),
             best: 0,
             centre: 0,
+            good: Vec::new(),
             left: Vec::new(),
             step: STEPS.1,
             round: 0,
@@ -102,6 +105,7 @@ impl<'a> Guided<'a> {
         }
         if points.is_empty() && !self.known.is_empty() {
             self.round += 1;
+            self.good = self.best_points();
             let near = self.models(true);
             let far = self.models(false);
             for slot in 0..together {
@@ -218,13 +222,19 @@ impl<'a> Guided<'a> {
         best.map_or_else(|| self.near(self.best, STEPS.2), |(_, point)| point)
     }
 
-    /// Draws one of the best points: one in eight of all points is among them.
-    fn good(&mut self) -> usize {
+    /// Returns the indices of the best known points: the best eighth, or the best 8 if these are more.
+    fn best_points(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.known.len()).collect();
         let count = (order.len() / 8).max(8).min(order.len());
         let value = |own: usize| self.known[own].value;
-        order.select_nth_unstable_by(count - 1, |a, b| value(*a).total_cmp(&value(*b)));
-        order[self.chance.below(count)]
+        order.sort_unstable_by(|a, b| value(*a).total_cmp(&value(*b)).then(a.cmp(b)));
+        order.truncate(count);
+        order
+    }
+
+    /// Draws the index of one of the best known points.
+    fn good(&mut self) -> usize {
+        self.good[self.chance.below(self.good.len())]
     }
 
     /// Moves one of the good points towards the best, and by the difference of two others, as differential evolution
