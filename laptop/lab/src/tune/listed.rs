@@ -55,6 +55,7 @@ impl Run<'_> {
         let in_order = self.in_order(samples);
         all.sort_by(|a, b| in_order(&a.0).total_cmp(&in_order(&b.0)));
         let mut chosen: Vec<(Outcome, usize)> = all.iter().take(best).copied().collect();
+        let is_fitted = all.iter().any(|(own, _)| own.apart != own.squares);
         unbeaten(&mut all);
         let stride = all.len().div_ceil((most - best).max(1)).max(1);
         chosen.extend(all.iter().step_by(stride));
@@ -70,8 +71,6 @@ impl Run<'_> {
         }
         // A step that is fitted to these stretches scores too well on them. The list is sorted by the error to expect
         // on other stretches, so its first allowed setting is the best.
-        let is_fitted = |(own, _): &(Outcome, usize)| own.apart != own.squares;
-        let is_fitted = chosen.first().is_some_and(is_fitted);
         if is_fitted && matches!(problem.goal, Goal::LeastError(_)) {
             self.found.best = first.or_else(|| self.found.best.take());
         }
