@@ -101,7 +101,7 @@ fn a_search_that_ran_out_of_time_is_reported() {
 
 /// The blocks for tuning hold square waves, and the held-out blocks hold sine waves. Settings with a few large steps
 /// fit only the square waves. The paper's settings fit both, but give more spikes. The report still warns that the
-/// found settings fit only the blocks for tuning.
+/// found settings fit only what they were tuned on.
 #[test]
 fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
     let before = |block: usize| (block as f64 * 0.3 + 0.35).floor();
@@ -118,7 +118,7 @@ fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
         "tune {log} --column x --rate 100 --anyway --scheme sf --min-efficiency 97 {SHORT}"
     );
     let report = good(&sf, "").output;
-    assert!(report.contains("fits its own blocks: from them to those held out"), "{report}");
+    assert!(report.contains("fits what it was tuned on: from there to what was held out"), "{report}");
     let steps = good(&sf.replace("--scheme sf", "--scheme tbr"), "").output;
     assert!(steps.contains("not to be relied on in another flight"), "{steps}");
 }
@@ -138,7 +138,7 @@ fn all_blocks_are_coded_within_the_flight_and_drift_is_reported() {
         let notes = row["notes"].to_string();
         assert_eq!(notes.contains("drifts: the errors of all its steps"), drifts, "{notes}");
         let grown = number(&row, "/held_out/rmse") / number(&row, "/tuned_on/rmse");
-        assert_eq!(notes.contains("times the RMSE on held-out blocks"), grown > 1.5, "{notes}");
+        assert_eq!(notes.contains("times the RMSE on what was held out"), grown > 1.5, "{notes}");
         assert!(scheme != "mw" || grown < 2.0, "{row:#}");
     }
 }

@@ -59,7 +59,8 @@ impl TuneRequest {
     pub const EVALUATIONS: usize = 4000;
 
     /// Makes a request to tune `schemes` on `logs`, in `f32`. The goal is the least error at the efficiency of the
-    /// paper's settings. The recordings are cut into 20 blocks, 30 % of which are held out.
+    /// paper's settings. Of several logs 30 % are held out; a single log is cut into 20 blocks, 30 % of which are held
+    /// out.
     pub fn new(logs: Vec<Vec<Recording>>, schemes: Vec<Scheme>) -> Self {
         Self {
             logs,
