@@ -118,7 +118,10 @@ fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
         "tune {log} --column x --rate 100 --anyway --scheme sf --min-efficiency 97 {SHORT}"
     );
     let report = good(&sf, "").output;
-    assert!(report.contains("fits what it was tuned on: from there to what was held out"), "{report}");
+    assert!(
+        report.contains("fits what it was tuned on: from there to what was held out"),
+        "{report}"
+    );
     let steps = good(&sf.replace("--scheme sf", "--scheme tbr"), "").output;
     assert!(steps.contains("not to be relied on in another flight"), "{steps}");
 }

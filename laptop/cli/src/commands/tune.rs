@@ -84,13 +84,13 @@ pub(crate) struct Tune {
     /// Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
-    /// Share that is held out, 0 for none: of the logs or, if there is only one, of its blocks
+    /// Share to hold out, of the logs or, if there is only one, of its blocks; 0 holds out nothing
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
     /// Number of blocks of equal length into which a single log is cut
     #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
-    /// Count the error of the log on which it is largest, instead of the error over all logs
+    /// Reduce the error on the log where it is largest, instead of the error over all logs
     #[arg(long, help_heading = "Search")]
     worst_flight: bool,
     /// Stop after this many seconds in total, and keep the best settings found by then. With this limit, the result

@@ -19,13 +19,13 @@ pub enum Goal {
     Front,
 }
 
-/// How the errors of several flights count in a search.
+/// The error that a search reduces if there are several flights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Over {
     /// The mean of the squared errors over all samples.
     #[default]
     Mean,
-    /// The mean of the squared errors of the flight on which it is largest.
+    /// The largest mean squared error of a single flight.
     Worst,
 }
 
@@ -51,7 +51,7 @@ pub struct Tally {
     pub spikes: usize,
     /// Sum of the squared errors.
     pub squares: f64,
-    /// Mean of the squared errors of the flight on which it is largest.
+    /// The largest mean squared error of a single flight.
     pub worst: f64,
     /// The duration of the samples in seconds, if the rate is known.
     pub seconds: Option<f64>,
@@ -434,13 +434,11 @@ mod tests {
         let limits = Limits::default();
         let known = (Goal::LeastError(80.0), &limits, "M4F");
         let scheme = Scheme::named("sf").unwrap();
-        let mut problem =
-            Problem::new(scheme, SampleType::F32, &Asked::default(), &train, known);
+        let mut problem = Problem::new(scheme, SampleType::F32, &Asked::default(), &train, known);
         let mut options = Asked::default();
         options.set("threshold", 0.1);
-        let score = |stretches: &[Stretch]| {
-            problem.tally(&options, SampleType::F32, stretches).unwrap().0
-        };
+        let score =
+            |stretches: &[Stretch]| problem.tally(&options, SampleType::F32, stretches).unwrap().0;
         let [calm, lively] = [score(&train[..1]).rmse(), score(&train[1..]).rmse()];
         let both = score(&train);
         assert!(lively > 2.0 * calm, "{calm} {lively}");

@@ -153,7 +153,9 @@ impl Row {
         if problem.over == Over::Worst
             && problem.train.chunk_by(|a, b| a.flight == b.flight).count() == 1
         {
-            flags.push("tuned on one log only: there is no other whose error may be larger".to_owned());
+            flags.push(
+                "tuned on one log only: there is no other whose error may be larger".to_owned(),
+            );
         }
         flags.extend(found.bounds.iter().map(Bound::words));
         let judged = self.held_out.as_ref().unwrap_or(&self.tuned_on);
@@ -167,10 +169,7 @@ impl Row {
             ));
         }
         let Some(held_out) = &self.held_out else {
-            flags.push(
-                "nothing was held out: the figures are of what it was tuned on"
-                    .to_owned(),
-            );
+            flags.push("nothing was held out: the figures are of what it was tuned on".to_owned());
             return flags;
         };
         match problem.goal {

@@ -16,7 +16,7 @@ pub struct Stretch {
     pub rate: Option<f64>,
     /// Index ranges of the samples that are scored, in order and disjoint.
     pub scored: Vec<Range<usize>>,
-    /// Number of the flight that the samples are from.
+    /// Index of the log that the samples are from.
     pub flight: usize,
 }
 
