@@ -40,7 +40,7 @@ class Tuned:
         kind = schemes[name]
         #: What flies: the parameters found, for `start` or where a signal begins the default.
         self.scheme: Scheme = kind._of(dict(options), sample)
-        #: Figures on the blocks tuned on, on those held out, and on the whole; costs; notes of what speaks against it.
+        #: Figures on what it was tuned on, on what was held out, and on the whole; costs; notes of what speaks against it.
         self.figures: dict[str, Any] = json.loads(figures)
         self._comments = comments
 
@@ -93,10 +93,10 @@ def tune(
     least RMSE at the efficiency of the paper's settings. With `scheme` ``"all"`` it is a list, the best first.
 
     `rate`: samples a second. `max_ram` in bytes a channel, `max_instructions` a sample on `core`, `max_latency` in
-    samples and `max_rate` in events a second limit what may be found. A part `hold_out` is kept back to score on: of the
-    signals or, if there is only one, of its `blocks`. With `worst_flight` the error on the signal with the largest one
-    counts, instead of the error over all. It scores `evaluations` settings; the same number and `seed` give the same result, unless it is cut short
-    after so many `seconds`.
+    samples and `max_rate` in events a second limit what may be found. `hold_out` is the share to hold out and score
+    on: of the signals or, if there is only one, of its `blocks`. With `worst_flight` the search reduces the largest error
+    on a single signal instead of the error over all. It scores `evaluations` settings; the same number and `seed` give
+    the same result, unless it is cut short after so many `seconds`.
     What is not given is as in ``spikewire tune``. `kept` are parameters that stay as given.
     """
     of_one = scheme != "all"

@@ -113,7 +113,7 @@ mod info {
         Ok(told)
     }
 
-    /// The kind of a search, its bounds, and its words.
+    /// Returns the kind of a search, its bounds and, for a search over words, the words.
     fn search(own: Search) -> (&'static str, f64, f64, Vec<&'static str>) {
         let (kind, low, high) = match own {
             Search::Words(words) => {

@@ -1,17 +1,20 @@
 """Compares `spikewire.tune` with SciPy's differential evolution and optuna's TPE at equal numbers of settings.
 
-Six signals through every code that has parameters to search, with 100, 300 and 1000 settings. All three minimise the RMSE
+Signals, six unless told, through every code that has parameters to search, with 100, 300 and 1000 settings. All three minimise the RMSE
 at an efficiency that random settings reach, and all search between the bounds of the catalogue. The settings found are also
 scored on the next flight, which none of them has seen.
 
-    python tune_peers.py RESULTS.json SEED LOG:CHANNEL,CHANNEL… [LOG:CHANNEL…]... [--only CODE]...
+    python tune_peers.py RESULTS.json SEED LOG:CHANNEL,CHANNEL… [LOG:CHANNEL…]... [--only CODE]... [--skip CODE]...
+        [--signals COUNT] [--tpe SETTINGS]
 
+TPE, which takes long, ends after `--tpe` settings; larger budgets are then compared with what it found until there.
 The seed draws the signals out of the logs' channels, the stretches of them and the efficiencies. The peers' results are
 kept in the JSON file and not computed again. Needs the package `spikewire`, SciPy and optuna. Prints a row for each problem
 and budget, and for each code the median over the signals. Ends with status 1 if a code's median is above 1.01 of the better
 peer, if a search is worse with more settings than with fewer, or if the median of all next flights is above 1.01.
 """
 
+import argparse
 import json
 import math
 import os
@@ -23,7 +26,6 @@ import numpy as np
 import spikewire as sw
 
 BUDGETS = [100, 300, 1000]
-SIGNALS = 6
 SAMPLES = 1000
 SHAPES = ["triang", "hann", "gauss"]
 
@@ -154,25 +156,25 @@ def parzen(objective, seed):
     study.optimize(trial, n_trials=objective.budget)
 
 
-def peers(space, x, goal, seed):
-    """The best point of each peer by budget, with its RMSE."""
+def peers(space, x, goal, seed, most):
+    """The best point of each peer by budget, with its RMSE. TPE scores at most `most` settings."""
     found = {"de": {}, "tpe": {}}
     for budget in BUDGETS:
         objective = Objective(space, x, goal, budget)
         evolution(objective, seed)
         found["de"][str(budget)] = objective.trace[-1]
-    objective = Objective(space, x, goal, BUDGETS[-1])
+    objective = Objective(space, x, goal, min(BUDGETS[-1], most))
     parzen(objective, seed)
     for budget in BUDGETS:
-        found["tpe"][str(budget)] = objective.trace[budget - 1]
+        found["tpe"][str(budget)] = objective.trace[min(budget, most) - 1]
     return found
 
 
-def signals(logs, rng):
-    """Six signals, each of a drawn channel: a stretch to tune on, and one of the next flight."""
+def signals(logs, rng, count):
+    """This many signals, each of a drawn channel: a stretch to tune on, and one of the next flight."""
     channels = [(log, own) for log, names in logs for own in names]
     picked = [channels[place] for place in rng.permutation(len(channels))]
-    for log, channel in (picked * SIGNALS)[:SIGNALS]:
+    for log, channel in (picked * count)[:count]:
         x = sw.read(log, channel, skip_non_finite=True).x[0]
         x = x[np.isfinite(x)]
         # A flight's rest at its ends says little.
@@ -208,13 +210,17 @@ def tuned(space, x, goal, budget, seed):
 
 def main():
     """Runs all problems, prints their rows, and says whether the goal is reached."""
-    arguments, only = sys.argv[1:], []
-    while "--only" in arguments:
-        place = arguments.index("--only")
-        only.append(arguments.pop(place + 1))
-        arguments.pop(place)
-    results, seed, *logs = arguments
-    logs = [(own.rsplit(":", 1)[0], own.rsplit(":", 1)[1].split(",")) for own in logs]
+    parser = argparse.ArgumentParser()
+    parser.add_argument("results")
+    parser.add_argument("seed", type=int)
+    parser.add_argument("logs", nargs="+")
+    parser.add_argument("--only", action="append", default=[])
+    parser.add_argument("--skip", action="append", default=[])
+    parser.add_argument("--signals", type=int, default=6)
+    parser.add_argument("--tpe", type=int, default=BUDGETS[-1])
+    options = parser.parse_args()
+    results, seed, only = options.results, options.seed, options.only
+    logs = [(own.rsplit(":", 1)[0], own.rsplit(":", 1)[1].split(",")) for own in options.logs]
     kept = {}
     if os.path.exists(results):
         with open(results) as file:
@@ -222,16 +228,16 @@ def main():
     print("| signal | code | goal % | settings | DE | TPE | tune | to the better | next flight | s |")
     print("|---|---|--:|--:|--:|--:|--:|--:|--:|--:|")
     ratios, unseen, less = {}, [], []
-    for name, x, following in signals(logs, np.random.default_rng(int(seed))):
+    for name, x, following in signals(logs, np.random.default_rng(seed), options.signals):
         for code in sw.schemes:
             space = Space(code, x)
-            if not space.box or only and code not in only:
+            if not space.box or only and code not in only or code in options.skip:
                 continue
             key = f"{seed} {name} {code}"
             if key not in kept:
-                goal = goal_of(space, x, np.random.default_rng(int(seed)))
+                goal = goal_of(space, x, np.random.default_rng(seed))
                 start = time.time()
-                kept[key] = {"goal": goal, **peers(space, x, goal, int(seed))}
+                kept[key] = {"goal": goal, **peers(space, x, goal, seed, options.tpe)}
                 print(f"{key}: peers took {time.time() - start:.1f} s", file=sys.stderr, flush=True)
                 with open(results, "w") as file:
                     json.dump(kept, file)
@@ -239,7 +245,7 @@ def main():
             for budget in BUDGETS:
                 others = [kept[key][peer][str(budget)] for peer in ("de", "tpe")]
                 start = time.time()
-                own, count, scheme = tuned(space, x, goal, budget, int(seed))
+                own, count, scheme = tuned(space, x, goal, budget, seed)
                 seconds = time.time() - start
                 better = min(others, key=lambda other: other[0])
                 ratio = own / better[0] if own < math.inf or better[0] < 1e5 else 1.0

@@ -101,7 +101,7 @@ fn a_search_that_ran_out_of_time_is_reported() {
 
 /// The blocks for tuning hold square waves, and the held-out blocks hold sine waves. Settings with a few large steps
 /// fit only the square waves. The paper's settings fit both, but give more spikes. The report still warns that the
-/// found settings fit only the blocks for tuning.
+/// found settings fit only what they were tuned on.
 #[test]
 fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
     let before = |block: usize| (block as f64 * 0.3 + 0.35).floor();
@@ -118,7 +118,10 @@ fn an_overfit_is_reported_although_the_papers_settings_have_more_spikes() {
         "tune {log} --column x --rate 100 --anyway --scheme sf --min-efficiency 97 {SHORT}"
     );
     let report = good(&sf, "").output;
-    assert!(report.contains("fits its own blocks: from them to those held out"), "{report}");
+    assert!(
+        report.contains("fits what it was tuned on: from there to what was held out"),
+        "{report}"
+    );
     let steps = good(&sf.replace("--scheme sf", "--scheme tbr"), "").output;
     assert!(steps.contains("not to be relied on in another flight"), "{steps}");
 }
@@ -138,7 +141,7 @@ fn all_blocks_are_coded_within_the_flight_and_drift_is_reported() {
         let notes = row["notes"].to_string();
         assert_eq!(notes.contains("drifts: the errors of all its steps"), drifts, "{notes}");
         let grown = number(&row, "/held_out/rmse") / number(&row, "/tuned_on/rmse");
-        assert_eq!(notes.contains("times the RMSE on held-out blocks"), grown > 1.5, "{notes}");
+        assert_eq!(notes.contains("times the RMSE on what was held out"), grown > 1.5, "{notes}");
         assert!(scheme != "mw" || grown < 2.0, "{row:#}");
     }
 }
@@ -283,32 +286,38 @@ fn several_logs_are_tuned_on_together() {
     );
 }
 
-/// With `--worst-flight`, the flight with the largest error decides: a calm flight and a lively one are tuned to a smaller
-/// error on the lively one than by the mean, or to the same.
+/// With `--worst-flight`, the flight with the largest error decides: of a long calm flight and a short lively one, the
+/// error on the lively one becomes smaller than if the error over both is reduced.
 #[test]
 fn the_worst_flight_decides() {
-    let table_of = |size: f64| {
+    let table_of = |size: f64, samples: i32| {
         let value = |place: i32| {
             let place = f64::from(place);
             size * ((place * 0.05).sin() + (place * 0.31).sin())
         };
-        table(&(0..800).map(value).collect::<Vec<_>>())
+        table(&(0..samples).map(value).collect::<Vec<_>>())
     };
-    let (_first, calm) = file("a.csv", table_of(0.2));
-    let (_second, lively) = file("b.csv", table_of(2.0));
-    let tuned = |more: &str| {
-        let tune = format!("{calm} {lively} --channel x --rate 100 --scheme asf --hold-out 0");
-        row(&format!("{tune} --min-efficiency 80 {SHORT} {more}"))["parameters"].clone()
-    };
-    let error = |parameters: &Value| {
-        let of = |name: &str| parameters[name].to_string();
-        let settings =
-            ["threshold", "doublings", "run"].map(|name| format!("--{name} {}", of(name)));
-        let scored = ran!("score --json --column x --scheme asf {} {lively}", settings.join(" "));
-        number(&scored.json(), "/0/rmse")
-    };
-    let (mean, worst) = (error(&tuned("")), error(&tuned("--worst-flight")));
-    assert!(worst <= mean * 1.01, "{worst} {mean}");
+    let (_first, calm) = file("a.csv", table_of(0.2, 8000));
+    let (_second, lively) = file("b.csv", table_of(2.0, 400));
+    for (scheme, names) in
+        [("asf", &["threshold", "doublings", "run"][..]), ("tbr", &["threshold", "step"])]
+    {
+        let tune = format!("{calm} {lively} --channel x --rate 100 --scheme {scheme} {SHORT}");
+        let tune = format!("{tune} --min-efficiency 80");
+        let error = |more: &str| {
+            let parameters = row(&format!("{tune} --hold-out 0 {more}"))["parameters"].clone();
+            let settings = names.iter().map(|name| format!("--{name} {}", parameters[name]));
+            let settings = settings.collect::<Vec<_>>().join(" ");
+            let scored = ran!("score --json --column x --scheme {scheme} {settings} {lively}");
+            number(&scored.schemes()[0], "/rmse")
+        };
+        let (mean, worst) = (error(""), error("--worst-flight"));
+        eprintln!("{scheme} {worst} {mean}");
+        assert!(worst < mean, "{scheme}: {worst} {mean}");
+        // One of the two is held out.
+        let notes = row(&format!("{tune} --worst-flight"))["notes"].to_string();
+        assert!(notes.contains("tuned on one log only"), "{notes}");
+    }
 }
 
 /// A log is refused, with the reason, if it is noise, constant, too short, never in the air, clipped, or full of gaps.

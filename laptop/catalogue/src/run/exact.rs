@@ -90,8 +90,9 @@ pub fn above(low: f64, high: f64) -> f64 {
 }
 
 /// Lists all outcomes of a code that spikes if a sample's distance from its past is above the threshold, whatever was
-/// sent before. Each piece is coded by itself, from its first sample. Takes time `n log n` for `n` samples: between a
-/// threshold and the next lower one a single sample begins to spike, which raises or lowers all counts from it on.
+/// sent before. Each piece is coded by itself, from its first sample. Takes time `n log n` for `n` samples,
+/// times the number of scored ranges if the step is free: between a threshold and the next lower one a single sample
+/// begins to spike, which raises or lowers all counts from it on.
 pub fn outcomes(pieces: &[Piece], distances: &[Vec<f64>], is_step_free: bool) -> Outcomes {
     let ranges: usize = pieces.iter().map(|own| own.scored.len()).sum();
     let is_apart = is_step_free && ranges > 1;

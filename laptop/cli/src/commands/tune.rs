@@ -32,8 +32,8 @@ use std::time::Instant;
 /// Search a scheme's parameters for a goal: the least RMSE at a given spiking efficiency, the greatest efficiency at a
 /// given RMSE, or the Pareto front of both.
 ///
-/// The spiking efficiency is 100 less the number of spikes for every 100 samples. Some blocks of each log are held out,
-/// and the settings found are scored on these blocks too. Settings are scored with the encoder and decoder that run on
+/// The spiking efficiency is 100 less the number of spikes for every 100 samples. Of several logs, some are held out; of a
+/// single log, some blocks. The settings found are scored on what is held out, too. Settings are scored with the encoder and decoder that run on
 /// the drone, in the sample type of --sample. Settings are tuned on all logs together. Parameters that are given stay
 /// fixed; the others are searched. The default goal is the least RMSE at the efficiency that the settings of Dupeyroux
 /// et al. (2022) reach.
@@ -84,13 +84,13 @@ pub(crate) struct Tune {
     /// Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core, help_heading = "Limits")]
     core: String,
-    /// Share that is held out, 0 for none: of the logs or, if there is only one, of its blocks
+    /// Share to hold out, of the logs or, if there is only one, of its blocks; 0 holds out nothing
     #[arg(long, value_name = "PART", default_value_t = 0.3, help_heading = "Search")]
     hold_out: f64,
     /// Number of blocks of equal length into which a single log is cut
     #[arg(long, default_value_t = 20, value_parser = whole::<usize>, help_heading = "Search")]
     blocks: usize,
-    /// Count the error of the log on which it is largest, instead of the error over all logs
+    /// Reduce the error on the log where it is largest, instead of the error over all logs
     #[arg(long, help_heading = "Search")]
     worst_flight: bool,
     /// Stop after this many seconds in total, and keep the best settings found by then. With this limit, the result

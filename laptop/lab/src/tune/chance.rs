@@ -1,4 +1,5 @@
-//! Random numbers from a seed, equal on every machine.
+//! Random numbers from a seed. Those of a normal distribution may differ in the last digits between platforms, which
+//! round logarithms and cosines differently.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

@@ -1,9 +1,9 @@
 //! A search that a model guides. Of many candidates, the search scores the one from which a model of the points so far
 //! promises the largest improvement.
 //!
-//! Most points lie around a centre, by steps that grow with success and shrink without. A centre whose steps have
-//! become small is left, in turn for the best point so far and for a good point elsewhere. No step depends on the
-//! budget. Therefore a search with a larger budget scores the settings of a smaller one first, and is never worse.
+//! Most points lie around a centre, by steps that grow with success and shrink without. A centre is left when its steps
+//! have become small. The next centre is by turns a good point elsewhere and the best point so far. No step depends on
+//! the budget. Therefore a search with a larger budget scores the settings of a smaller one first, and is never worse.
 
 use super::Stretch;
 use super::chance::Chance;
@@ -13,8 +13,9 @@ use super::surrogate::{Hyper, Surrogate};
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
-/// Number of points that are scored at once, and how many of them the models choose, by the number of points known. A
-/// model takes about a millisecond for a point, and helps most while few points are known.
+/// Sizes of a batch. An entry applies while fewer points are known than its first number; the second is the number of
+/// points scored at once, the third how many of them the models choose. A model takes about a millisecond for a point,
+/// and helps most while few points are known.
 const TOGETHER: [(usize, usize, usize); 3] = [(300, 4, 3), (1000, 8, 4), (usize::MAX, 16, 2)];
 /// Number of candidates of which a model chooses one.
 const CANDIDATES: usize = 50;
@@ -22,8 +23,8 @@ const CANDIDATES: usize = 50;
 const MODELLED: usize = 60;
 /// Number of batches after which the models' parameters are fitted again.
 const REFIT: usize = 4;
-/// Deviation of points around the centre, as a share of an axis: the value at which a centre is left, the first value,
-/// and the maximum.
+/// Deviation of points around the centre, as a share of an axis: the smallest, below which the centre is left; the
+/// first; the largest.
 const STEPS: (f64, f64, f64) = (2e-3, 0.15, 0.3);
 /// Distance on an axis, as a share of the axis, within which a point belongs to a centre that was left.
 const SAME: f64 = 0.05;
@@ -49,15 +50,17 @@ pub(super) struct Guided<'a> {
     space: &'a Space,
     goal: Goal,
     chance: Chance,
-    /// The points with which the search starts, and that are not scored yet.
+    /// Starting points that are not scored yet.
     first: Vec<Vec<f64>>,
     known: Vec<Known>,
-    /// The points in `known`, as bits.
+    /// All points that `ask` has proposed, as bits.
     keys: HashSet<Vec<u64>>,
     /// Index in `known` of the best point.
     best: usize,
     /// Index in `known` of the point around which most points are tried.
     centre: usize,
+    /// Indices in `known` of the best points, filled at the start of a round.
+    good: Vec<usize>,
     /// Former centres.
     left: Vec<usize>,
     step: f64,
@@ -84,6 +87,7 @@ impl<'a> Guided<'a> {
             keys: HashSet::new(),
             best: 0,
             centre: 0,
+            good: Vec::new(),
             left: Vec::new(),
             step: STEPS.1,
             round: 0,
@@ -102,6 +106,7 @@ impl<'a> Guided<'a> {
         }
         if points.is_empty() && !self.known.is_empty() {
             self.round += 1;
+            self.good = self.best_points();
             let near = self.models(true);
             let far = self.models(false);
             for slot in 0..together {
@@ -131,7 +136,7 @@ impl<'a> Guided<'a> {
         let (before, count) = (self.centre, points.len());
         for (point, own) in points.into_iter().zip(scored) {
             let value = own.as_ref().map(|own| self.problem.value(self.goal, own));
-            let value = value.unwrap_or(f64::INFINITY);
+            let value = value.filter(|own| !own.is_nan()).unwrap_or(f64::INFINITY);
             let modelled = own.as_ref().map(|own| {
                 let square = self.problem.mean_square(&own.tally).max(f64::MIN_POSITIVE);
                 [(1.0 + own.tally.spikes as f64).ln(), square.ln()]
@@ -181,8 +186,8 @@ impl<'a> Guided<'a> {
         }
     }
 
-    /// Marks a point as known and returns it, with whole numbers and words moved to the middle of their part of the
-    /// axis. Returns `None` if the point was known already.
+    /// Moves whole numbers and words of a point to the exact value that they stand for. Returns `None` if this point was
+    /// proposed before; otherwise remembers and returns it.
     fn unknown(&mut self, point: Vec<f64>) -> Option<Vec<f64>> {
         let point = self.space.settled(point);
         self.keys.insert(key(&point)).then_some(point)
@@ -218,17 +223,23 @@ impl<'a> Guided<'a> {
         best.map_or_else(|| self.near(self.best, STEPS.2), |(_, point)| point)
     }
 
-    /// Draws one of the best points: one in eight of all points is among them.
-    fn good(&mut self) -> usize {
+    /// Returns the indices of the best known points: the best eighth, or the best 8 if these are more.
+    fn best_points(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.known.len()).collect();
         let count = (order.len() / 8).max(8).min(order.len());
         let value = |own: usize| self.known[own].value;
-        order.select_nth_unstable_by(count - 1, |a, b| value(*a).total_cmp(&value(*b)));
-        order[self.chance.below(count)]
+        order.sort_unstable_by(|a, b| value(*a).total_cmp(&value(*b)).then(a.cmp(b)));
+        order.truncate(count);
+        order
     }
 
-    /// Moves one of the good points towards the best, and by the difference of two others, as differential evolution
-    /// does, and then around that place.
+    /// Draws the index of one of the best known points.
+    fn good(&mut self) -> usize {
+        self.good[self.chance.below(self.good.len())]
+    }
+
+    /// Draws a point as differential evolution does: a good point, moved half the way to the best and by half the
+    /// difference of two other good points, with a small random step added.
     fn mixed(&mut self) -> Vec<f64> {
         let [own, a, b] = std::array::from_fn(|_| self.good());
         let at = |place: usize, axis: usize| self.known[place].point[axis];
@@ -241,15 +252,15 @@ impl<'a> Guided<'a> {
         self.space.near(&point, 0.03, &mut self.chance)
     }
 
-    /// Returns a function that gives the logarithm of the improvement to expect at a point, compared with the known
-    /// point `from`. If `from` breaks a limit, this is the logarithm of the probability that the point meets the goal's.
+    /// Returns a function that rates a point by a logarithm: of the expected improvement over the known point `from`,
+    /// times the probability that the point meets the goal's limit. If `from` breaks a limit, of this probability alone.
     fn gain<'b>(&self, models: &'b Models, from: usize) -> impl Fn(&[f64]) -> f64 + use<'b> {
         const LEAST: f64 = 1e-300;
         let (wanted, limited, limit) = self.outputs();
         let (wanted, limited) = (&models[wanted], &models[limited]);
         let from = &self.known[from];
         let wanted = wanted.as_ref().filter(|_| from.value < NOT_ALLOWED);
-        // What the model expects at the point: its own value may be a lucky one that nothing around it reaches.
+        // Compared with the model's value at `from`, as the scored value may be a lucky one.
         let wanted = wanted.map(|model| (model, model.at(&from.point).0));
         move |point| {
             let limited = limited.as_ref().map_or(0.0, |model| {
@@ -265,7 +276,8 @@ impl<'a> Guided<'a> {
         }
     }
 
-    /// Returns the index in [`Models`] of what is to be small, that of what the goal limits, and the limit.
+    /// Returns the index in [`Models`] of the quantity to minimise, the index of the quantity that the goal limits, and
+    /// the logarithm of this limit.
     fn outputs(&self) -> (usize, usize, f64) {
         let samples = self.problem.train.iter().map(Stretch::samples).sum();
         match self.goal {
@@ -314,7 +326,8 @@ impl<'a> Guided<'a> {
     }
 }
 
-/// Lowers values that are far above the others, which would hide how the others differ.
+/// Lowers outliers to the upper quartile plus the distance between the quartiles, because they would hide how the other
+/// values differ.
 fn limit_outliers(values: &mut [f64]) {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -332,7 +345,7 @@ fn key(point: &[f64]) -> Vec<u64> {
     point.iter().map(|own| own.to_bits()).collect()
 }
 
-/// Returns the probability that a normally distributed number of mean 0 and deviation 1 is below `z`, to 2e-4.
+/// Returns the standard normal distribution function at `z`, with an absolute error below 2e-4.
 fn normal(z: f64) -> f64 {
     1.0 / (1.0 + (-z * (1.5976 + 0.070_565 * z * z)).exp())
 }
@@ -353,7 +366,7 @@ impl Space {
         moved.collect()
     }
 
-    /// Moves whole numbers and words of a point to the middle of the part of the axis that means the same.
+    /// Moves whole numbers and words of a point to the exact value that they stand for.
     fn settled(&self, mut point: Vec<f64>) -> Vec<f64> {
         for (place, (axis, own)) in self.axes().iter().zip(&mut point).enumerate() {
             let number = self.number(place, *own);

@@ -5,7 +5,7 @@
 use super::problem::{Goal, most_spikes};
 use super::search::{BATCH, Run};
 use super::space::Space;
-use super::{Scored, Stretch};
+use super::{Over, Scored, Stretch};
 use catalogue::run::{Asked, Outcome, Outcomes};
 use rayon::prelude::*;
 
@@ -34,12 +34,16 @@ impl Run<'_> {
     /// Lists the number of spikes and the error at all thresholds, for every combination of integer parameters. Scores
     /// the best of these outcomes with the codec, until the whole search has scored `until` settings. Returns whether
     /// the search is over. The search goes on if the scheme cannot list outcomes, if the user fixed the threshold, the
-    /// step, the factor or the start value, or if settings close to the best outcomes may be better, because the codec
-    /// rounds and the list does not.
+    /// step, the factor or the start value, if the error on the worst flight counts, or if settings close to the best
+    /// outcomes may be better, because the codec rounds and the list does not.
     pub(super) fn exactly(&mut self, space: &Space, until: usize) -> bool {
         let problem = self.problem;
         let decides = ["threshold", "step", "factor", "start"];
         if decides.iter().any(|name| problem.fixed.get(name).is_some()) {
+            return false;
+        }
+        // The list knows only the error over all flights.
+        if problem.over == Over::Worst {
             return false;
         }
         let Some((combinations, mut all)) = self.listed(space) else { return false };
@@ -51,6 +55,7 @@ impl Run<'_> {
         let in_order = self.in_order(samples);
         all.sort_by(|a, b| in_order(&a.0).total_cmp(&in_order(&b.0)));
         let mut chosen: Vec<(Outcome, usize)> = all.iter().take(best).copied().collect();
+        let is_fitted = all.iter().any(|(own, _)| own.apart != own.squares);
         unbeaten(&mut all);
         let stride = all.len().div_ceil((most - best).max(1)).max(1);
         chosen.extend(all.iter().step_by(stride));
@@ -66,8 +71,6 @@ impl Run<'_> {
         }
         // A step that is fitted to these stretches scores too well on them. The list is sorted by the error to expect
         // on other stretches, so its first allowed setting is the best.
-        let is_fitted = |(own, _): &(Outcome, usize)| own.apart != own.squares;
-        let is_fitted = chosen.first().is_some_and(is_fitted);
         if is_fitted && matches!(problem.goal, Goal::LeastError(_)) {
             self.found.best = first.or_else(|| self.found.best.take());
         }

@@ -19,13 +19,13 @@ pub enum Goal {
     Front,
 }
 
-/// How the errors of several flights count in a search.
+/// The error that a search reduces if there are several flights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Over {
     /// The mean of the squared errors over all samples.
     #[default]
     Mean,
-    /// The mean of the squared errors of the flight on which it is largest.
+    /// The largest mean squared error of a single flight.
     Worst,
 }
 
@@ -51,7 +51,7 @@ pub struct Tally {
     pub spikes: usize,
     /// Sum of the squared errors.
     pub squares: f64,
-    /// Mean of the squared errors of the flight on which it is largest.
+    /// The largest mean squared error of a single flight.
     pub worst: f64,
     /// The duration of the samples in seconds, if the rate is known.
     pub seconds: Option<f64>,
@@ -414,7 +414,39 @@ pub fn front(mut all: Vec<Scored>) -> Vec<Scored> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Tally, most_spikes};
+    use super::{Goal, Limits, Over, Problem, Tally, most_spikes};
+    use crate::scheme::Scheme;
+    use crate::trial::Recording;
+    use crate::tune::Stretch;
+    use catalogue::run::{Asked, SampleType};
+
+    /// Of a calm and a lively flight, the larger error counts as the worst.
+    #[test]
+    fn the_worst_is_the_larger_of_two_flights() {
+        let flight = |flight: usize, size: f64, samples: i32| {
+            let values = (0..samples).map(|place| size * (f64::from(place) * 0.3).sin()).collect();
+            let recording = Recording::of("x".to_owned(), values, Some(100.0));
+            let mut stretches = Stretch::whole(&recording);
+            stretches.iter_mut().for_each(|own| own.flight = flight);
+            stretches.remove(0)
+        };
+        let train = [flight(0, 0.2, 900), flight(1, 2.0, 300)];
+        let limits = Limits::default();
+        let known = (Goal::LeastError(80.0), &limits, "M4F");
+        let scheme = Scheme::named("sf").unwrap();
+        let mut problem = Problem::new(scheme, SampleType::F32, &Asked::default(), &train, known);
+        let mut options = Asked::default();
+        options.set("threshold", 0.1);
+        let score =
+            |stretches: &[Stretch]| problem.tally(&options, SampleType::F32, stretches).unwrap().0;
+        let [calm, lively] = [score(&train[..1]).rmse(), score(&train[1..]).rmse()];
+        let both = score(&train);
+        assert!(lively > 2.0 * calm, "{calm} {lively}");
+        assert!((both.worst.sqrt() - lively).abs() < 1e-12, "{} {lively}", both.worst.sqrt());
+        assert!(both.rmse() < 0.9 * lively, "{} {lively}", both.rmse());
+        problem.over = Over::Worst;
+        assert_eq!(problem.mean_square(&both), both.worst);
+    }
 
     #[test]
     fn an_efficiency_allows_the_count_it_was_computed_from() {

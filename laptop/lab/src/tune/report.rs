@@ -3,7 +3,7 @@
 use super::RequestKind;
 use super::problem::{Goal, Tally};
 use super::search::Found;
-use super::{Bound, Costs, Figures, Problem, Scored, Stretch};
+use super::{Bound, Costs, Figures, Over, Problem, Scored, Stretch};
 use crate::Result;
 use crate::brief::{brief, json, short};
 use catalogue::run::{Asked, SampleType, Settings, Words};
@@ -136,9 +136,9 @@ impl Row {
 
     /// Returns reasons not to trust the settings, a sentence each.
     fn flags(&self, problem: &Problem, cut: &Cut, found: &Found) -> Vec<String> {
-        /// Factor by which chance alone can make an RMSE on held-out blocks too large or too small.
+        /// Factor by which chance alone can make an RMSE on what was held out too large or too small.
         const BY_CHANCE: f64 = 1.25;
-        /// Factor by which the RMSE may be larger on held-out blocks before overfitting is reported.
+        /// Factor by which the RMSE may be larger on what was held out before overfitting is reported.
         const FAR: f64 = 1.5;
         let mut flags = Vec::new();
         if found.is_cut_short {
@@ -149,6 +149,13 @@ impl Row {
         }
         if problem.scheme.info().drifts() {
             flags.push(DRIFTS.to_owned());
+        }
+        if problem.over == Over::Worst
+            && problem.train.chunk_by(|a, b| a.flight == b.flight).count() == 1
+        {
+            flags.push(
+                "tuned on one log only: there is no other whose error may be larger".to_owned(),
+            );
         }
         flags.extend(found.bounds.iter().map(Bound::words));
         let judged = self.held_out.as_ref().unwrap_or(&self.tuned_on);
@@ -162,22 +169,19 @@ impl Row {
             ));
         }
         let Some(held_out) = &self.held_out else {
-            flags.push(
-                "nothing was held out: the figures are of the very blocks it was tuned on"
-                    .to_owned(),
-            );
+            flags.push("nothing was held out: the figures are of what it was tuned on".to_owned());
             return flags;
         };
         match problem.goal {
             Goal::LeastError(efficiency) if held_out.efficiency < efficiency - 2.0 => {
                 flags.push(format!(
-                    "misses the goal on held-out blocks: {:.1} % efficiency, where {efficiency:.1} was asked for",
+                    "misses the goal on what was held out: {:.1} % efficiency, where {efficiency:.1} was asked for",
                     held_out.efficiency
                 ));
             }
             Goal::MostEfficient(rmse) if held_out.rmse > rmse * BY_CHANCE => {
                 flags.push(format!(
-                    "misses the goal on held-out blocks: RMSE {}, where {} was asked for",
+                    "misses the goal on what was held out: RMSE {}, where {} was asked for",
                     short(held_out.rmse),
                     short(rmse)
                 ));
@@ -187,13 +191,13 @@ impl Row {
         let growth = held_out.rmse / self.tuned_on.rmse;
         if growth > FAR {
             flags.push(format!(
-                "{} times the RMSE on held-out blocks, {} where it is {} on those it was tuned on",
+                "{} times the RMSE on what was held out, {} where it is {} on what it was tuned on",
                 short((growth * 10.0).round() / 10.0),
                 short(held_out.rmse),
                 short(self.tuned_on.rmse)
             ));
         }
-        // Other settings that the search found may do far better on the held-out blocks.
+        // Other settings that the search found may do far better on what was held out.
         let stride = found.front.len().div_ceil(64).max(1);
         let others = found.front.iter().step_by(stride).filter_map(|other| {
             let (tally, _) = problem.tally(&other.options, problem.sample, &cut.held_out).ok()?;
@@ -205,18 +209,18 @@ impl Row {
             better.filter(|(tally, _)| tally.rmse() * BY_CHANCE < held_out.rmse)
         {
             flags.push(format!(
-                "fits its own blocks only: on those held out {brief} has an RMSE of {} with no more spikes",
+                "fits what it was tuned on only: on what was held out {brief} has an RMSE of {} with no more spikes",
                 short(tally.rmse())
             ));
         }
         if let Some(Paper { tuned_on: on_tuned, held_out: Some(paper) }) = &self.paper {
-            // The held-out blocks may be harder for all settings.
+            // What was held out may be harder for all settings.
             let grown = (held_out.rmse / self.tuned_on.rmse) / (paper.rmse / on_tuned.rmse);
             if paper.rmse < held_out.rmse && paper.spikes <= held_out.spikes {
-                flags.push("the paper's settings are better on held-out blocks".to_owned());
+                flags.push("the paper's settings are better on what was held out".to_owned());
             } else if paper.rmse * BY_CHANCE < held_out.rmse && grown > BY_CHANCE {
                 flags.push(format!(
-                    "fits its own blocks: from them to those held out its RMSE grows from {} to {}, that of the \
+                    "fits what it was tuned on: from there to what was held out its RMSE grows from {} to {}, that of the \
                      paper's settings from {} to {}",
                     short(self.tuned_on.rmse),
                     short(held_out.rmse),

@@ -46,7 +46,9 @@ pub struct TuneRequest {
     pub evaluations: usize,
     /// Seconds after which the search stops. If this limit ends the search, the result depends on the machine's speed.
     pub seconds: Option<f64>,
-    /// Seed of the search: the same seed and number of settings give the same result on every machine.
+    /// Seed of the search: the same seed and number of settings give the same result however busy a machine is and
+    /// however many cores it has. Another operating system or processor may round logarithms differently, and then the
+    /// result differs.
     pub seed: u64,
     /// Whether to search even if a recording is unfit for tuning: only noise, too short, full of holes, or clipped.
     pub anyway: bool,
@@ -57,7 +59,8 @@ impl TuneRequest {
     pub const EVALUATIONS: usize = 4000;
 
     /// Makes a request to tune `schemes` on `logs`, in `f32`. The goal is the least error at the efficiency of the
-    /// paper's settings. The recordings are cut into 20 blocks, 30 % of which are held out.
+    /// paper's settings. Of several logs 30 % are held out; a single log is cut into 20 blocks, 30 % of which are held
+    /// out.
     pub fn new(logs: Vec<Vec<Recording>>, schemes: Vec<Scheme>) -> Self {
         Self {
             logs,

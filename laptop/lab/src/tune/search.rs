@@ -1,8 +1,8 @@
 //! Searches for the settings of a scheme. The search is exact if the scheme can list the number of spikes and the error
 //! for all thresholds. Otherwise, a model guides it.
 //!
-//! The length of a search is counted in settings scored with the codec, not in seconds. Therefore the result is the
-//! same on every machine.
+//! The length of a search is counted in settings scored with the codec, not in seconds. Therefore the result does not
+//! depend on a machine's speed, load or number of cores. It may depend on how a platform rounds logarithms.
 
 use super::Bound;
 use super::bounds::bounds;

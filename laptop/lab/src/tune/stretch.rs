@@ -16,7 +16,7 @@ pub struct Stretch {
     pub rate: Option<f64>,
     /// Index ranges of the samples that are scored, in order and disjoint.
     pub scored: Vec<Range<usize>>,
-    /// Number of the flight that the samples are from.
+    /// Index of the log that the samples are from.
     pub flight: usize,
 }
 
@@ -63,12 +63,12 @@ impl Stretch {
     }
 }
 
-/// How much of a recording is held out.
+/// The part of the recordings that is held out.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldOut {
-    /// Number of blocks into which the recording is cut.
+    /// Number of blocks into which a single recording is cut.
     pub blocks: usize,
-    /// Share of the blocks that is held out.
+    /// Share that is held out: of several logs or, if there is only one, of its blocks.
     pub part: f64,
 }
 

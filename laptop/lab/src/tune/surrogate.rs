@@ -3,8 +3,11 @@
 
 /// Smallest and largest variance of the noise, as a share of the function's variance.
 const NOISE: (f64, f64) = (1e-6, 0.3);
-/// Lengths of the kernel, in deviations of the points along an axis: the smallest, the likeliest, the largest.
+/// Smallest, likeliest and largest length of the kernel, in standard deviations of the points along an axis.
 const LENGTHS: (f64, f64, f64) = (0.1, 3.0, 60.0);
+
+/// Deviation below which values count as equal, as a share of their size.
+const EQUAL: f64 = 1e-9;
 
 /// A fitted model.
 pub(super) struct Surrogate {
@@ -12,7 +15,7 @@ pub(super) struct Surrogate {
     scales: Vec<(f64, f64)>,
     points: Vec<Vec<f64>>,
     /// Reciprocals of the kernel's lengths.
-    widths: Vec<f64>,
+    inverse_lengths: Vec<f64>,
     /// Lower triangle of the Cholesky factor of the points' covariance, row by row.
     factor: Vec<f64>,
     weights: Vec<f64>,
@@ -45,14 +48,14 @@ impl Hyper {
     }
 
     /// Returns the reciprocals of the lengths.
-    fn widths(&self) -> Vec<f64> {
+    fn inverse_lengths(&self) -> Vec<f64> {
         self.lengths.iter().map(|length| (-length).exp()).collect()
     }
 }
 
 impl Surrogate {
-    /// Fits a model to points and their values. If `is_fitted`, first changes each parameter of the kernel by a step, up
-    /// or down, if that raises the likelihood. Returns `None` if all values are equal.
+    /// Fits a model to points and their values. If `is_fitted`, adapts `hyper` first: tries a step up, then a step down,
+    /// for each parameter, and keeps a step that raises the likelihood. Returns `None` if all values are equal.
     pub(super) fn fit(
         points: &[&[f64]],
         values: &[f64],
@@ -61,12 +64,13 @@ impl Surrogate {
     ) -> Option<Self> {
         let axes = hyper.lengths.len();
         let (mean, deviation) = moments(values.iter().copied());
-        if deviation == 0.0 {
+        let least = EQUAL * mean.abs().max(1.0);
+        if !deviation.is_finite() || deviation <= least {
             return None;
         }
         let scales: Vec<(f64, f64)> = (0..axes)
             .map(|axis| moments(points.iter().map(|point| point[axis])))
-            .map(|(mean, deviation)| (mean, if deviation > 0.0 { deviation } else { 1.0 }))
+            .map(|(mean, deviation)| (mean, if deviation > EQUAL { deviation } else { 1.0 }))
             .collect();
         let points: Vec<Vec<f64>> = points.iter().map(|point| scaled(point, &scales)).collect();
         let targets: Vec<f64> = values.iter().map(|value| (value - mean) / deviation).collect();
@@ -85,15 +89,15 @@ impl Surrogate {
         }
         let weights = best.weights.iter().map(|weight| weight * deviation).collect();
         let variance = best.variance * deviation * deviation;
-        let (factor, widths) = (best.factor, hyper.widths());
-        Some(Self { scales, points, widths, factor, weights, mean, variance })
+        let (factor, inverse_lengths) = (best.factor, hyper.inverse_lengths());
+        Some(Self { scales, points, inverse_lengths, factor, weights, mean, variance })
     }
 
     /// Returns the expected value at a point, and its deviation.
     pub(super) fn at(&self, point: &[f64]) -> (f64, f64) {
         let point = scaled(point, &self.scales);
         let kernel: Vec<f64> =
-            self.points.iter().map(|own| matern(&point, own, &self.widths)).collect();
+            self.points.iter().map(|own| matern(&point, own, &self.inverse_lengths)).collect();
         let mean: f64 = kernel.iter().zip(&self.weights).map(|(a, b)| a * b).sum();
         let known = forward(&self.factor, kernel).iter().map(|own| own * own).sum::<f64>();
         (self.mean + mean, (self.variance * (1.0 - known).max(1e-9)).sqrt())
@@ -112,10 +116,10 @@ struct Solved {
 /// Solves for the weights of scaled points. Returns `None` if rounding makes the covariance singular.
 fn solved(points: &[Vec<f64>], targets: &[f64], hyper: &Hyper) -> Option<Solved> {
     let count = points.len();
-    let widths = hyper.widths();
+    let inverse_lengths = hyper.inverse_lengths();
     let mut factor = Vec::with_capacity(count * (count + 1) / 2);
     for (row, point) in points.iter().enumerate() {
-        factor.extend(points[..row].iter().map(|own| matern(point, own, &widths)));
+        factor.extend(points[..row].iter().map(|own| matern(point, own, &inverse_lengths)));
         factor.push(1.0 + hyper.noise.exp());
     }
     let mut logarithms = 0.0;
@@ -162,9 +166,9 @@ fn forward(factor: &[f64], mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-fn matern(a: &[f64], b: &[f64], widths: &[f64]) -> f64 {
-    let squares = a.iter().zip(b).zip(widths);
-    let square: f64 = squares.map(|((a, b), width)| ((a - b) * width).powi(2)).sum();
+fn matern(a: &[f64], b: &[f64], inverse_lengths: &[f64]) -> f64 {
+    let squares = a.iter().zip(b).zip(inverse_lengths);
+    let square: f64 = squares.map(|((a, b), inverse)| ((a - b) * inverse).powi(2)).sum();
     let distance = (5.0 * square).sqrt();
     (1.0 + distance + distance * distance / 3.0) * (-distance).exp()
 }
@@ -210,6 +214,29 @@ mod tests {
             within += usize::from(error.abs() < 3.0 * deviation);
         }
         assert!((squares / 100.0_f64).sqrt() < 0.05 && within >= 90, "{squares} {within}");
-        assert!(Surrogate::fit(&points, &[1.0; 60], &mut hyper, true).is_none());
+        // The mean of sixty times 0.1 is not 0.1.
+        for equal in [[1.0; 60], [0.1; 60], [f64::NAN; 60]] {
+            assert!(Surrogate::fit(&points, &equal, &mut hyper, true).is_none(), "{equal:?}");
+        }
+    }
+
+    /// An axis along which all points are equal, up to rounding, does not change what a model predicts between them.
+    #[test]
+    fn an_axis_with_one_value_is_left_out() {
+        let mut chance = Chance::new(1);
+        let drawn: Vec<f64> = (0..60).map(|_| chance.part()).collect();
+        let values: Vec<f64> = drawn.iter().map(|own| (3.0 * own).sin()).collect();
+        let predicted = |rest: &[f64]| {
+            let points = drawn.iter().map(|own| [&[*own][..], rest].concat());
+            let points: Vec<Vec<f64>> = points.collect();
+            let points: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
+            let mut hyper = Hyper::new(1 + rest.len());
+            let model = Surrogate::fit(&points, &values, &mut hyper, false).unwrap();
+            // Beside the axis's only value, by little.
+            let beside = rest.iter().map(|own| own + 1e-6);
+            model.at(&[0.5].into_iter().chain(beside).collect::<Vec<_>>())
+        };
+        let ((mean, deviation), (one, own)) = (predicted(&[1.0 / 3.0]), predicted(&[]));
+        assert!((mean - one).abs() < 1e-6 && (deviation - own).abs() < 1e-6, "{mean} {one}");
     }
 }
