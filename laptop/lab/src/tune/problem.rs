@@ -427,7 +427,9 @@ mod tests {
             let values = (0..samples).map(|place| size * (f64::from(place) * 0.3).sin()).collect();
             let recording = Recording::of("x".to_owned(), values, Some(100.0));
             let mut stretches = Stretch::whole(&recording);
-            stretches.iter_mut().for_each(|own| own.flight = flight);
+            for own in &mut stretches {
+                own.flight = flight;
+            }
             stretches.remove(0)
         };
         let train = [flight(0, 0.2, 900), flight(1, 2.0, 300)];
