@@ -181,12 +181,9 @@ pub(super) use for_each_integer;
 /// only core without compare-and-swap. `without_vectors` tests that form on the host.
 #[cfg(not(any(without_vectors, all(target_arch = "arm", not(target_has_atomic = "32")))))]
 type Half = i16;
-#[cfg(not(any(without_vectors, all(target_arch = "arm", not(target_has_atomic = "32")))))]
-const UP: u32 = 0;
 #[cfg(any(without_vectors, all(target_arch = "arm", not(target_has_atomic = "32"))))]
 type Half = i32;
-#[cfg(any(without_vectors, all(target_arch = "arm", not(target_has_atomic = "32"))))]
-const UP: u32 = 16;
+const UP: u32 = Half::BITS - i16::BITS;
 
 macro_rules! integer_arithmetic {
     ([$($generics:tt)*] $sample:ty, i16, $($paths:tt)*) => {

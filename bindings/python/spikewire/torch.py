@@ -99,7 +99,7 @@ class Encode(nn.Module):
         return _encode(x, self._number)
 
     def extra_repr(self) -> str:
-        """What `print` shows of the layer."""
+        """The arguments of the layer, for `print`."""
         given = {"num_steps": self.num_steps, "time": self.time or None, "split": self.split or None}
         return ", ".join([repr(self.scheme), *(f"{name}={value}" for name, value in given.items() if value is not None)])
 

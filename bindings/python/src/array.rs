@@ -125,8 +125,8 @@ impl Lane<'_> {
     }
 }
 
-/// Where the samples of channels lie in memory, if in even steps and with nothing between them: sample `time` of channel
-/// `block * width + place` at `block * block_step + place + time * step`.
+/// A layout of channels in memory with even steps and no gaps: sample `time` of channel `block * width + place` has the
+/// index `block * block_step + place + time * step`.
 #[derive(Clone, Copy)]
 pub(crate) struct Grid<'a> {
     /// The samples, in the order in which they lie in memory.
@@ -299,7 +299,7 @@ impl<'a> View<'a> {
         lanes.iter().enumerate().find_map(|(channel, lane)| Some((channel, lane.bad(sample)?)))
     }
 
-    /// Where its samples lie, if in even steps.
+    /// Returns the layout of the samples in memory; `None` if their steps are not even.
     pub(crate) fn grid(&self) -> Option<Grid<'a>> {
         match self {
             Self::F32(all) => grid(all, run::Samples::F32),

@@ -126,19 +126,15 @@ impl Coder {
         self.scheme.info().name
     }
 
-    /// Whether what is not given follows from a channel's first samples alone, so that all channels have the rest in
-    /// common.
-    fn is_same_for_all(&self) -> Result<bool> {
-        let is_one = self.asked.channels(self.scheme.info())?.is_none();
-        Ok(is_one && self.scheme.needs_signal(&self.asked).is_none())
-    }
-
     fn fitted(&self, samples: &View, is_shared: bool) -> Result<Fitted> {
         let (scheme, sample, count) = (self.scheme, self.sample, samples.count());
         let past = samples.length().min(self.looks_back());
         let has_own_start = self.asked.get("start").is_none() && scheme.info().has_first_value();
         let first = |lane: &Lane| lane.part(0..past).to_vec();
-        if !is_shared && count > 1 && self.is_same_for_all()? {
+        let needs_signal = self.scheme.needs_signal(&self.asked).is_some();
+        let is_one = self.asked.channels(scheme.info())?.is_none();
+        // What is not given then follows from a channel's first samples alone, and all channels have the rest in common.
+        if !is_shared && count > 1 && is_one && !needs_signal {
             let grid = samples.grid();
             let lanes = if grid.is_some() { Vec::new() } else { samples.lanes() };
             let firsts = |channels: Range<usize>| match &grid {
@@ -150,8 +146,6 @@ impl Coder {
             return Ok(Fitted::new(scheme, sample, vec![settings], begins, count));
         }
         let lanes = &samples.lanes()[..];
-        let needs_signal = self.scheme.needs_signal(&self.asked).is_some();
-        let is_one = self.asked.channels(scheme.info())?.is_none();
         let settle = |(place, group): (usize, &[Lane])| {
             let calibrated = needs_signal.then(|| {
                 let mut calibrated = Calibrated::of(self.sample, &self.asked);
@@ -583,7 +577,7 @@ impl Fitted {
     }
 }
 
-/// What a thread encodes channels with, one after the other.
+/// The codec and the room for copies that a thread uses for one channel after the other.
 #[derive(Default)]
 struct Bench {
     codec: Option<Codec>,

@@ -1,4 +1,4 @@
-"""What a user writes, for a checker of types."""
+"""User code that a type checker must accept."""
 import numpy as np
 import torch
 from torch import nn

@@ -110,8 +110,8 @@ impl ReckOnOutputs<'_> {
     const FIRED: u8 = 12;
 }
 
-/// What a network in [`ReckOnSteps`] keeps between two steps: the last answer, and the values of the outputs. Takes 100
-/// bytes.
+/// The state of [`ReckOnSteps`] between two steps: the last answer of the chip, and the values of the outputs. Takes
+/// 100 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReckOnStepsState {
     has_run: bool,

@@ -165,9 +165,9 @@ fn sample<'a, 'b>(
 }
 
 /// Checks that calls of the port that take up to 26 clock cycles change no answer of a network of `neurons` neurons.
-/// Such calls may be too slow to see that the ready pin is low. With up to 10 neurons, this can happen in every step,
-/// because the pin is low for at most 26 clock cycles. With 11 to 25 neurons, this can happen only at the first tick of
-/// a sample. Networks of 32 neurons and more are tried with calls of 1 and 26 clock cycles only.
+/// A slow call can miss the time in which the ready pin is low. With up to 10 neurons it can miss it in every step,
+/// because the pin is low for at most 26 clock cycles. With 11 to 25 neurons it can miss it only at the first tick of a
+/// sample. Networks of 32 neurons and more are tried with calls of 1 and 26 clock cycles only.
 fn read_seldom(neurons: u16) {
     let network = RandomNetwork { neurons };
     let pace = Pace::default();

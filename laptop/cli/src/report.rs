@@ -50,12 +50,18 @@ impl<L: Serialize, S: Serialize> Report<'_, L, S> {
 
 impl<T> Log<T> {
     /// Makes the entry of a log that cannot be processed, and prints the reason on standard error.
-    pub(crate) fn refused(log: String, why: &anyhow::Error) -> Self {
-        let words = words::of(why);
+    ///
+    /// # Errors
+    /// Returns the reason if it `ends` the command: that of a single log, without a report that lists it.
+    pub(crate) fn refused(log: String, why: anyhow::Error, ends: bool) -> Result<Self> {
+        if ends {
+            return Err(why);
+        }
+        let words = words::of(&why);
         let is_named = words.strip_prefix(&log).is_some_and(|rest| rest.starts_with(':'));
         let of = if is_named { String::new() } else { format!("{log}: ") };
         eprintln!("error: {of}{words}");
-        Self { log, refused: Some(words), notes: Vec::new(), content: None }
+        Ok(Self { log, refused: Some(words), notes: Vec::new(), content: None })
     }
 }
 

@@ -1,13 +1,16 @@
 //! Checks against other people's programs: they read what is written here, and their output is read here.
 
 use crate::common::{cargo, command, paths, run};
-use crate::programs::{host::tests, python};
+use crate::programs::{
+    host::{self, tests},
+    python::{self, environment_with},
+};
 use anyhow::Result;
-use std::{fs, path::PathBuf};
+use std::fs;
 
 /// Installs the Python packages in an environment of their own, and runs the tests that need them.
 pub fn peers() -> Result<()> {
-    let python = environment("peers", "cameras/peers/requirements.txt")?;
+    let python = environment_with("peers", "cameras/peers/requirements.txt")?;
     fs::create_dir_all(paths::target().join("tmp"))?; // cargo makes it where it compiles the tests
     run(tests("--test cameras peers -- --ignored")?.env("PEERS_PYTHON", &python))?;
     run(tests("--test network -- --ignored")?.env("PEERS_PYTHON", &python))
@@ -15,9 +18,8 @@ pub fn peers() -> Result<()> {
 
 /// Checks logs of every kind with other people's programs, as writers and as readers.
 pub fn logs() -> Result<()> {
-    let python = environment("logs", "laptop/cli/python/logs_requirements.txt")?;
-    run(&mut cargo("build --package spikewire-cli"))?;
-    let program = paths::target().join("debug/spikewire");
+    let python = environment_with("logs", "laptop/cli/python/logs_requirements.txt")?;
+    let program = host::laptop()?;
     let place = paths::target().join("logs-check");
     let recording = paths::root().join("data/hexarotor.csv");
     let check = paths::root().join("laptop/cli/python/logs_check.py");
@@ -33,18 +35,11 @@ pub fn logs() -> Result<()> {
 
 /// Compares `spikewire tune` with other people's optimisers, at equal numbers of settings.
 pub fn tuner() -> Result<()> {
-    let python = environment("tuner", "laptop/cli/python/tune_requirements.txt")?;
+    let python = environment_with("tuner", "laptop/cli/python/tune_requirements.txt")?;
     python::package(&python, "release")?;
     let results = paths::target().join("tuner/peers.json");
     let recording = paths::root().join("data/hexarotor.csv").display().to_string();
     let check = paths::root().join("laptop/cli/python/tune_peers.py");
     let channels = ":gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z";
     run(command(&python).arg(check).arg(results).args(["1", &(recording + channels)]))
-}
-
-/// Returns the Python of an environment with these packages.
-fn environment(name: &str, requirements: &str) -> Result<PathBuf> {
-    let python = python::environment(name)?;
-    python::install(&python, &["--requirement", requirements])?;
-    Ok(python)
 }

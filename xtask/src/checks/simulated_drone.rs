@@ -1,8 +1,8 @@
 //! `cargo xtask loop`: flies a drone in RotorPy on spikes, in a Python environment of its own.
 
-use crate::common::{cargo, command, output, paths, run, usage};
+use crate::common::{command, output, paths, run, usage};
 use crate::figures::{drawing, markdown};
-use crate::programs::{boards::Board, image, python};
+use crate::programs::{boards::Board, host, image, python};
 use anyhow::{Result, ensure};
 use std::{
     fs,
@@ -52,13 +52,7 @@ pub fn write_tables() -> Result<()> {
 
 /// Asks `spikewire advise` for banks.
 fn advised(python: &Path) -> Result<String> {
-    output(program(python, "advised.py").arg(laptop()?))
-}
-
-/// Builds the laptop program.
-fn laptop() -> Result<PathBuf> {
-    run(&mut cargo("build --package spikewire-cli"))?;
-    Ok(paths::target().join("debug/spikewire"))
+    output(program(python, "advised.py").arg(host::laptop()?))
 }
 
 fn put(printed: &str) -> Result<()> {
@@ -117,7 +111,7 @@ pub fn write_chip() -> Result<()> {
 }
 
 fn on_chip(python: &Path) -> Result<String> {
-    let flown = output(program(python, "chip.py").arg(laptop()?))?;
+    let flown = output(program(python, "chip.py").arg(host::laptop()?))?;
     println!("{flown}");
     Ok(format!("\n{flown}\n"))
 }
@@ -147,8 +141,7 @@ pub(super) fn environment() -> Result<PathBuf> {
     println!(
         "Installs in target/loop, from PyPI: what laptop/loop/requirements.txt names, 1.2 GB."
     );
-    let python = python::environment("loop")?;
-    python::install(&python, &["--requirement", "laptop/loop/requirements.txt"])?;
+    let python = python::environment_with("loop", "laptop/loop/requirements.txt")?;
     python::package(&python, "dev")?;
     Ok(python)
 }

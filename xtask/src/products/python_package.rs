@@ -3,7 +3,7 @@
 use crate::common::{cargo, command, output, paths, run};
 use crate::products::c_library;
 use crate::programs::host;
-use crate::programs::python::{environment, install, package, pip};
+use crate::programs::python::{environment_with, install, package, pip};
 use anyhow::{Result, ensure};
 use std::{
     fs,
@@ -13,12 +13,13 @@ use std::{
 /// The package's version, as in `bindings/python/Cargo.toml`.
 const VERSION: &str = "0.1.0";
 
+const REQUIREMENTS: &str = "bindings/python/requirements.txt";
+
 /// Installs the package in an environment of its own, and runs its tests, doctests, README and example.
 ///
 /// It is compiled with the same options as the other tests, so that they share dependencies.
 pub fn python() -> Result<()> {
-    let python = environment("python")?;
-    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    let python = environment_with("python", REQUIREMENTS)?;
     package(&python, "dev")?;
 
     let flight = paths::target().join("flight-log.txt");
@@ -26,8 +27,7 @@ pub fn python() -> Result<()> {
     let pytest = "-m pytest --quiet -rP --no-header --doctest-modules --doctest-ignore-import-errors bindings/python/tests --pyargs spikewire";
     let mut tests = command(&python);
     tests.args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight);
-    run(&mut cargo("build --package spikewire-cli"))?;
-    tests.env("SPIKEWIRE", paths::target().join("debug/spikewire"));
+    tests.env("SPIKEWIRE", host::laptop()?);
     run(tests.env("FLIGHTS", c_library::write_flights()?))?;
     run(command(&python).arg("bindings/python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
     source_package(&python).map(drop)
@@ -35,8 +35,7 @@ pub fn python() -> Result<()> {
 
 /// Encodes a thousand logs with the program and with Dask, each killed on the way.
 pub fn fleet() -> Result<()> {
-    let python = environment("python-fleet")?;
-    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    let python = environment_with("python-fleet", REQUIREMENTS)?;
     package(&python, "release")?;
     let thousand =
         "test --release --package spikewire-cli --test dataset a_thousand -- --ignored --nocapture";
@@ -45,8 +44,7 @@ pub fn fleet() -> Result<()> {
 
 /// Writes the type stub of the schemes' classes.
 pub fn write_stub() -> Result<()> {
-    let python = environment("python")?;
-    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    let python = environment_with("python", REQUIREMENTS)?;
     package(&python, "dev")?;
     let stub = output(command(&python).arg("bindings/python/tests/stubs.py"))?;
     fs::write(paths::root().join("bindings/python/spikewire/_schemes.pyi"), stub)?;
@@ -55,8 +53,7 @@ pub fn write_stub() -> Result<()> {
 
 /// Builds the package from its source package, optimised, and compares its speed with plain Python and other libraries.
 pub fn speed() -> Result<()> {
-    let python = environment("python-speed")?;
-    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    let python = environment_with("python-speed", REQUIREMENTS)?;
     let packed = source_package(&python)?;
     let mut pip = pip(&python);
     // A build of its own, as a user has it.
@@ -67,8 +64,7 @@ pub fn speed() -> Result<()> {
 
 /// Trains networks of other libraries on the package's spikes, tests its layer of PyTorch, and writes the pages of its classes.
 pub fn torch() -> Result<()> {
-    let python = environment("python-torch")?;
-    install(&python, &["--requirement", "bindings/python/requirements.txt"])?;
+    let python = environment_with("python-torch", REQUIREMENTS)?;
     install(
         &python,
         &["torch==2.15.0", "snntorch==1.0.0", "spikingjelly==2.0.0", "mypy==2.4.1", "pdoc==16.0.0"],

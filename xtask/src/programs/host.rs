@@ -37,6 +37,12 @@ pub fn spikewire(args: &str) -> Result<Command> {
     Ok(spikewire)
 }
 
+/// Builds the laptop program by itself; returns its path.
+pub fn laptop() -> Result<PathBuf> {
+    run(&mut cargo("build --package spikewire-cli"))?;
+    Ok(paths::target().join("debug/spikewire"))
+}
+
 /// Returns the host's target triple.
 pub fn triple() -> Result<String> {
     let version = output(command("rustc").arg("-vV"))?;

@@ -18,6 +18,13 @@ pub fn environment(name: &str) -> Result<PathBuf> {
     Ok(python)
 }
 
+/// Returns the Python of an environment with the packages that a file names.
+pub fn environment_with(name: &str, requirements: &str) -> Result<PathBuf> {
+    let python = environment(name)?;
+    install(&python, &["--requirement", requirements])?;
+    Ok(python)
+}
+
 /// Prepares `pip install` in the environment.
 pub fn pip(python: &Path) -> Command {
     let mut pip = command(python);

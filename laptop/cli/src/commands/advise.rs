@@ -63,7 +63,8 @@ pub(crate) struct Advise {
     /// Core for which the report counts instructions: Cortex-M0 (`M0`) or Cortex-M4F (`M4F`)
     #[arg(long, default_value = "M4F", value_parser = costs::core)]
     core: String,
-    /// Stop the search on a log after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C stops too
+    /// Stop the search on a log after this many seconds in total; the advice then depends on the machine's speed. Ctrl-C
+    /// stops too
     #[arg(long, value_parser = lab::input::above_zero)]
     seconds: Option<f64>,
     /// Maximum number of settings to score for each scheme and channel
@@ -113,30 +114,32 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
         bail!("-o and --picture take one log; there are {}", logs.len());
     }
     let stop = Stop::new(None)?;
+    let ends = is_single && !options.json;
     let (mut all, mut last) = (Vec::new(), None);
     for path in &logs {
         if stop.is_due() {
             break;
         }
+        // The recordings of the log before need not be kept while this one is read.
+        last = None;
         let log = path.display().to_string();
         match options.advised(path, is_single, &stop) {
             Ok((request, notes, advised)) => {
                 let why = advised.check().err();
                 if !options.json {
-                    tell_of((!is_single).then_some(&*log), &notes);
                     let page = advised.page();
                     answer(if is_single { page } else { format!("{log}\n{page}\n") })?;
                 }
                 let entry = match why {
                     None => Log { log, refused: None, notes, content: Some(advised) },
-                    Some(why) if is_single && !options.json => return Err(why),
-                    Some(why) => Log { notes, content: Some(advised), ..Log::refused(log, &why) },
+                    Some(why) => {
+                        Log { notes, content: Some(advised), ..Log::refused(log, why, ends)? }
+                    }
                 };
                 all.push(entry);
                 last = Some(request);
             }
-            Err(error) if is_single && !options.json => return Err(error),
-            Err(error) => all.push(Log::refused(log, &error)),
+            Err(error) => all.push(Log::refused(log, error, ends)?),
         }
     }
     let summary = Summary::of(&all);
@@ -179,7 +182,7 @@ impl Advise {
         Ok(())
     }
 
-    /// Reads a log and advises on it. Returns the request that was made, notes for the user on the log, and the advice.
+    /// Reads a log, tells its notes and advises on it. Returns the request that was made, notes for the user on the log, and the advice.
     fn advised(
         &self,
         path: &Path,
@@ -192,6 +195,11 @@ impl Advise {
             bail!("--picture draws one channel; --channel says which");
         }
         let notes = recordings.first().map(Recording::notes).unwrap_or_default();
+        let notes = words::notes(&notes);
+        if !self.json {
+            let log = path.display().to_string();
+            tell_of((!is_single).then_some(&*log), &notes);
+        }
         let request = AdviseRequest {
             recordings,
             sample: self.sample,
@@ -205,7 +213,7 @@ impl Advise {
             seed: self.seed,
         };
         let advised = self.searched(&request, stop)?;
-        Ok((request, words::notes(&notes), advised))
+        Ok((request, notes, advised))
     }
 
     /// Searches for the advice, and shows the progress.

@@ -56,9 +56,8 @@ pub(crate) fn run(options: &Info) -> Result<()> {
         let log = path.display().to_string();
         let content = match as_file(path).and_then(|own| options.content(&own)) {
             Ok(content) => content,
-            Err(error) if is_single && !options.json => return Err(error),
             Err(error) => {
-                all.push(Log::refused(log, &error));
+                all.push(Log::refused(log, error, is_single && !options.json)?);
                 continue;
             }
         };
@@ -71,7 +70,7 @@ pub(crate) fn run(options: &Info) -> Result<()> {
                 writeln!(output)?;
             }
         }
-        let (notes, content) = (content.notes(), Some(content.json()));
+        let (notes, content) = (content.notes(), options.json.then(|| content.json()));
         all.push(Log { log, refused: None, notes, content });
     }
     let counts = Counts::of(&all);

@@ -108,19 +108,20 @@ pub(crate) fn run(options: &Score) -> Result<()> {
                 }
                 all.push(Log { log, refused: None, notes, content: Some(content) });
             }
-            Err(error) if is_single && !json => return Err(error),
-            Err(error) => all.push(Log::refused(log, &error)),
+            Err(error) => all.push(Log::refused(log, error, is_single && !json)?),
         }
     }
     let counts = Counts::of(&all);
     let summary = Summary { counts, schemes: totals(&schemes, &all) };
     if *json {
         Report { command: "score", logs: &all, summary }.print()?;
-    } else if let ([Log { content: Some(content), .. }], true) = (&all[..], is_single) {
-        print_table(&[("", &content.schemes)], &summary, false)?;
     } else {
-        let rows = all.iter().filter_map(|own| Some((&*own.log, &*own.content.as_ref()?.schemes)));
-        print_table(&rows.collect::<Vec<_>>(), &summary, true)?;
+        // A single log has no name in the table.
+        let rows = all.iter().filter_map(|own| {
+            let log = if is_single { "" } else { &*own.log };
+            Some((log, &*own.content.as_ref()?.schemes))
+        });
+        print_table(&rows.collect::<Vec<_>>(), &summary, !is_single)?;
     }
     counts.check()
 }

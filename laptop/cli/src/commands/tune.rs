@@ -32,11 +32,11 @@ use std::time::Instant;
 /// Search a scheme's parameters for a goal: the least RMSE at a given spiking efficiency, the greatest efficiency at a
 /// given RMSE, or the Pareto front of both.
 ///
-/// The spiking efficiency is 100 less the number of spikes for every 100 samples. Of several logs, some are held out; of a
-/// single log, some blocks. The settings found are scored on what is held out, too. Settings are scored with the encoder and decoder that run on
-/// the drone, in the sample type of --sample. Settings are tuned on all logs together. Parameters that are given stay
-/// fixed; the others are searched. The default goal is the least RMSE at the efficiency that the settings of Dupeyroux
-/// et al. (2022) reach.
+/// The spiking efficiency is 100 less the number of spikes for every 100 samples. Of several logs, some are held out; of
+/// a single log, some blocks. The settings found are scored on what is held out, too. Settings are scored with the
+/// encoder and decoder that run on the drone, in the sample type of --sample. Settings are tuned on all logs together.
+/// Parameters that are given stay fixed; the others are searched. The default goal is the least RMSE at the efficiency
+/// that the settings of Dupeyroux et al. (2022) reach.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
