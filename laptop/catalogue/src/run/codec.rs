@@ -13,9 +13,7 @@ use bytemuck::Pod;
 use rand_pcg::Pcg32;
 use spikewire::population::{Probabilistic, ProbabilisticState};
 use spikewire::rate::{Average, Bernoulli, BernoulliState};
-use spikewire::{
-    Code, NeuronSpike, Output, Polarity, Sample, SampleKind, Scheme, Spike, timing::PhaseBits,
-};
+use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, Scheme, Spike, timing::PhaseBits};
 
 #[cfg(feature = "states")]
 use super::ErrorKind;
@@ -398,19 +396,19 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     /// Begins a recording with these samples; the decoder starts from `first` if there is one.
     fn begin(&mut self, past: &[f64], first: Option<f64>) {
         self.encoder.clone_from(&self.start);
-        let sample = |value: f64| P::Sample::from_f64(value * self.one);
+        let one = self.one;
         self.past.clear();
-        self.past.extend(past.iter().copied().map(sample));
+        self.past.extend(past.iter().map(|value| sample::<P::Sample>(*value, one)));
         self.scheme.prime(&mut self.encoder, &self.past);
         self.decoder = self.scheme.decoder_state();
         if let Some(first) = first {
-            self.scheme.resync(&mut self.decoder, sample(first));
+            self.scheme.resync(&mut self.decoder, sample(first, one));
         }
         self.is_first_held = self.starts_at_first;
     }
 
     /// Begins the encoder of a channel that starts with these samples.
-    fn begin_encoder(&mut self, channel: u64, samples: impl Iterator<Item = P::Sample>) {
+    fn begin_encoder<T: Pod + Into<f64>>(&mut self, channel: u64, samples: &[T]) {
         self.encoder.clone_from(&self.start);
         if let Some(seed) = self.seed {
             let (generator, state) = (generator(seed, channel), &mut self.encoder as &mut dyn Any);
@@ -421,29 +419,27 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
             }
         }
         if let Some(count) = self.begins_with {
+            let one = self.one;
             self.past.clear();
-            self.past.extend(samples.take(count));
+            self.past
+                .extend(samples.iter().take(count).map(|value| sample::<P::Sample>(*value, one)));
         }
         self.scheme.prime(&mut self.encoder, &self.past);
     }
 
     /// Encodes in blocks, for which schemes have faster code.
-    fn encode_all<T: Pod>(
-        &mut self,
-        samples: &[T],
-        sample: impl Fn(T) -> P::Sample,
-        sink: &mut Sink,
-    ) {
+    fn encode_all<T: Pod + Into<f64>>(&mut self, samples: &[T], sink: &mut Sink) {
         const BLOCK: usize = 512;
         const KEPT: usize = 64;
+        let one = self.one;
+        // Samples of the scheme's own type are taken where they are.
+        let is_own = one == 1.0 && TypeId::of::<T>() == TypeId::of::<P::Sample>();
         for samples in samples.chunks(BLOCK) {
-            // Samples of the scheme's own type are taken where they are.
-            let is_own = TypeId::of::<T>() == TypeId::of::<P::Sample>();
-            let block: &[P::Sample] = if is_own && self.one == 1.0 {
+            let block: &[P::Sample] = if is_own {
                 bytemuck::cast_slice(samples)
             } else {
                 self.block.clear();
-                self.block.extend(samples.iter().copied().map(&sample));
+                self.block.extend(samples.iter().map(|value| sample::<P::Sample>(*value, one)));
                 &self.block
             };
             if self.outputs.len() < block.len() {
@@ -463,20 +459,19 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     }
 
     /// Encodes recordings one after the other; see [`Codec::encode_channels`].
-    fn encode_each<T: Pod>(
+    fn encode_each<T: Pod + Into<f64>>(
         &mut self,
         samples: &[T],
         length: usize,
         channel: u64,
         cells: &mut [i8],
-        sample: impl Fn(T) -> P::Sample,
     ) {
         let shape = self.shape;
         let rows = cells.chunks_exact_mut(length * self.seen.len());
         for ((samples, rows), channel) in samples.chunks_exact(length).zip(rows).zip(channel..) {
             let mut sink = Sink::Cells { rows, shape, made: 0 };
-            self.begin_encoder(channel, samples.iter().copied().map(&sample));
-            self.encode_all(samples, &sample, &mut sink);
+            self.begin_encoder(channel, samples);
+            self.encode_all(samples, &mut sink);
             self.finish_all(&mut sink);
         }
     }
@@ -529,29 +524,9 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     }
 }
 
-/// Evaluates an expression with samples, and with the function that brings each to the sample type of `P`.
-macro_rules! in_samples {
-    ($channel:ident, $samples:expr, |$own:ident, $sample:ident| $done:expr) => {{
-        let one = $channel.one;
-        match $samples {
-            Samples::F32($own) if P::Sample::KIND == SampleKind::F32 => {
-                let $sample = |value: f32| P::Sample::from_bits32(value.to_bits());
-                $done
-            }
-            Samples::F32($own) => {
-                let $sample = |value: f32| P::Sample::from_f64(f64::from(value) * one);
-                $done
-            }
-            Samples::F64($own) => {
-                let $sample = |value: f64| P::Sample::from_f64(value * one);
-                $done
-            }
-            Samples::I16($own) => {
-                let $sample = |value: i16| P::Sample::from_f64(f64::from(value) * one);
-                $done
-            }
-        }
-    }};
+/// Brings a value of the signal to a sample type in which `one` stands for 1.
+fn sample<S: Sample>(value: impl Into<f64>, one: f64) -> S {
+    S::from_f64(value.into() * one)
 }
 
 impl<P: Scheme<EncoderState: State + Clone, DecoderState: State> + 'static> Running for Channel<P> {
@@ -565,12 +540,19 @@ impl<P: Scheme<EncoderState: State + Clone, DecoderState: State> + 'static> Runn
     }
 
     fn encode_channels(&mut self, samples: Samples, length: usize, channel: u64, cells: &mut [i8]) {
-        in_samples!(self, samples, |own, sample| self
-            .encode_each(own, length, channel, cells, sample));
+        match samples {
+            Samples::F32(own) => self.encode_each(own, length, channel, cells),
+            Samples::F64(own) => self.encode_each(own, length, channel, cells),
+            Samples::I16(own) => self.encode_each(own, length, channel, cells),
+        }
     }
 
     fn encode(&mut self, samples: Samples, sink: &mut Sink) {
-        in_samples!(self, samples, |own, sample| self.encode_all(own, sample, sink));
+        match samples {
+            Samples::F32(own) => self.encode_all(own, sink),
+            Samples::F64(own) => self.encode_all(own, sink),
+            Samples::I16(own) => self.encode_all(own, sink),
+        }
     }
 
     fn finish(&mut self, sink: &mut Sink) {

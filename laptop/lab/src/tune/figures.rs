@@ -56,8 +56,7 @@ impl Figures {
         let mut codes: HashMap<Vec<Event>, usize> = HashMap::new();
         for stretch in stretches {
             let (events, decoded, _) = problem.run(options, sample, stretch)?;
-            let events: Vec<Event> =
-                events.into_iter().filter(|own| stretch.is_scored(own.sample)).collect();
+            let events: Vec<Event> = stretch.scored_events(&events).flatten().copied().collect();
             sums.spikes += events.len();
             count_codes(&events, stretch.samples(), &mut codes);
             sums.seconds = match sums.samples {

@@ -375,7 +375,7 @@ impl Space {
                 Role::Length => number.exp().round().ln(),
                 _ => continue,
             };
-            *own = (number - axis.low) / (axis.high - axis.low).max(f64::MIN_POSITIVE);
+            *own = axis.place(number);
         }
         point
     }

@@ -272,7 +272,7 @@ impl<'a> Problem<'a> {
                 let (events, decoded, own) = self.coded(&settings, stretch)?;
                 latency = own;
                 samples += stretch.samples();
-                tally.spikes += events.iter().filter(|own| stretch.is_scored(own.sample)).count();
+                tally.spikes += stretch.scored_events(&events).map(<[_]>::len).sum::<usize>();
                 for scored in &stretch.scored {
                     let pairs = stretch.values[scored.clone()].iter().zip(&decoded[scored.clone()]);
                     squares += pairs.map(|(value, own)| (value - own).powi(2)).sum::<f64>();
@@ -291,15 +291,7 @@ impl<'a> Problem<'a> {
     /// # Errors
     /// Returns an error if the options are invalid.
     pub fn score(&self, options: &Asked) -> Result<Scored> {
-        self.score_on(options, self.train)
-    }
-
-    /// Scores options on stretches.
-    ///
-    /// # Errors
-    /// Returns an error if the options are invalid.
-    pub(super) fn score_on(&self, options: &Asked, stretches: &[Stretch]) -> Result<Scored> {
-        let (tally, latency, settings) = self.tallied(options, self.sample, stretches)?;
+        let (tally, latency, settings) = self.tallied(options, self.sample, self.train)?;
         let costs = Costs::new(self.scheme, &settings, latency, self.core);
         Ok(Scored { options: options.clone(), tally, costs, excess: self.excess(&tally, &costs) })
     }
@@ -350,22 +342,20 @@ impl<'a> Problem<'a> {
     /// Settings that break a limit have larger ratings than all settings that break none.
     pub fn value(&self, goal: Goal, scored: &Scored) -> f64 {
         let Tally { samples, spikes, .. } = scored.tally;
-        let squares = self.mean_square(&scored.tally) * samples as f64;
         let limits = scored
             .excess
             .iter()
             .filter(|own| !matches!(own.limit, Limit::Efficiency | Limit::Rmse));
         let part: f64 = limits.map(|own| own.part).sum();
-        let value = self.value_of(goal, spikes, squares, samples);
+        let rmse = self.mean_square(&scored.tally).sqrt();
+        let value = self.value_of(goal, spikes, rmse, samples);
         if part > 0.0 { NOT_ALLOWED * (1.0 + part) + value } else { value }
     }
 
     /// Rates a result by how well it reaches a goal, and returns the rating. A smaller rating is better. The result
-    /// consists of a number of spikes and a sum of squared errors over `samples` samples. Ignores all limits that are
-    /// not part of the goal.
-    pub fn value_of(&self, goal: Goal, spikes: usize, squares: f64, samples: usize) -> f64 {
+    /// consists of a number of spikes in `samples` samples and an RMSE. Ignores all limits that are not part of the goal.
+    fn value_of(&self, goal: Goal, spikes: usize, rmse: f64, samples: usize) -> f64 {
         let range = (self.extent.max - self.extent.min).max(f64::MIN_POSITIVE);
-        let rmse = (squares / samples as f64).sqrt();
         let (error, part) = (rmse / range, spikes as f64 / samples as f64);
         match goal {
             Goal::LeastError(efficiency) => {
@@ -384,6 +374,20 @@ impl<'a> Problem<'a> {
             Goal::Front => error + part,
         }
     }
+
+    /// Returns the Pareto front, sorted by spikes: the settings that no other settings beat in both spikes and error.
+    pub(super) fn front(&self, mut all: Vec<Scored>) -> Vec<Scored> {
+        let key = |one: &Scored| one.tally.spikes as f64 / one.tally.samples as f64;
+        let error = |one: &Scored| self.mean_square(&one.tally);
+        all.sort_by(|a, b| key(a).total_cmp(&key(b)).then(error(a).total_cmp(&error(b))));
+        let mut least = f64::INFINITY;
+        all.retain(|one| {
+            let is_better = error(one) < least;
+            least = least.min(error(one));
+            is_better
+        });
+        all
+    }
 }
 
 /// Smallest result of [`Problem::value`] for settings that break a limit. Settings that break no limit have smaller
@@ -397,19 +401,6 @@ pub fn most_spikes(efficiency: f64, samples: usize) -> usize {
     let nearest = spikes.round();
     let is_count = (spikes - nearest).abs() < 1e-6;
     (if is_count { nearest } else { spikes.floor() }).max(0.0) as usize
-}
-
-/// Returns the Pareto front, sorted by spikes: the settings that no other settings beat in both spikes and error.
-pub fn front(mut all: Vec<Scored>) -> Vec<Scored> {
-    let key = |one: &Scored| one.tally.spikes as f64 / one.tally.samples as f64;
-    all.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.tally.squares.total_cmp(&b.tally.squares)));
-    let mut least = f64::INFINITY;
-    all.retain(|one| {
-        let is_better = one.tally.squares < least;
-        least = least.min(one.tally.squares);
-        is_better
-    });
-    all
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Requests to tune schemes on logs, and their results.
 
 use super::RequestKind;
-use super::problem::{Over, front};
+use super::problem::Over;
 use super::report::{Cut, Row, missed};
 use super::search::{Budget, Found, Method, search, share};
 use super::stretch::{HoldOut, cut};
@@ -235,16 +235,17 @@ pub fn tune(request: &TuneRequest, watch: &Watch) -> Result<Vec<Tuned>> {
                 tick: &tick,
             };
             match one(request, scheme, &channel, &budget)? {
-                Outcome::Row(row) => rows.push((scheme, *row)),
+                Outcome::Row(row, rmse) => rows.push((rmse, scheme, *row)),
                 Outcome::Curve(curve) => curves.push(curve),
                 Outcome::Missed(words) => missed.push(words),
             }
             before += 1;
         }
-        rows.sort_by(|(_, a), (_, b)| match request.goal {
+        rows.sort_by(|(one, _, a), (other, _, b)| match request.goal {
             Some(Goal::MostEfficient(_)) => b.tuned_on.efficiency.total_cmp(&a.tuned_on.efficiency),
-            _ => a.tuned_on.rmse.total_cmp(&b.tuned_on.rmse),
+            _ => one.total_cmp(other),
         });
+        let rows = rows.into_iter().map(|(_, scheme, row)| (scheme, row)).collect();
         all.push(Tuned { channel, rows, curves, missed, notes: notes.clone() });
     }
     Ok(all)
@@ -259,7 +260,8 @@ fn so_far(channel: &str, scheme: Scheme, best: &Scored) -> String {
 
 /// The outcome of one scheme on one channel.
 enum Outcome {
-    Row(Box<Row>),
+    /// The settings found, and the RMSE that the search reduced.
+    Row(Box<Row>, f64),
     Curve(Curve),
     Missed(Words),
 }
@@ -291,7 +293,9 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
     if problem.goal == Goal::Front || !best.is_allowed() {
         return Ok(Outcome::Missed(missed(&problem, &found, best)));
     }
-    Ok(Outcome::Row(Box::new(Row::new(&problem, channel, &found, best, request.below)?)))
+    let rmse = problem.mean_square(&best.tally).sqrt();
+    let row = Row::new(&problem, channel, &found, best, request.below)?;
+    Ok(Outcome::Row(Box::new(row), rmse))
 }
 
 /// Scores the settings of a Pareto front, and returns the curve of their efficiencies and errors. The settings are
@@ -304,10 +308,10 @@ fn curve(problem: &Problem, cut: &Cut, found: &Found, paper: Option<&Scored>) ->
     };
     let stride = found.front.len().div_ceil(400).max(1);
     let all: Vec<Scored> = found.front.iter().step_by(stride).filter_map(scored).collect();
-    let point = |one: &Scored| (one.tally.efficiency(), one.tally.rmse());
+    let point = |one: &Scored| (one.tally.efficiency(), problem.mean_square(&one.tally).sqrt());
     Curve {
         scheme: problem.scheme,
-        points: front(all).iter().map(point).collect(),
+        points: problem.front(all).iter().map(point).collect(),
         paper: paper.and_then(scored).map(|one| point(&one)),
     }
 }

@@ -7,7 +7,7 @@
 use super::Bound;
 use super::bounds::bounds;
 use super::guided::Guided;
-use super::problem::{Goal, Problem, Scored, front};
+use super::problem::{Goal, Problem, Scored};
 use super::space::{Role, Space};
 use super::strategy::Strategy;
 use catalogue::run::{Asked, Piece, Value};
@@ -115,7 +115,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     if let Some(best) = &run.found.best {
         run.found.bounds = bounds(problem, &space, &best.options);
     }
-    run.found.front = front(run.found.front);
+    run.found.front = problem.front(run.found.front);
     run.found
 }
 
@@ -135,13 +135,9 @@ impl Run<'_> {
     }
 
     pub(super) fn is_cut_short(&mut self) -> bool {
-        self.found.is_cut_short |= self.is_late();
-        self.found.is_cut_short
-    }
-
-    fn is_late(&self) -> bool {
         let is_late = self.budget.deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        is_late || (self.budget.is_stopped)()
+        self.found.is_cut_short |= is_late || (self.budget.is_stopped)();
+        self.found.is_cut_short
     }
 
     /// Scores options until the budget is spent, and keeps the best and the Pareto front. Returns each score, or `None`
@@ -164,7 +160,7 @@ impl Run<'_> {
         }
         // Whenever the list grows long, it is reduced to its Pareto front.
         if self.found.front.len() > 4000 {
-            self.found.front = front(std::mem::take(&mut self.found.front));
+            self.found.front = problem.front(std::mem::take(&mut self.found.front));
         }
         self.found.evaluated += all.len();
         (self.budget.tick)(self.found.evaluated, self.found.best.as_ref());
@@ -204,8 +200,9 @@ impl Run<'_> {
         let mut needed = 0;
         for stretch in problem.train {
             let (events, ..) = problem.run(&best.options, problem.sample, stretch).ok()?;
-            let counts = events.chunk_by(|a, b| a.sample == b.sample).map(<[_]>::len);
-            needed = needed.max(counts.max().unwrap_or_default());
+            let scored = stretch.scored_events(&events);
+            let counts = scored.flat_map(|own| own.chunk_by(|a, b| a.sample == b.sample));
+            needed = needed.max(counts.map(<[_]>::len).max().unwrap_or_default());
         }
         let enough = (2 * needed).max(ROOM);
         if enough as f64 >= best.options.number(axis.name)? {

@@ -31,6 +31,13 @@ pub(super) struct Axis {
     pub high: f64,
 }
 
+impl Axis {
+    /// Converts a number to its place on the axis: 0 at the lower bound, 1 at the upper bound.
+    pub(super) fn place(&self, number: f64) -> f64 {
+        (number - self.low) / (self.high - self.low).max(f64::MIN_POSITIVE)
+    }
+}
+
 /// The meaning of the numbers on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
@@ -158,8 +165,7 @@ impl Space {
                     Role::Around(..) if stratum % 3 == 0 => 0.0,
                     _ => axis.low + even * (axis.high - axis.low),
                 };
-                let place = (number - axis.low) / (axis.high - axis.low).max(f64::MIN_POSITIVE);
-                point.push(place.clamp(0.0, 1.0));
+                point.push(axis.place(number).clamp(0.0, 1.0));
             }
         }
         points
@@ -284,8 +290,7 @@ impl Space {
             };
             let value = value.filter(|value| value.is_finite());
             let value = value.unwrap_or(f64::midpoint(axis.low, axis.high));
-            let width = (axis.high - axis.low).max(f64::MIN_POSITIVE);
-            ((value - axis.low) / width).clamp(0.0, 1.0)
+            axis.place(value).clamp(0.0, 1.0)
         };
         self.axes.iter().map(place).collect()
     }

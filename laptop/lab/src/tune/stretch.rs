@@ -4,7 +4,7 @@ use super::RequestKind;
 use crate::Result;
 use crate::resolution::held;
 use crate::trial::Recording;
-use catalogue::run::{Given, SampleType};
+use catalogue::run::{Event, Given, SampleType};
 use std::ops::Range;
 
 /// Consecutive samples that are coded in one piece. Only the samples in the ranges `scored` are scored.
@@ -52,9 +52,10 @@ impl Stretch {
         self.rate.map(|rate| self.samples() as f64 / rate)
     }
 
-    /// Returns whether the sample of index `sample` is scored.
-    pub fn is_scored(&self, sample: u64) -> bool {
-        self.scored.iter().any(|own| (own.start as u64..own.end as u64).contains(&sample))
+    /// Returns the events of each range of samples that are scored. `events` must be in the order of their samples.
+    pub fn scored_events<'a>(&'a self, events: &'a [Event]) -> impl Iterator<Item = &'a [Event]> {
+        let before = move |sample: usize| events.partition_point(|own| own.sample < sample as u64);
+        self.scored.iter().map(move |own| &events[before(own.start)..before(own.end)])
     }
 
     /// Returns the samples, each rounded to the nearest value that the sample type `sample` can hold.
