@@ -34,6 +34,7 @@ class Control:
 
     def __init__(self, rate: int, drone: Drone = CRAZYFLIE):
         self.dt = F(1) / F(rate)
+        self.attitude_gains, self.rate_gains = ATTITUDE, RATE
         self.q = np.array([ONE, ZERO, ZERO, ZERO])  # w, x, y, z
         self.offset = np.zeros(3, F)
         self.integral = [ZERO] * 3
@@ -71,7 +72,7 @@ class Control:
             w * d - x * c + y * b - z * a,
         ]
         sign = TWO if way >= ZERO else -TWO
-        turns = [ATTITUDE[axis] * sign * left[axis] + feed[axis] for axis in range(3)]
+        turns = [self.attitude_gains[axis] * sign * left[axis] + feed[axis] for axis in range(3)]
         return [min(max(turn, -FASTEST_TURN), FASTEST_TURN) for turn in turns]
 
     def _wishes(self, rates, turns):
@@ -85,7 +86,7 @@ class Control:
             self.integral[axis] = min(max(integral, -MOST), MOST)
             slope = (rates[axis] - self.last[axis]) / self.dt
             self.slope[axis] = self.slope[axis] + SMOOTH * (slope - self.slope[axis])
-            wishes.append(RATE[axis] * error + self.integral[axis] - DERIVATIVE[axis] * self.slope[axis])
+            wishes.append(self.rate_gains[axis] * error + self.integral[axis] - DERIVATIVE[axis] * self.slope[axis])
         self.last = rates
         return wishes
 

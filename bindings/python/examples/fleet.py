@@ -5,7 +5,8 @@
 FOLDER holds flight logs of one kind, and X, Y and Z name its three turn rates, in rad/s. Without a folder, the recordings of
 this repository, a hexarotor's flight and an aircraft at rest, are cut into logs of two seconds. Every log becomes
 spikes and a row of a manifest; from a second of spikes, leaky neurons learn whether the aircraft flies. Logs that the
-manifest keeps for testing are not trained on.
+manifest keeps for testing are not trained on. By default these are other pieces of the same recordings, and the number of
+spikes alone tells them apart.
 
 Needs torch 1.13 or later, and snnTorch.
 """
