@@ -89,7 +89,7 @@ fn encode_to(
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
 ) -> Result<(Output, Vec<Words>)> {
-    if format.is_some() && input.is_stdin() {
+    if format.is_some() && input.is_read_once() {
         return Err(RequestKind::RangeAtEnd.into());
     }
     let encoded = encode_from(open, input, coding, |start| {
@@ -119,7 +119,7 @@ pub(crate) fn encode_from(
     parameters.check(scheme.info())?;
     let calibrated = match scheme.needs_signal(parameters) {
         None => None,
-        Some(needs) if input.is_stdin() => {
+        Some(needs) if input.is_read_once() => {
             return Err(RequestKind::ReadOnce { scheme: scheme.name(), needs }.into());
         }
         Some(_) => Some(calibrate(open, sample, parameters)?),
@@ -137,7 +137,7 @@ pub(crate) fn encode_from(
     let mut channels: Vec<Settings> = Vec::new();
     for (channel, first) in firsts.iter().enumerate() {
         let calibrated = calibrated.as_ref().and_then(|all| all.get(channel));
-        let known = Known { calibrated, first, can_calibrate: !input.is_stdin() };
+        let known = Known { calibrated, first, can_calibrate: !input.is_read_once() };
         let own = parameters.channel(scheme.info(), channel, firsts.len())?;
         let settings = scheme.resolve(sample, &own, &known);
         let settings = settings.map_err(|error| explained(error.into(), sample, first))?;
@@ -196,7 +196,7 @@ pub(crate) fn encode_from(
     let (output, summary) = writer.finish(&mut events)?;
     let mut notes = source.notes().to_vec();
     let lines = report(&summary, &clock, header.channels.len());
-    notes.extend(rounded.into_iter().chain(lines).map(Words::from));
+    notes.extend(rounded.into_iter().map(Words::from).chain(lines));
     for (((fit, settings), &spikes), name) in
         fits.iter().zip(&header.channels).zip(&spikes).zip(source.names())
     {
@@ -244,14 +244,10 @@ fn calibrate(open: &Open<'_>, sample: SampleType, parameters: &Asked) -> Result<
     }
 }
 
-/// Formats the numbers of samples and spikes, and the summary of the times, as lines of notes.
-fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<String> {
+/// Returns the numbers of samples and spikes, and the summary of the times, as notes.
+fn report(summary: &Summary, clock: &Clock, channels: usize) -> Vec<Words> {
     let Summary { samples, rejected, events } = *summary;
     let of = if channels > 1 { format!(" of {channels} channels") } else { String::new() };
-    let mut lines = vec![format!("{samples} samples{of}, {events} spikes")];
-    if rejected > 0 {
-        lines.push(format!("{rejected} samples were not finite or missing and emitted nothing"));
-    }
-    lines.push(clock.to_string());
-    lines
+    let counts = Words::from(format!("{samples} samples{of}, {events} spikes"));
+    crate::trial::notes(&[counts], rejected as usize, clock)
 }

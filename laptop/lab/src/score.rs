@@ -46,9 +46,8 @@ pub struct Figures {
 impl Figures {
     /// Returns the figures of a trial, with the recording's length and largest slope.
     pub fn of(recording: &Recording, trial: &Trial) -> Self {
-        let slope = Slope::new(trial.scheme, recording, &trial.settings);
-        let notes = trial.notes.clone();
-        Self::new(trial.scheme, &trial.settings, trial.sums, recording.seconds(), (slope, notes))
+        let about = (trial.slope.clone(), trial.notes.clone());
+        Self::new(trial.scheme, &trial.settings, trial.sums, recording.seconds(), about)
     }
 
     /// Computes the figures of a scheme from the sums over a recording. `seconds` is the recording's length.
@@ -102,8 +101,7 @@ pub fn score(
     asked: &Asked,
     sample: SampleType,
 ) -> Result<Scored> {
-    let is_pipe = input.input.metadata().is_ok_and(|own| !own.is_file() && !own.is_dir());
-    if input.is_stdin() || is_pipe {
+    if input.is_read_once() {
         let recording = Recording::read(input)?;
         let figures = |scheme: &Scheme| {
             let trial = Trial::new(*scheme, asked, sample, &recording);

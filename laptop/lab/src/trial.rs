@@ -4,6 +4,7 @@ use crate::Result;
 use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind};
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
+use crate::slope::Slope;
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
@@ -188,6 +189,8 @@ pub struct Trial {
     pub decoded: Vec<f64>,
     /// Numbers of samples and spikes, and sums of the errors.
     pub(crate) sums: Sums,
+    /// The largest slope of the recording, compared with the largest slope that the code can follow, if there is one.
+    pub(crate) slope: Option<Slope>,
 }
 
 impl Trial {
@@ -201,7 +204,7 @@ impl Trial {
         sample: SampleType,
         recording: &Recording,
     ) -> Result<Self> {
-        let mut calibrated = Calibrated::new(sample);
+        let mut calibrated = Calibrated::of(sample, asked);
         calibrated.observe(&recording.values);
         let mean = recording.values.iter().sum::<f64>() / recording.values.len() as f64;
         let known = (&calibrated, mean);
@@ -227,6 +230,7 @@ impl Trial {
             events,
             decoded,
             sums: measure.sums(),
+            slope: measure.slope(recording.rate),
         })
     }
 

@@ -1,6 +1,6 @@
 //! Advice on one scheme for all channels together. The schemes are ranked by bytes a second on the link.
 
-use super::flown::{Error, Flown, Inertial, flown};
+use super::flown::{Error, Flown, flown};
 use super::{Advice, AdviseRequest, Tuning};
 use crate::Result;
 use crate::brief::{brief, short};
@@ -90,8 +90,8 @@ impl BankAdvice {
         all.others.clone_from(&advised.unflown);
         let rate = first.rate.ok_or(RequestKind::BankNeedsRate)?;
         all.unknown = unknown(request, rate);
-        let unnamed = heard.iter().map(|(_, own)| own.name.as_str());
-        let unnamed: Vec<_> = unnamed.filter(|own| Inertial::named(own).is_none()).collect();
+        let unnamed = heard.iter().filter(|(own, _)| own.flown.is_none());
+        let unnamed: Vec<_> = unnamed.map(|(_, own)| own.name.as_str()).collect();
         if request.loop_bandwidth.is_some() && request.max_rmse.is_none() && !unnamed.is_empty() {
             all.unknown.push(format!(
                 "whether it is as fine as what flew, on {}: their names tell no unit; an RMSE that the loop bears would tell",

@@ -131,7 +131,7 @@ impl Inertial {
         let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
         let words = || name.split(|own: char| !own.is_alphanumeric());
         let is_rate = has(&RATES);
-        if !is_rate && !has(&FORCES) || has(&["accsmooth", "raw_imu"]) {
+        if !is_rate && !has(&FORCES) || has(&["accsmooth", "accuracy", "raw_imu"]) {
             return None;
         }
         let last = words().rfind(|own| !own.is_empty() && !UNITS.contains(own))?;
@@ -277,6 +277,7 @@ mod tests {
             "RAW_IMU.xgyro",
             "GPS_RAW_INT.h_acc",
             "GPS.HAcc",
+            "vehicle_gps_position.horizontal_accuracy",
             "AHRS.accel_weight",
             "accelerometer_m_s2",
         ] {

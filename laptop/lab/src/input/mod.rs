@@ -318,9 +318,15 @@ impl InputOptions {
         Ok(own)
     }
 
-    /// Returns whether the input is standard input, which can be read only once.
+    /// Returns whether the input is standard input.
     pub fn is_stdin(&self) -> bool {
         self.input == Path::new("-")
+    }
+
+    /// Returns whether the recording can be read only once: from standard input, or from a pipe.
+    pub fn is_read_once(&self) -> bool {
+        let is_pipe = || self.input.metadata().is_ok_and(|own| !own.is_file() && !own.is_dir());
+        self.is_stdin() || is_pipe()
     }
 
     /// Returns the name of the input for messages to the user: its path, or `standard input`.

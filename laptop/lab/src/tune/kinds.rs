@@ -48,9 +48,9 @@ kinds! {
         NotHeld { why: String, error: Box<crate::Error> } => ("{why}: {}", error.spelled(spell)),
         // Encoding and decoding.
         RangeAtEnd =>
-            ("messages tell the signal's range, which standard input gives only at its end"),
+            ("messages tell the signal's range, which a pipe or standard input gives only at its end"),
         ReadOnce { scheme: &'static str, needs: Needs } => (
-            "{scheme} calibrates over the whole signal, which standard input gives only once; give {}",
+            "{scheme} calibrates over the whole signal, which a pipe or standard input gives only once; give {}",
             needs.spelled(spell)
         ),
         Addresses { channels: usize, neurons: usize } =>

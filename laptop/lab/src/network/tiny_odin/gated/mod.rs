@@ -154,11 +154,14 @@ fn targets(fired: &Trains, neurons: usize) -> Vec<Vec<bool>> {
     all
 }
 
-/// Returns, for each layer and neuron, the potential that the neuron compares with its threshold in each step.
+/// Returns, for each layer and neuron, the potential that the neuron compares with its threshold in each step, as a
+/// multiple of the threshold.
 fn potentials(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Vec<f64>>> {
     let of_layer = |(layer, before): (&Layer, &Trains)| {
         let mut all = vec![Vec::with_capacity(before.len()); layer.neurons.len()];
-        layer.follow(before, |neuron, potential| all[neuron].push(potential));
+        layer.follow(before, |neuron, potential| {
+            all[neuron].push(potential / layer.neurons[neuron].threshold);
+        });
         all
     };
     trained.layers.iter().zip(std::iter::once(inputs).chain(fired)).map(of_layer).collect()
@@ -169,7 +172,7 @@ fn potentials(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<V
 struct Goal<'a> {
     /// For each neuron, whether it fires in each step.
     targets: &'a [Vec<Vec<bool>>],
-    /// For each neuron, the potential that it compares with its threshold in each step.
+    /// For each neuron, the potential that it compares with its threshold in each step, as a multiple of the threshold.
     potentials: &'a [Vec<Vec<f64>>],
     fired: &'a [Trains],
 }

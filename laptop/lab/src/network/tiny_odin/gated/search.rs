@@ -48,7 +48,7 @@ pub(super) struct Aim<'a> {
     pub drive: &'a Drive,
     /// For each step, whether the neuron should fire.
     pub target: &'a [bool],
-    /// For each step, the potential that the neuron should compare with its threshold, in units of the trained network.
+    /// For each step, the potential that the neuron should compare with its threshold, as a multiple of the threshold.
     pub potentials: &'a [f64],
     pub shape: &'a Shape,
 }
@@ -75,7 +75,7 @@ struct Choice {
 pub(super) fn search(layer: &Layer, at: usize, aim: &Aim, climbs: usize) -> (f64, GatedNeuron) {
     let threshold = layer.neurons[at].threshold;
     let distance = |choice: Choice, most| {
-        made(layer, at, aim.shape, choice).distance(aim, choice.unit / threshold, threshold, most)
+        made(layer, at, aim.shape, choice).distance(aim, choice.unit / threshold, most)
     };
     let neighbours = |choice: Choice| choice.neighbours(aim.shape);
     let mut first = choices(layer, at, aim.shape);
@@ -228,9 +228,9 @@ impl GatedNeuron {
     /// Runs the neuron on the spikes that act on it in `aim`, and returns the distance between the neuron's spikes and
     /// the target of `aim`, plus the squared errors of its potentials in units of its threshold, each step's at most 1.
     /// (Of several neurons with the same spikes, that with the nearest potentials is the most likely to suit other
-    /// recordings.) `unit` converts the chip's potentials to those units, and `threshold` is the trained one. Returns
-    /// infinity as soon as the result reaches `most`.
-    fn distance(&self, aim: &Aim, unit: f64, threshold: f64, most: f64) -> f64 {
+    /// recordings.) `unit` converts the chip's potentials to those units. Returns infinity as soon as the result reaches
+    /// `most`.
+    fn distance(&self, aim: &Aim, unit: f64, most: f64) -> f64 {
         let mut distance = Distance::default();
         let (mut potential, mut first, mut errors) = (0_i32, 0, 0.0);
         let ends = aim.drive.ends.iter().zip(aim.target);
@@ -241,7 +241,7 @@ impl GatedNeuron {
                 added.add(self.weights[usize::from(spike)]);
             }
             first = end;
-            let error = f64::from(potential + added.all) * unit - aim.potentials[step] / threshold;
+            let error = f64::from(potential + added.all) * unit - aim.potentials[step];
             errors += error.powi(2).min(1.0);
             let fires = self.step(aim.shape, aim.shape.turn(step), &mut potential, added);
             distance.step(fires.into(), target.into());
