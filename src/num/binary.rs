@@ -86,8 +86,9 @@ impl Binary for f32 {
     }
 }
 
-/// Whether the core divides in an instruction: every one but a Cortex-M0, which has no compare-and-swap either.
-pub(super) const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
+/// Whether the core divides, and counts leading zeros, in an instruction: every one but a Cortex-M0, which has no
+/// compare-and-swap either.
+pub(crate) const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
 
 macro_rules! integer {
     // 16 digits of a range of 16 bits fit 32.
@@ -129,15 +130,17 @@ macro_rules! integer {
             fn of_digits(digits: u32, count: u32, min: Self, max: Self) -> Self {
                 let [low, high] = [min, max].map(|x| i32::from($to_bits(x)));
                 let range = <$wide>::from(high.wrapping_sub(low).cast_unsigned());
-                // How far above the minimum the first and the last value with these digits are.
+                // How far above the minimum the first value with these digits is, and the first one after them.
                 let above = range.wrapping_mul(digits.into()).wrapping_add(ones(count).into());
                 let first = (above >> (count & 31)) as i32;
-                let last = if digits == ones(count) {
-                    range as i32
+                let after = (above.wrapping_add(range) >> (count & 31)) as i32;
+                let is_last = digits == ones(count);
+                let middle = if <$bits>::BITS == 16 {
+                    first.wrapping_add(after).wrapping_add(is_last.into()).wrapping_sub(1) >> 1
                 } else {
-                    ((above.wrapping_add(range) >> (count & 31)) as i32).wrapping_sub(1)
+                    let last = if is_last { range as i32 } else { after.wrapping_sub(1) };
+                    first.wrapping_add(last.wrapping_sub(first) >> 1)
                 };
-                let middle = first.wrapping_add(last.wrapping_sub(first) >> 1);
                 $from_bits(low.wrapping_add(middle) as $bits)
             }
 

@@ -52,7 +52,11 @@ impl Place {
                 let (steps, jitter) = nearest_step(since, period.into());
                 bits.put(1, 1);
                 bits.put_code(zigzag(steps.wrapping_sub(1)), 0);
-                bits.put_code(zigzag(jitter), jitter_bits.into());
+                match u32::from(jitter_bits) {
+                    // The code of 0, as a timer has no jitter.
+                    jitter_bits if jitter == 0 => bits.put(1 << jitter_bits, jitter_bits + 1),
+                    jitter_bits => bits.put_code(zigzag(jitter), jitter_bits),
+                }
                 bits.put_code(address << POLARITY | up, address_bits);
             }
         }

@@ -251,11 +251,9 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
 
     #[inline]
     fn decode(&self, state: &mut PotentialState<S>, steps: Steps<K>) -> S {
-        let mut potential = state.potential.leaked(self.power);
-        let step = self.unit().times(steps.count().unsigned_abs().into());
-        potential = if steps.count() < 0 { potential.minus(step) } else { potential.plus(step) };
-        state.potential = potential;
-        self.reference.raised(potential.halved_to_nearest(self.power))
+        let step = self.unit().times(steps.count().into());
+        state.potential = state.potential.leaked(self.power).plus(step);
+        self.reference.raised(state.potential.halved_to_nearest(self.power))
     }
 
     fn resync(&self, state: &mut PotentialState<S>, value: S) {
