@@ -23,15 +23,10 @@ fn code(value: u32, k: u32) -> (u32, u32, u32) {
 /// The length of a number in bits. A Cortex-M0 has small ones in a table, as it would call the runtime.
 #[inline]
 fn bits_of(number: u32) -> u32 {
-    const SMALL: [u8; 32] = {
-        let mut lengths = [0; 32];
-        let mut number = 1;
-        while number < 32 {
-            lengths[number] = lengths[number / 2] + 1;
-            number += 1;
-        }
-        lengths
-    };
+    const SMALL: [u8; 32] = [
+        0, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5,
+        5, 5,
+    ];
     match SMALL.get(number as usize) {
         Some(&bits) if !HAS_DIVISION => bits.into(),
         _ => 32 - number.leading_zeros(),
