@@ -86,6 +86,31 @@ impl Binary for f32 {
     }
 }
 
+/// The first `count` binary digits of `rest / range`, exactly; `rest` is less than `range`.
+#[inline]
+fn by_doubling(mut rest: u32, range: u32, count: u32) -> u32 {
+    let mut digits = 0;
+    for _ in 0..count {
+        // Twice the rest may exceed 32 bits, so that the rest is compared with `range - rest`.
+        let lacking = range.wrapping_sub(rest);
+        digits <<= 1;
+        if rest >= lacking {
+            rest = rest.wrapping_sub(lacking);
+            digits |= 1;
+        } else {
+            rest = rest.wrapping_add(rest);
+        }
+    }
+    digits
+}
+
+/// [`by_doubling`] out of line, for ranges so wide that a division has no room for the digits.
+#[cold]
+#[inline(never)]
+fn without_room(rest: u32, range: u32, count: u32) -> u32 {
+    by_doubling(rest, range, count)
+}
+
 /// Whether the core divides, and counts leading zeros, in an instruction: every one but a Cortex-M0, which has no
 /// compare-and-swap either.
 pub(crate) const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
@@ -107,23 +132,14 @@ macro_rules! integer {
                 }
                 let [value, min, max] = [self.max(min), min, max].map(|x| i32::from($to_bits(x)));
                 let range = max.wrapping_sub(min).cast_unsigned();
-                let mut rest = value.wrapping_sub(min).cast_unsigned();
-                if HAS_DIVISION && (<$bits>::BITS == 16 || range.leading_zeros() >= count) {
-                    return (rest << (count & 31)).checked_div(range).unwrap_or(0);
+                let rest = value.wrapping_sub(min).cast_unsigned();
+                if !HAS_DIVISION {
+                    by_doubling(rest, range, count)
+                } else if <$bits>::BITS == 16 || range.leading_zeros() >= count {
+                    (rest << (count & 31)).checked_div(range).unwrap_or(0)
+                } else {
+                    without_room(rest, range, count)
                 }
-                let mut digits = 0;
-                for _ in 0..count {
-                    // Twice the rest may exceed 32 bits, so that the rest is compared with `range - rest`.
-                    let lacking = range.wrapping_sub(rest);
-                    digits <<= 1;
-                    if rest >= lacking {
-                        rest = rest.wrapping_sub(lacking);
-                        digits |= 1;
-                    } else {
-                        rest = rest.wrapping_add(rest);
-                    }
-                }
-                digits
             }
 
             #[inline]
