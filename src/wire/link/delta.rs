@@ -56,7 +56,7 @@ impl Place {
                 let jitter_bits = u32::from(jitter_bits);
                 if jitter == 0 && !HAS_DIVISION {
                     // The code of 0, as a timer has no jitter. Other cores code any number as quickly.
-                    bits.put(1 << jitter_bits, jitter_bits + 1);
+                    bits.put(1_u32.wrapping_shl(jitter_bits), jitter_bits + 1);
                 } else {
                     bits.put_code(zigzag(jitter), jitter_bits);
                 }
