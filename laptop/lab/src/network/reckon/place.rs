@@ -12,9 +12,12 @@ const OUTPUTS: usize = 16;
 /// potential by its decay factor.
 const SAME: f64 = 1e-4;
 
+/// The order of a layer's parts on the chip. Two parts of the same neuron form a pair if their leaks are the same.
+const PARTS: [&[Part]; 3] = [&[Part::Main, Part::Over], &[Part::Return], &[Part::Relay]];
+
 /// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which
-/// shares a leak and a threshold. The neurons in a pair are therefore the same part of neurons of the same layer, and
-/// the trained leaks of the two are as similar as possible.
+/// shares a leak and a threshold. The neurons in a pair therefore belong to the same layer, and their leaks are as
+/// similar as possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     /// For each neuron of the chip, the part of a neuron of the network that it is. `None` if the chip's neuron stays
@@ -57,21 +60,24 @@ impl Places {
             order.sort_by(|&one, &other| {
                 layer.neurons[one].keep.total_cmp(&layer.neurons[other].keep)
             });
-            for &part in Part::of(layer) {
+            let has = |part: &&Part| Part::of(layer).contains(part);
+            for parts in PARTS.iter().filter(|parts| parts.iter().any(|part| has(&part))) {
                 if !neurons.len().is_multiple_of(2) {
                     neurons.push(None);
                 }
                 let mut last = 0.0;
                 for &neuron in &order {
-                    // Parts that only repeat spikes all have the same leak.
-                    let keep = if part.repeats() { 1.0 } else { layer.neurons[neuron].keep };
-                    if !neurons.len().is_multiple_of(2) && keep - last > most {
-                        neurons.push(None);
+                    for &part in parts.iter().filter(has) {
+                        // Parts that only repeat spikes all have the same leak.
+                        let keep = if part.repeats() { 1.0 } else { layer.neurons[neuron].keep };
+                        if !neurons.len().is_multiple_of(2) && keep - last > most {
+                            neurons.push(None);
+                        }
+                        last = keep;
+                        let seat = Seat { layer: at, part, neuron };
+                        by_seat.insert(seat, neurons.len());
+                        neurons.push(Some(seat));
                     }
-                    last = keep;
-                    let seat = Seat { layer: at, part, neuron };
-                    by_seat.insert(seat, neurons.len());
-                    neurons.push(Some(seat));
                 }
             }
             let (count, needed) = (layer.neurons.len(), neurons.len());

@@ -237,7 +237,7 @@ pub(super) fn quantise(
     let total: usize = places.neurons.iter().flatten().count();
     let rule = Rule { ticks, resets_to_zero, fires: at };
     let chosen = pairs.par_iter().map(|pair| {
-        let chosen = Chosen::new(pair, original.group(pair[0].seat), shifts, rule);
+        let chosen = Chosen::new(pair, &original, shifts, rule);
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
         chosen
     });
@@ -315,10 +315,10 @@ struct Chosen {
 }
 
 impl Chosen {
-    /// Chooses the scale of a pair, as [`quantise`] says. Both neurons belong to `group`.
-    fn new(pair: &[Source], group: &Group, shifts: [u8; 2], rule: Rule) -> Self {
+    /// Chooses the scale of a pair, as [`quantise`] says.
+    fn new(pair: &[Source], original: &Recorded, shifts: [u8; 2], rule: Rule) -> Self {
         let keep = mean_keep(pair, rule.ticks);
-        let of = |source| Traces::new(source, keep, rule, group);
+        let of = |source: &Source| Traces::new(source, keep, rule, original.group(source.seat));
         let traces: Vec<Traces> = pair.iter().map(of).collect();
         let most = scale(pair, shifts);
         let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
@@ -336,7 +336,7 @@ impl Chosen {
         let simulated = rounded.into_iter().map(|(error, scale, all)| {
             let of = |(source, rounded): (&Source, &Rounded)| {
                 let held = Held::new(rounded, keep, scale, shifts, rule);
-                held.distance(group, source.seat.neuron)
+                held.distance(original.group(source.seat), source.seat.neuron)
             };
             let distance: f64 = pair.iter().zip(&all).map(of).sum();
             (distance + error, Self { keep, scale, rounded: all })
