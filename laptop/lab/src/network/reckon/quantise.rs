@@ -135,11 +135,13 @@ impl Change {
     }
 }
 
-/// A neuron of the chip in double precision, and the weights that lead to the neuron. Weights and potentials are in units of the
-/// neuron's threshold.
+/// A neuron of the chip in double precision, and the weights that lead to the neuron. Weights and potentials are in
+/// units of the neuron's threshold.
 pub(super) struct Source {
     pub(super) seat: Seat,
     pub(super) keep: f64,
+    /// The neuron's threshold, in the units of the trained network.
+    pub(super) threshold: f64,
     /// The weight of each input.
     pub(super) inputs: Vec<f64>,
     pub(super) bias: f64,
@@ -228,7 +230,14 @@ pub(super) fn quantise(
         .map(|pair| pair.into_iter().map(|seat| original.source(seat)).collect())
         .collect();
     let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
-    let change = |&shifts: &[u8; 2]| pairs.iter().map(|pair| change(pair, shifts)).sum::<f64>();
+    let are_whole = |shifts: [u8; 2]| {
+        let mut pairs = pairs.iter();
+        ticks == 1 && pairs.all(|pair| exact_scale(pair, shifts).is_some())
+    };
+    let change = |&shifts: &[u8; 2]| {
+        let changes = pairs.iter().map(|pair| change(pair, shifts));
+        if are_whole(shifts) { -1.0 } else { changes.sum::<f64>() }
+    };
     let changes: Vec<([u8; 2], f64)> = all.map(|shifts| (shifts, change(&shifts))).collect();
     let best = changes.iter().min_by(|(_, one), (_, other)| one.total_cmp(other));
     let shifts = best.map_or([0; 2], |(shifts, _)| *shifts);
@@ -307,6 +316,23 @@ fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
     (kept.sum::<f64>() / pair.len().max(1) as f64 * KEEP).round() as u16
 }
 
+/// Returns the scale at which the chip's integers are exactly the trained numbers, as in networks that were trained with
+/// them; `None` if there is none. `shifts` has the same meaning as for [`scale`].
+fn exact_scale(pair: &[Source], shifts: [u8; 2]) -> Option<f64> {
+    let scale = pair.first().map_or(1.0, |source| source.threshold);
+    let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
+    let is_whole = |number: f64, of: f64| (number * of - clipped(number * of)).abs() < 1e-9;
+    let keep = mean_keep(pair, 1);
+    let are_whole = pair.iter().all(|source| {
+        source.threshold == scale
+            && source.bias == 0.0
+            && source.keep * KEEP == f64::from(keep)
+            && source.inputs.iter().all(|weight| is_whole(*weight, inputs))
+            && source.recurrent.iter().all(|(_, weight)| is_whole(*weight, recurrent))
+    });
+    (are_whole && scale <= 32_767.0).then_some(scale)
+}
+
 /// The scale and the leak of a pair, and its neurons' weights in the chip's integers.
 struct Chosen {
     keep: u16,
@@ -320,6 +346,12 @@ impl Chosen {
         let keep = mean_keep(pair, rule.ticks);
         let of = |source: &Source| Traces::new(source, keep, rule, original.group(source.seat));
         let traces: Vec<Traces> = pair.iter().map(of).collect();
+        if let Some(scale) = exact_scale(pair, shifts).filter(|_| rule.ticks == 1) {
+            let of = |(source, traces): (&Source, &Traces)| {
+                Rounded::new(source, traces, keep, scale, shifts, 1)
+            };
+            return Self { keep, scale, rounded: pair.iter().zip(&traces).map(of).collect() };
+        }
         let most = scale(pair, shifts);
         let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
             .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))

@@ -135,6 +135,7 @@ impl<'a> Recorded<'a> {
         let mut source = Source {
             seat,
             keep,
+            threshold,
             inputs: vec![0.0; trained.inputs()],
             bias: 0.0,
             raise: 0.0,
