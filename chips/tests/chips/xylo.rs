@@ -185,13 +185,17 @@ impl Registers for Table {
     }
 }
 
+/// Reads numbers that spaces separate.
+fn numbers(column: &str) -> Vec<u32> {
+    column.split_whitespace().map(|one| one.parse().unwrap()).collect()
+}
+
 /// The vendor's own software, run by `peers/xylo.py`, takes as many of the counts as [`pack_counts`], and reads counts,
 /// bank, end of a step and outputs from the same registers as the driver.
 #[test]
 fn the_vendors_software_reads_the_same_registers() {
     for line in include_str!("../peers/xylo.txt").lines() {
-        let numbers = |column: &str| column.split_whitespace().map(|one| one.parse().unwrap());
-        let columns: Vec<Vec<u32>> = line.split(';').map(|one| numbers(one).collect()).collect();
+        let columns: Vec<Vec<u32>> = line.split(';').map(numbers).collect();
         let [counts, taken, values, read, done, outputs] = &columns[..] else { panic!("{line}") };
         let packed = |counts: &[u32]| pack_counts(std::array::from_fn(|at| counts[at] as u8));
         assert_eq!(packed(counts), packed(taken), "{line}");
