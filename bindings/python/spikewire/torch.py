@@ -178,8 +178,8 @@ def _backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None]:
 _encode.register_autograd(_backward, setup_context=_keep)
 
 
-#: The part of a layer's law that takes all steps at once, and that of one step: from what arrives and the state before, which is
-#: None at rest, to potentials, spikes, and the state behind.
+#: A layer's law. The first function turns the layer's inputs in all steps into what drives its neurons. The second takes one
+#: step, from what drives the neurons and the state before (None at rest), to potentials, spikes and the state behind.
 _Law = tuple[Callable[[Tensor], Tensor], Callable[[Tensor, Any], tuple[Tensor, Tensor, Any]]]
 
 
@@ -194,6 +194,11 @@ def _run(x: Tensor, laws: Iterable[_Law]) -> list[tuple[Tensor, Tensor]]:
         reached, x = (torch.stack(own) for own in zip(*steps))
         layers.append((reached, x))
     return layers
+
+
+def _passed(value: Tensor, own: Tensor) -> Tensor:
+    """`value`, whose gradients pass straight on to `own`."""
+    return value.detach() + (own - own.detach())
 
 
 class _Chip(nn.Module):
@@ -214,7 +219,7 @@ class _Chip(nn.Module):
         self.recurrent: nn.ParameterList = nn.ParameterList(own)
 
     def _rounded(self, own: Tensor) -> Tensor:
-        return own + (own.detach().round().clamp(*self._RANGE) - own.detach())
+        return _passed(own.round().clamp(*self._RANGE), own)
 
     def whole(self) -> list[Tensor]:
         """The chip's weights by layer, [from, to]; gradients pass on to those that are trained."""
@@ -346,8 +351,8 @@ class ReckOn(_Chip):
                 driven = driven + before @ back
             share = potentials * (self._kept / 32768)
             # Products have 31 bits, of which single precision would round some.
-            down = (potentials.detach().double() * self._kept / 32768).floor().to(share.dtype)
-            kept, spiked = down + (share - share.detach()), before.detach()
+            down = (potentials.double() * self._kept / 32768).floor().to(share.dtype)
+            kept, spiked = _passed(down, share), before.detach()
             driven = driven + (kept - self.threshold * spiked if self.subtract else kept * (1 - spiked))
         reached = driven.clamp(-32768, 32767)
         fired = _Fire.apply(reached, self.threshold, True)
@@ -485,11 +490,6 @@ class Controller(nn.Module):
         return (potentials / (scale * finer)).float()
 
 
-def _passed(value: Tensor, own: Tensor) -> Tensor:
-    """`value`, whose gradients pass straight on to `own`."""
-    return value.detach() + (own - own.detach())
-
-
 class _Layer(nn.Module):
     """A layer of the controller, out of what its file holds."""
 
@@ -519,7 +519,7 @@ class _Layer(nn.Module):
     def held(self) -> dict[str, Tensor]:
         """The numbers in which the controller calculates; gradients pass on to those that are trained."""
         held: dict[str, Tensor] = dict(self.named_parameters())
-        (scale, finer) = self.unit()
+        scale, finer = self.unit()
         for name, own in held.items():
             is_share, is_weight = name.endswith("keep"), name in ("weights", "recurrent")
             if is_share:
