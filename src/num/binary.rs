@@ -47,6 +47,12 @@ fn digit_by_digit(mut rest: f32, range: f32, count: u32) -> u32 {
     digits
 }
 
+/// Whether a number above 0 is a power of two, and not subnormal: it has no fraction. Also true of infinity.
+#[inline]
+const fn is_power_of_two(number: f32) -> bool {
+    number.to_bits() << 9 == 0
+}
+
 impl Binary for f32 {
     /// Rounds `self - min` and `max - min` once each; the rest is exact.
     ///
@@ -63,7 +69,13 @@ impl Binary for f32 {
         let (rest, range) = (self - min, max - min);
         let place = rest / range * (1_u32 << (count & 31)) as f32;
         let digits = place as u32;
-        if digits as f32 == place { digit_by_digit(rest, range, count) } else { digits }
+        // Dividing by a power of two does not round, unless the distance itself has been rounded up to the range.
+        let is_exact = is_power_of_two(range) && digits >> (count & 31) == 0;
+        if digits as f32 == place && !is_exact {
+            digit_by_digit(rest, range, count)
+        } else {
+            digits
+        }
     }
 
     /// `min + (max - min) (2 digits + 1) / 2^(count + 1)`: the quotient is exact, the rest rounded once each.

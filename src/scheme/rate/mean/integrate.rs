@@ -110,6 +110,21 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         self.threshold
     }
 
+    /// The reference, the value without spikes.
+    pub const fn reference(&self) -> S {
+        self.reference
+    }
+
+    /// The power `k` of the leak and of the decoder's mean, which is over about `2^k` samples.
+    pub const fn power(&self) -> u8 {
+        self.power
+    }
+
+    /// Whether the potential leaks.
+    pub const fn is_leaky(&self) -> bool {
+        self.is_leaky
+    }
+
     #[inline]
     fn unit(&self) -> S::Total {
         self.threshold.offset_from(S::ZERO)
