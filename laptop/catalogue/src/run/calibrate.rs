@@ -61,8 +61,7 @@ impl Calibrated {
     /// samples, or if quantiles were not needed.
     pub fn quantiles(&self, count: usize) -> Option<Vec<f64>> {
         let part = |i: usize| (2 * i + 1) as f64 / (2 * count) as f64;
-        let quantiles = self.quantiles.as_ref()?;
-        (0..count).map(|i| quantiles.quantile(part(i))).collect()
+        self.quantiles.as_ref()?.quantiles((0..count).map(part))
     }
 
     /// Returns the threshold of temporal contrast, from the differences or from their magnitudes.

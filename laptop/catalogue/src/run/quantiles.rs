@@ -55,18 +55,20 @@ impl Quantiles {
         self.counts[place + first..=place + last].copy_from_slice(&halved);
     }
 
-    /// Returns the value below which this share of the samples lies; `None` without samples.
-    pub(super) fn quantile(&self, part: f64) -> Option<f64> {
-        let wanted = part * self.counts.iter().sum::<u64>() as f64;
-        let mut below = 0.0;
-        for (cell, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-            let rest = wanted - below;
-            if rest <= count as f64 {
-                return Some(self.low + self.width * (cell as f64 + rest / count as f64));
+    /// Returns the values below which shares of the samples lie; `None` without samples. The shares must rise.
+    pub(super) fn quantiles(&self, parts: impl Iterator<Item = f64>) -> Option<Vec<f64>> {
+        let all = self.counts.iter().sum::<u64>() as f64;
+        let mut cells = self.counts.iter().enumerate().filter(|(_, count)| **count > 0);
+        let (mut cell, mut count, mut below) = (0, 0.0, 0.0);
+        let quantile = |part: f64| {
+            while part * all - below > count || count == 0.0 {
+                below += count;
+                let (next, own) = cells.next()?;
+                (cell, count) = (next, *own as f64);
             }
-            below += count as f64;
-        }
-        None
+            Some(self.low + self.width * (cell as f64 + (part * all - below) / count))
+        };
+        parts.map(quantile).collect()
     }
 }
 
@@ -80,7 +82,7 @@ mod tests {
     fn quantiles_of_what_was_seen() {
         for (scale, offset) in [(1.0, 0.0), (1e-9, 0.0), (1e9, -3e9), (0.5, -9.81), (1.0, 1e6)] {
             let mut quantiles = Quantiles::new();
-            assert_eq!(quantiles.quantile(0.5), None);
+            assert_eq!(quantiles.quantiles([0.5].into_iter()), None);
             let spread = |i: u32| f64::from(i * 7919 % 10_007) / 10_007.0;
             let mut samples: Vec<f64> =
                 (0..10_007).map(|i| spread(i).powi(3) * scale + offset).collect();
@@ -88,9 +90,10 @@ mod tests {
                 quantiles.observe(*sample);
             }
             samples.sort_by(f64::total_cmp);
-            for part in [0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99] {
-                let (own, sorted) =
-                    (quantiles.quantile(part).unwrap(), samples[(part * 10_007.0) as usize]);
+            let parts = [0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99];
+            let found = quantiles.quantiles(parts.into_iter()).unwrap();
+            for (part, own) in parts.into_iter().zip(found) {
+                let sorted = samples[(part * 10_007.0) as usize];
                 assert!((own - sorted).abs() <= scale / 1000.0, "{part}: {own} for {sorted}");
             }
         }
@@ -103,7 +106,7 @@ mod tests {
             for _ in 0..5 {
                 quantiles.observe(value);
             }
-            let own = quantiles.quantile(0.3).unwrap();
+            let own = quantiles.quantiles([0.3].into_iter()).unwrap()[0];
             assert!((own - value).abs() <= value.abs() * 1e-8 + 1e-290, "{own} for {value}");
         }
     }

@@ -7,8 +7,8 @@
 
 use super::Stretch;
 use super::chance::Chance;
-use super::problem::{Goal, NOT_ALLOWED, Problem, Scored, most_spikes};
-use super::space::{Role, Space};
+use super::problem::{Goal, Problem, Scored, most_spikes};
+use super::space::{Axis, Role, Space};
 use super::surrogate::{Hyper, Surrogate};
 use std::collections::HashSet;
 use std::f64::consts::TAU;
@@ -28,7 +28,9 @@ const REFIT: usize = 4;
 const STEPS: (f64, f64, f64) = (2e-3, 0.15, 0.3);
 /// Distance on an axis, as a share of the axis, within which a point belongs to a centre that was left.
 const SAME: f64 = 0.05;
-/// Number of times that another point is drawn if a point is known already.
+/// Number of points that are drawn in place of one with which no codec can be built, or which breaks a limit.
+const REDRAWS: usize = 32;
+/// Number of points that are drawn until one is not known already.
 const DRAWS: usize = 4;
 
 /// A point that was scored.
@@ -53,8 +55,10 @@ pub(super) struct Guided<'a> {
     /// Starting points that are not scored yet.
     first: Vec<Vec<f64>>,
     known: Vec<Known>,
-    /// All points that `ask` has proposed, as bits.
-    keys: HashSet<Vec<u64>>,
+    /// All settings that `ask` has proposed, as text.
+    keys: HashSet<String>,
+    /// The least amount by which proposed settings exceed the limits of RAM, instructions and latency.
+    excess: f64,
     /// Index in `known` of the best point.
     best: usize,
     /// Index in `known` of the point around which most points are tried.
@@ -77,14 +81,23 @@ impl<'a> Guided<'a> {
             Goal::MostEfficient(_) | Goal::Front => 0.5,
         };
         let hypers = || std::array::from_fn(|_| Hyper::new(space.len()));
+        let mut chance = Chance::new(seed);
+        let starts = space.starts(seed, 4 + 3 * space.len(), share);
+        let drawn = starts.iter().map(|point| sound(problem, space, point, &mut chance));
+        let mut first: Vec<Vec<f64>> =
+            drawn.filter(|point| is_sound(problem, space, point)).collect();
+        if first.is_empty() {
+            first = starts;
+        }
         Self {
             problem,
             space,
             goal,
-            chance: Chance::new(seed),
-            first: space.starts(seed, 4 + 3 * space.len(), share),
+            chance,
+            first,
             known: Vec::new(),
             keys: HashSet::new(),
+            excess: f64::INFINITY,
             best: 0,
             centre: 0,
             good: Vec::new(),
@@ -111,19 +124,16 @@ impl<'a> Guided<'a> {
             let far = self.models(false);
             for slot in 0..together {
                 let step = self.step * [1.0, 0.3, 0.3, 0.1][self.chance.below(4)];
-                for _ in 0..DRAWS {
-                    let point = match slot {
-                        // The last of the guided points lies anywhere.
-                        _ if slot + 1 == guided => self.chosen(&far, None),
-                        _ if slot < guided => self.chosen(&near, Some(step)),
-                        _ if self.round.is_multiple_of(2) => self.near(self.centre, step),
-                        _ => self.mixed(),
-                    };
-                    if let Some(point) = self.unknown(point) {
-                        points.push(point);
-                        break;
+                let drawn = match slot {
+                    // The last of the guided points lies anywhere.
+                    _ if slot + 1 == guided => self.ranked(&far, None),
+                    _ if slot < guided => self.ranked(&near, Some(step)),
+                    _ if self.round.is_multiple_of(2) => {
+                        (0..DRAWS).map(|_| self.near(self.centre, step)).collect()
                     }
-                }
+                    _ => (0..DRAWS).map(|_| self.mixed()).collect(),
+                };
+                points.extend(drawn.into_iter().find_map(|point| self.unknown(point)));
             }
         }
         points.truncate(most);
@@ -186,26 +196,32 @@ impl<'a> Guided<'a> {
         }
     }
 
-    /// Moves whole numbers and words of a point to the exact value that they stand for. Returns `None` if this point was
-    /// proposed before; otherwise remembers and returns it.
+    /// Moves whole numbers and words of a point to the exact value that they stand for. Returns `None` if no codec can
+    /// be built, if the settings were proposed before, or if they exceed a limit by more than earlier ones; otherwise
+    /// remembers and returns the point. Points that differ only in parameters without effect are the same settings.
     fn unknown(&mut self, point: Vec<f64>) -> Option<Vec<f64>> {
         let point = self.space.settled(point);
-        self.keys.insert(key(&point)).then_some(point)
+        let (settings, excess) = self.problem.unscored(&self.space.options(&point))?;
+        if excess > self.excess || !self.keys.insert(format!("{:?}", settings.entries())) {
+            return None;
+        }
+        self.excess = excess;
+        Some(point)
     }
 
     fn near(&mut self, from: usize, step: f64) -> Vec<f64> {
         self.space.near(&self.known[from].point, step, &mut self.chance)
     }
 
-    /// Returns the candidate that promises the largest improvement. The candidates lie around the centre, with the
-    /// deviation `step`, or anywhere if there is no `step`.
-    fn chosen(&mut self, models: &Models, step: Option<f64>) -> Vec<f64> {
+    /// Returns candidates around the centre, with the deviation `step`, or anywhere if there is no `step`. The candidate
+    /// that promises the largest improvement is the first.
+    fn ranked(&mut self, models: &Models, step: Option<f64>) -> Vec<Vec<f64>> {
         let gain = self.gain(models, if step.is_some() { self.centre } else { self.best });
-        let mut best: Option<(f64, Vec<f64>)> = None;
+        let mut candidates: Vec<(f64, Vec<f64>)> = Vec::new();
         for place in 0..CANDIDATES {
             let point = match (step, place % 3) {
                 (Some(step), _) => self.near(self.centre, step),
-                (None, 0) => (0..self.space.len()).map(|_| self.chance.part()).collect(),
+                (None, 0) => self.anywhere(),
                 (None, 1) => {
                     let good = self.good();
                     self.near(good, STEPS.2)
@@ -213,14 +229,10 @@ impl<'a> Guided<'a> {
                 (None, _) => self.mixed(),
             };
             let point = self.space.settled(point);
-            if !self.keys.contains(&key(&point)) {
-                let own = gain(&point);
-                if best.as_ref().is_none_or(|(most, _)| own > *most) {
-                    best = Some((own, point));
-                }
-            }
+            candidates.push((gain(&point), point));
         }
-        best.map_or_else(|| self.near(self.best, STEPS.2), |(_, point)| point)
+        candidates.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        candidates.into_iter().map(|(_, point)| point).collect()
     }
 
     /// Returns the indices of the best known points: the best eighth, or the best 8 if these are more.
@@ -236,6 +248,12 @@ impl<'a> Guided<'a> {
     /// Draws the index of one of the best known points.
     fn good(&mut self) -> usize {
         self.good[self.chance.below(self.good.len())]
+    }
+
+    /// Draws a point anywhere.
+    fn anywhere(&mut self) -> Vec<f64> {
+        let point = self.space.drawn(&mut self.chance);
+        sound(self.problem, self.space, &point, &mut self.chance)
     }
 
     /// Draws a point as differential evolution does: a good point, moved half the way to the best and by half the
@@ -257,9 +275,10 @@ impl<'a> Guided<'a> {
     fn gain<'b>(&self, models: &'b Models, from: usize) -> impl Fn(&[f64]) -> f64 + use<'b> {
         const LEAST: f64 = 1e-300;
         let (wanted, limited, limit) = self.outputs();
-        let (wanted, limited) = (&models[wanted], &models[limited]);
         let from = &self.known[from];
-        let wanted = wanted.as_ref().filter(|_| from.value < NOT_ALLOWED);
+        let is_within = from.modelled.is_some_and(|own| own[limited] <= limit);
+        let (wanted, limited) = (&models[wanted], &models[limited]);
+        let wanted = wanted.as_ref().filter(|_| is_within);
         // Compared with the model's value at `from`, as the scored value may be a lucky one.
         let wanted = wanted.map(|model| (model, model.at(&from.point).0));
         move |point| {
@@ -276,34 +295,42 @@ impl<'a> Guided<'a> {
         }
     }
 
-    /// Returns the index in [`Models`] of the quantity to minimise, the index of the quantity that the goal limits, and
-    /// the logarithm of this limit.
+    /// Returns the index in [`Models`] of the quantity to minimise, the index of the quantity that is limited, and the
+    /// logarithm of this limit. Spikes are limited by the goal and by a limit of the rate.
     fn outputs(&self) -> (usize, usize, f64) {
-        let samples = self.problem.train.iter().map(Stretch::samples).sum();
+        let train = self.problem.train;
+        let samples = train.iter().map(Stretch::samples).sum();
         match self.goal {
             Goal::LeastError(efficiency) => {
-                (1, 0, (1.5 + most_spikes(efficiency, samples) as f64).ln())
+                let seconds = train.iter().map(Stretch::seconds).sum::<Option<f64>>();
+                let by_rate = self.problem.limits.rate.zip(seconds).map(|(rate, own)| rate * own);
+                let most = most_spikes(efficiency, samples) as f64;
+                (1, 0, (1.5 + most.min(by_rate.unwrap_or(f64::INFINITY).floor())).ln())
             }
             Goal::MostEfficient(rmse) => (0, 1, 2.0 * rmse.ln()),
             Goal::Front => (1, 0, f64::INFINITY),
         }
     }
 
-    /// Fits models to the points nearest to the centre or, if not `is_near`, to the best points and some others.
+    /// Fits models to the points nearest to the centre or, if not `is_near`, to the best points and as many others.
     fn models(&mut self, is_near: bool) -> Models {
         let mut order: Vec<(f64, usize)> = Vec::new();
         for (place, known) in self.known.iter().enumerate() {
             let rank = if is_near {
                 let pairs = known.point.iter().zip(&self.known[self.centre].point);
                 pairs.map(|(a, b)| (a - b).powi(2)).sum()
-            } else if place % 2 == 0 {
-                known.value
             } else {
-                self.chance.part() * NOT_ALLOWED
+                known.value
             };
             order.extend(known.modelled.map(|_| (rank, place)));
         }
         order.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        if !is_near {
+            for place in MODELLED / 2..MODELLED.min(order.len()) {
+                let other = place + self.chance.below(order.len() - place);
+                order.swap(place, other);
+            }
+        }
         order.truncate(MODELLED);
         let known: Vec<&Known> = order.iter().map(|(_, place)| &self.known[*place]).collect();
         let points: Vec<&[f64]> = known.iter().map(|own| &own.point[..]).collect();
@@ -341,8 +368,28 @@ fn limit_outliers(values: &mut [f64]) {
     }
 }
 
-fn key(point: &[f64]) -> Vec<u64> {
-    point.iter().map(|own| own.to_bits()).collect()
+/// Returns whether a codec can be built from a point, and keeps to the limits of RAM, instructions and latency.
+fn is_sound(problem: &Problem, space: &Space, point: &[f64]) -> bool {
+    let known = problem.unscored(&space.options(&space.settled(point.to_vec())));
+    known.is_some_and(|(_, excess)| excess == 0.0)
+}
+
+/// Returns the point if it is sound, or else a drawn one that is sound; the last one drawn if none of [`REDRAWS`] is. The
+/// first half of the draws keep whole numbers and words. Otherwise those that fit few other numbers would hardly be drawn.
+fn sound(problem: &Problem, space: &Space, point: &[f64], chance: &mut Chance) -> Vec<f64> {
+    let mut own = point.to_vec();
+    for draw in 0..REDRAWS {
+        if is_sound(problem, space, &own) {
+            break;
+        }
+        let drawn = space.drawn(chance);
+        let axes = space.axes().iter().zip(point).zip(drawn);
+        let kept = |((axis, old), new): ((&Axis, &f64), f64)| {
+            if draw < REDRAWS / 2 && is_whole(axis.role) { *old } else { new }
+        };
+        own = axes.map(kept).collect();
+    }
+    own
 }
 
 /// Returns the standard normal distribution function at `z`, with an absolute error below 2e-4.
@@ -351,6 +398,15 @@ fn normal(z: f64) -> f64 {
 }
 
 impl Space {
+    /// Draws a point. The ends of whole numbers are drawn more often than what lies between, as many are best there.
+    fn drawn(&self, chance: &mut Chance) -> Vec<f64> {
+        let place = |axis: &Axis| match chance.part() {
+            part if is_whole(axis.role) => (1.4 * part - 0.2).clamp(0.0, 1.0),
+            part => part,
+        };
+        self.axes().iter().map(place).collect()
+    }
+
     /// Moves a point by normally distributed amounts of deviation `step` along about half of the axes. On an axis of
     /// whole numbers or words, the amount is at least one.
     fn near(&self, point: &[f64], step: f64, chance: &mut Chance) -> Vec<f64> {
@@ -383,4 +439,53 @@ impl Space {
 
 fn is_whole(role: Role) -> bool {
     matches!(role, Role::Whole | Role::Most | Role::Words(_) | Role::Shape)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Goal, Limits, Problem, Stretch};
+    use super::{Chance, Guided, Space};
+    use crate::scheme::Scheme;
+    use crate::trial::Recording;
+    use catalogue::run::{Asked, SampleType};
+    use std::collections::HashSet;
+
+    /// Limits the latency such that half of drawn points keep to it. With all settings that a search proposes a codec can
+    /// be built, none are proposed twice, and all keep to the limit.
+    #[test]
+    fn proposed_settings_are_new_and_keep_to_the_limit() {
+        let values = (0..300).map(|place| (f64::from(place) * 0.2).sin()).collect();
+        let train = Stretch::whole(&Recording::of("x".to_owned(), values, None));
+        let (asked, mut chance) = (Asked::default(), Chance::new(1));
+        for scheme in Scheme::all() {
+            let (goal, mut limits) = (Goal::LeastError(0.0), Limits::default());
+            let known = (goal, &limits, "M4F");
+            let free = Problem::new(scheme, SampleType::F32, &asked, &train, known);
+            let space = Space::new(scheme, &asked, free.extent);
+            if space.len() == 0 {
+                continue;
+            }
+            let drawn = (0..40).map(|_| space.options(&space.drawn(&mut chance)));
+            let scored = drawn.filter_map(|options| free.score(&options).ok());
+            let mut latencies: Vec<usize> = scored.map(|own| own.costs.latency).collect();
+            latencies.sort_unstable();
+            limits.latency = Some(latencies[latencies.len() / 2] as f64);
+            let known = (goal, &limits, "M4F");
+            let problem = Problem::new(scheme, SampleType::F32, &asked, &train, known);
+            let mut guided = Guided::new(&problem, &space, goal, 1);
+            let mut known = HashSet::new();
+            for _ in 0..15 {
+                let points = guided.ask(100);
+                let options: Vec<Asked> = points.iter().map(|own| space.options(own)).collect();
+                for own in &options {
+                    let (settings, excess) = problem.unscored(own).unwrap();
+                    assert!(excess == 0.0, "{} {own:?}: {excess}", scheme.name());
+                    let is_new = known.insert(format!("{:?}", settings.entries()));
+                    assert!(is_new, "{} {own:?}", scheme.name());
+                }
+                let scored: Vec<_> = options.iter().map(|own| problem.score(own).ok()).collect();
+                guided.tell(points, &scored);
+            }
+        }
+    }
 }

@@ -120,6 +120,23 @@ pub struct Excess {
     pub part: f64,
 }
 
+/// Value of a cost that is not known: the cost may be any, and breaks every limit.
+const UNKNOWN: f64 = f64::INFINITY;
+
+impl Excess {
+    /// Returns the excess of a value over what is allowed, or `None` if there is no limit or the value keeps to it. A
+    /// difference within rounding is no excess.
+    fn of((limit, value, allowed): (Limit, f64, Option<f64>)) -> Option<Self> {
+        let allowed = allowed.filter(|allowed| value > allowed * (1.0 + 1e-12))?;
+        Some(Self { limit, value, allowed, part: share_above(value, allowed) })
+    }
+}
+
+/// Returns the amount by which a value exceeds a limit, as a share of the limit.
+fn share_above(value: f64, allowed: f64) -> f64 {
+    ((value - allowed) / allowed.max(1e-9)).min(1e6)
+}
+
 /// Settings, and their score on the stretches to tune on.
 #[derive(Clone, Debug)]
 pub struct Scored {
@@ -296,33 +313,40 @@ impl<'a> Problem<'a> {
         Ok(Scored { options: options.clone(), tally, costs, excess: self.excess(&tally, &costs) })
     }
 
-    fn excess(&self, tally: &Tally, costs: &Costs) -> Vec<Excess> {
-        let Limits { ram, instructions, latency, rate } = self.limits;
-        // A cost that is not known may be any, and breaks every limit.
-        let unknown = f64::INFINITY;
-        let ram_used = costs.ram.map_or(unknown, |bytes| bytes as f64);
-        let mut asked = vec![
-            (Limit::Ram, ram_used, *ram),
-            (Limit::Instructions, costs.instructions.unwrap_or(unknown), *instructions),
+    /// Completes options without scoring them. Returns the settings, and by how much they exceed the limits of RAM,
+    /// instructions and latency, as a sum of shares. Returns `None` if no codec can be built.
+    pub(super) fn unscored(&self, options: &Asked) -> Option<(Settings, f64)> {
+        let settings = self.settings(options, self.sample, self.train.first()?).ok()?;
+        let latency = self.scheme.codec(&settings).ok()?.latency();
+        let costs = Costs::new(self.scheme, &settings, latency, self.core);
+        let excess = self.costly(&costs).iter().map(|own| own.part).sum();
+        Some((settings, excess))
+    }
+
+    /// Returns the limits of RAM, instructions and latency that costs break.
+    fn costly(&self, costs: &Costs) -> Vec<Excess> {
+        let Limits { ram, instructions, latency, rate: _ } = self.limits;
+        let costs = [
+            (Limit::Ram, costs.ram.map_or(UNKNOWN, |bytes| bytes as f64), *ram),
+            (Limit::Instructions, costs.instructions.unwrap_or(UNKNOWN), *instructions),
             (Limit::Latency, costs.latency as f64, *latency),
-            (Limit::Rate, tally.rate().unwrap_or(unknown), *rate),
         ];
+        costs.into_iter().filter_map(Excess::of).collect()
+    }
+
+    fn excess(&self, tally: &Tally, costs: &Costs) -> Vec<Excess> {
+        let mut excess = self.costly(costs);
+        let rate = (Limit::Rate, tally.rate().unwrap_or(UNKNOWN), self.limits.rate);
+        excess.extend(Excess::of(rate));
         if let Goal::MostEfficient(rmse) = self.goal {
-            asked.push((Limit::Rmse, self.mean_square(tally).sqrt(), Some(rmse)));
+            let own = self.mean_square(tally).sqrt();
+            excess.extend(Excess::of((Limit::Rmse, own, Some(rmse))));
         }
-        // A difference within rounding is no excess.
-        let is_above = |value: f64, allowed: f64| value > allowed * (1.0 + 1e-12);
-        let part = |value: f64, allowed: f64| ((value - allowed) / allowed.max(1e-9)).min(1e6);
-        let excess = asked.into_iter().filter_map(|(limit, value, allowed)| {
-            let allowed = allowed.filter(|allowed| is_above(value, *allowed))?;
-            Some(Excess { limit, value, allowed, part: part(value, allowed) })
-        });
-        let mut excess: Vec<Excess> = excess.collect();
         if let Goal::LeastError(efficiency) = self.goal {
             // Compared in whole spikes, because percentages are rounded.
             let most = most_spikes(efficiency, tally.samples);
             if tally.spikes > most {
-                let part = part(tally.spikes as f64, most.max(1) as f64);
+                let part = share_above(tally.spikes as f64, most.max(1) as f64);
                 let value = tally.efficiency();
                 excess.push(Excess { limit: Limit::Efficiency, value, allowed: efficiency, part });
             }
