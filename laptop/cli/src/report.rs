@@ -2,8 +2,9 @@
 
 use crate::options::answer;
 use crate::words;
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use serde::Serialize;
+use std::path::Path;
 
 /// A report: the name of the command, an entry for each log, and what holds for all logs together.
 #[derive(Debug, Serialize)]
@@ -29,6 +30,16 @@ pub(crate) struct Log<T> {
     /// Results; `None` if the log could not be processed.
     #[serde(flatten)]
     pub content: Option<T>,
+}
+
+/// Returns whether the option `-o` names standard output.
+///
+/// # Errors
+/// Returns an error if it does, and a report as JSON goes there, too.
+pub(crate) fn is_stdout(output: Option<&Path>, json: bool) -> Result<bool> {
+    let is_stdout = output == Some(Path::new("-"));
+    ensure!(!(is_stdout && json), "--json and -o - both write to standard output");
+    Ok(is_stdout)
 }
 
 /// Number of logs, and number of those that were refused.

@@ -2,7 +2,7 @@
 
 use crate::inputs::{LogOptions, ManyChannels};
 use crate::options::{answer, whole};
-use crate::report::{Counts, Log, Report};
+use crate::report::{Counts, Log, Report, is_stdout};
 use crate::stop::Stop;
 use crate::words::{self, tell_of};
 use anyhow::{Result, bail};
@@ -112,6 +112,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     if (options.output.is_some() || options.picture.is_some()) && logs.len() > 1 {
         bail!("-o and --picture take one log; there are {}", logs.len());
     }
+    let is_stdout = is_stdout(options.output.as_deref(), options.json)?;
     let stop = Stop::new(None)?;
     let ends = is_single && !options.json;
     let (mut all, mut last) = (Vec::new(), None);
@@ -127,7 +128,8 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
                 let why = advised.check().err();
                 if !options.json {
                     let page = advised.page();
-                    answer(if is_single { page } else { format!("{log}\n{page}\n") })?;
+                    let page = if is_single { page } else { format!("{log}\n{page}\n") };
+                    if is_stdout { eprint!("{page}") } else { answer(page)? }
                 }
                 let entry = match why {
                     None => Log { log, refused: None, notes, content: Some(advised) },

@@ -4,7 +4,7 @@
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, schemes};
-use crate::report::{Counts, Log, Report};
+use crate::report::{Counts, Log, Report, is_stdout};
 use crate::words;
 use anyhow::{Context, Result, ensure};
 use catalogue::run::{Calibrated, Known, SampleType, Settings, Words};
@@ -181,6 +181,7 @@ impl Converted {
 /// or if the output cannot be written.
 pub(crate) fn run(options: &Network) -> Result<()> {
     let Network { trained: path, output, .. } = options;
+    is_stdout(output.as_deref(), options.json)?;
     let input = &options.input.to_lab()?;
     ensure!(
         !input.is_stdin(),
