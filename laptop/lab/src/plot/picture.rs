@@ -249,10 +249,14 @@ impl Axis {
 struct Span(i64, i64);
 
 impl Span {
-    fn with(own: Option<Self>, time: i64) -> Option<Self> {
-        Some(
-            own.map_or(Self(time, time), |Self(first, last)| Self(first.min(time), last.max(time))),
-        )
+    /// Extends the span to hold a time.
+    fn with(own: Option<Self>, time: i64) -> Self {
+        own.map_or(Self(time, time), |Self(first, last)| Self(first.min(time), last.max(time)))
+    }
+
+    /// Extends the span to hold some times.
+    fn of(own: Option<Self>, times: impl IntoIterator<Item = i64>) -> Option<Self> {
+        times.into_iter().fold(own, |own, time| Some(Self::with(own, time)))
     }
 }
 
@@ -285,12 +289,9 @@ impl Spans {
         let missing = 2 - self.first.len();
         self.first.extend(piece.times.iter().take(missing).map(|time| (number, *time)));
         let own = &mut self.segments[number];
-        own.all = piece.all_times.iter().copied().fold(own.all, Span::with);
-        for (sample, time) in (self.samples..).zip(piece.times) {
-            if self.shown.contains(&sample) {
-                own.shown = Span::with(own.shown, *time);
-            }
-        }
+        own.all = Span::of(own.all, piece.all_times.iter().copied());
+        let shown = (self.samples..).zip(piece.times).filter(|(own, _)| self.shown.contains(own));
+        own.shown = Span::of(own.shown, shown.map(|(_, time)| *time));
         own.samples += piece.values.len();
         self.samples += piece.values.len();
         if piece.is_end {
@@ -332,7 +333,7 @@ impl Spans {
         let times = self.segments.iter().enumerate().filter_map(|(number, own)| {
             own.shown.map(|Span(first, last)| [first, last].map(|time| shifted((number, time))))
         });
-        let times = times.flatten().fold(None, Span::with);
+        let times = Span::of(None, times.flatten());
         let Range { start, end } = axis.shown;
         axis.range = match times {
             Some(Span(first, last)) => axis.at((start, Some(first)))..axis.at((start, Some(last))),
