@@ -85,8 +85,13 @@ def row(shape: tuple[int, int]) -> tuple[int, ...]:
 
 def time_last(x: NDArray[Any], axis: int) -> NDArray[Any]:
     """A view whose last axis is the one of time."""
-    if axis is None:
-        raise ValueError(f"axis is that of time, one of {x.ndim}, and not None")
-    if not -x.ndim <= axis < x.ndim:
-        raise ValueError(f"axis {axis}: the array has {x.ndim} axes")
-    return np.moveaxis(x, axis, -1)
+    return np.moveaxis(x, time_axis(axis, x.ndim), -1)
+
+
+def time_axis(axis: int, axes: int) -> int:
+    """The number of the axis of time, of so many."""
+    if not isinstance(axis, (int, np.integer)):
+        raise ValueError(f"axis is that of time, a number below {axes}, and not {axis!r}")
+    if not -axes <= axis < axes:
+        raise ValueError(f"axis {axis}: the array has {axes} axes")
+    return int(axis) % axes

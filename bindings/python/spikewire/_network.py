@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,7 +29,7 @@ class Ran(NamedTuple):
 
 class Network:
     """A trained network in single precision: the bits of ``spikewire network --on controller`` and of `spikewire-network`
-    on every core. :meth:`from_nir` reads one."""
+    on every core. :meth:`from_nir` reads one; `spikewire.torch.Controller` trains one."""
 
     def __init__(self, native: _native.Network):
         self._native = native
@@ -45,15 +46,84 @@ class Network:
         current: Literal["new", "old", "whole"] | None = None,
         dt: float | None = None,
     ) -> Network:
-        """Reads a NIR graph, or a network in JSON.
+        """Reads a NIR graph, or a network in JSON or TOML.
 
-        A file does not hold by which rule its neurons step. `framework` says some of it: what it leaves open are keywords,
+        A graph does not hold by which rule its neurons step. `framework` says some of it: what it leaves open are keywords,
         which an error lists. `reset` is one for all layers, or one for each that fires; `dt` are the seconds of a step.
 
         Raises `ValueError` if the file is no network, or the rule is not said as a whole.
         """
         resets = [] if reset is None else [reset] if isinstance(reset, str) else list(reset)
         return cls(_native.Network(Path(path), (framework, fires, decay, current), resets, dt))
+
+    @classmethod
+    def from_toml(cls, text: str) -> Network:
+        """Reads what :meth:`to_toml` wrote."""
+        return cls(_native.Network.from_toml(text))
+
+    def to_toml(self) -> str:
+        """The network with the whole rule of its neurons; :meth:`from_nir` and ``spikewire network`` read it from a file
+        whose name ends in ``.toml``."""
+        text: str = self._native.toml()
+        return text
+
+    def to_rust(
+        self,
+        spikes: ArrayLike | Sequence[Sequence[int]],
+        *,
+        numbers: Literal["f32", "i8"] = "f32",
+        source: str = "a network",
+    ) -> str:
+        """The Rust module for the flight controller, as ``spikewire network --on controller`` writes it.
+
+        `spikes` is a recording as :meth:`run` takes it. The module's self-test runs its liveliest ten steps, and for `numbers` of
+        8 bits the scales are searched on it. `source` is what the module's first line names.
+        """
+        text: str = self._native.rust(self._steps(spikes), numbers, source)
+        return text
+
+    def to_nir(self, path: str | Path) -> dict[str, Any]:
+        """Writes a NIR graph, with times in steps. Returns the keywords with which :meth:`from_nir` gives the same network
+        again. Needs the package ``nir``.
+
+        Raises `ValueError` if neurons with a constant input beside their current do not leak, or if layers differ in when they
+        fire or which current they take: no graph has these.
+        """
+        import nir
+
+        layers = json.loads(self._native.json())["layers"]
+        each = {name: {own[name] for own in layers if name in own} for name in ("fires", "current")}
+        if any(len(own) > 1 for own in each.values()):
+            raise ValueError(f"layers have rules of their own, of which a graph's reader takes one: {each}")
+        nodes, edges, last = {"input": nir.Input({"input": np.array([self.inputs])})}, [], "input"
+        for number, layer in enumerate(layers, 1):
+            zeros = np.zeros(len(layer["weights"]))
+            own = {name: np.array(layer.get(name, zeros)) for name in ("keep", "current_keep", "bias", "inner")}
+            weights, neurons = f"weights_{number}", f"neurons_{number}"
+            nodes[weights] = nir.Affine(np.array(layer["weights"]), own["bias"])
+            # A step takes 1 / tau of the potential; where it takes nothing, time constants are so long that it is 0.
+            tau, tau_syn = (1 / np.maximum(1 - own[name], 2.0**-60) for name in ("keep", "current_keep"))
+            if (own["inner"] != 0)[own["keep"] == 1].any():
+                raise ValueError(f"{layer['name']}: a constant input beside the current needs a leak in a graph")
+            leak = {"r": tau, "v_leak": own["inner"] * np.where(own["keep"] < 1, tau, 0)}
+            fires = {}
+            if "threshold" in layer:
+                reset = zeros if layer["reset"].startswith("subtract") else np.array(layer.get("reset_value", zeros))
+                fires = {"v_threshold": np.array(layer["threshold"]), "v_reset": reset}
+            if "current" in layer:
+                kind = nir.CubaLIF if fires else nir.CubaLI
+                nodes[neurons] = kind(tau_syn=tau_syn, tau_mem=tau, w_in=tau_syn, **leak, **fires)
+            else:
+                nodes[neurons] = (nir.LIF if fires else nir.LI)(tau=tau, **leak, **fires)
+            edges += [(last, weights), (weights, neurons)]
+            if "recurrent" in layer:
+                nodes[f"recurrent_{number}"] = nir.Linear(np.array(layer["recurrent"]))
+                edges += [(neurons, f"recurrent_{number}"), (f"recurrent_{number}", neurons)]
+            last = neurons
+        nodes["output"] = nir.Output({"output": np.array([self.layers[-1]])})
+        nir.write(path, nir.NIRGraph(nodes, [*edges, (last, "output")]))
+        resets = [layer["reset"] for layer in layers if "reset" in layer]
+        return {"reset": resets, "decay": "euler", "dt": 1.0, **{name: own.pop() for name, own in each.items() if own}}
 
     @property
     def inputs(self) -> int:
@@ -69,7 +139,10 @@ class Network:
         """Runs the network from rest. `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by
         rising input, or a list with a list for each step: the numbers of the inputs that fire, in order."""
         self.reset()
-        return Ran(*self._native.steps([_numbers(step, self.inputs) for step in spikes]))
+        return Ran(*self._native.steps(self._steps(spikes)))
+
+    def _steps(self, spikes: ArrayLike | Sequence[Sequence[int]]) -> list[list[int]]:
+        return [_numbers(step, self.inputs) for step in spikes]
 
     def step(self, spikes: ArrayLike | Sequence[int]) -> NDArray[np.float32]:
         """Takes a step from where the last one ended, and returns the last layer's potentials. `spikes` is a row of what

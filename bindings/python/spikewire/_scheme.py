@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _progress, _weighted
-from ._arrays import row, samples, tell_cut, time_last
+from ._arrays import row, samples, tell_cut, time_axis, time_last
 from ._spikes import Spikes
 from ._stream import Decoder, Encoder
 
@@ -192,7 +192,8 @@ class Scheme:
         inner = row(self._coder.shape())
         axes = codes.ndim - len(inner)
         if axes > 1:
-            codes = np.moveaxis(codes, axis % axes, axes - 1)
+            axis = time_axis(axis, axes)
+            codes = np.moveaxis(codes, axis, axes - 1)
         outer = codes.shape[:axes]
         if len(outer) <= 1:
             return self.decoder(first).decode(codes)

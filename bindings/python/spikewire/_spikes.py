@@ -166,6 +166,10 @@ class Spikes(NDArrayOperatorsMixin):
         arrays = (own.array if isinstance(own, Spikes) else own for own in inputs)
         return getattr(ufunc, method)(*arrays, **keywords)
 
+    def __buffer__(self, flags: int) -> memoryview:
+        # Python asks for it from 3.12.
+        return self.array.__buffer__(flags)
+
     def __dlpack__(self, **keywords: Any) -> Any:
         return self.array.__dlpack__(**keywords)
 

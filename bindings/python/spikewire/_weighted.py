@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import outer_of, row, unmasked
+from ._arrays import outer_of, row, time_axis, unmasked
 
 if TYPE_CHECKING:
     from ._scheme import Scheme
@@ -32,9 +32,8 @@ def decode(scheme: Scheme, weights: ArrayLike, first: ArrayLike | None, axis: in
     weights = unmasked(weights).astype(np.float64)
     axes = weights.ndim - len(inner)
     if axes > 0:
-        if not -axes <= axis < axes:
-            raise ValueError(f"axis {axis}: the weights have {axes} axes before those of a sample")
-        weights = np.moveaxis(weights, axis % axes, axes - 1)
+        axis = time_axis(axis, axes)
+        weights = np.moveaxis(weights, axis, axes - 1)
     outer = outer_of(weights, shape, type(scheme).__name__)
     if not np.isfinite(weights).all():
         raise ValueError("weights must be finite")

@@ -18,7 +18,7 @@ from __future__ import annotations
 import itertools
 import json
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Literal
 
@@ -27,9 +27,11 @@ import torch
 from torch import Tensor, nn
 from torch.utils.data import Dataset
 
+from . import _native
+from ._network import Network, Reset
 from ._scheme import Scheme
 
-__all__ = ["Encode", "TinyOdin", "Windows"]
+__all__ = ["Controller", "Encode", "ReckOn", "TinyOdin", "Windows"]
 
 #: The layers by number: an operator of torch takes numbers and tensors only.
 _LAYERS: weakref.WeakValueDictionary[int, Encode] = weakref.WeakValueDictionary()
@@ -77,8 +79,13 @@ class Encode(nn.Module):
             raise ValueError(f"gradient is 'straight', a function of the samples or None, not {gradient!r}")
         if scheme._info["is_signed"] and not (split or dtype.is_signed):
             raise ValueError(f"{dtype} has no sign for spikes down: split=True keeps them apart")
-        self.scheme, self.num_steps, self.time, self.split = scheme, num_steps, time, split
-        self.dtype, self.device, self.gradient = dtype, device, gradient
+        self.scheme: Scheme = scheme
+        self.num_steps: int | None = num_steps
+        self.time: int = time
+        self.split: bool = split
+        self.dtype: torch.dtype = dtype
+        self.device: torch.device | str | None = device
+        self.gradient = gradient
         self._register()
 
     def _register(self) -> None:
@@ -171,10 +178,88 @@ def _backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None]:
 _encode.register_autograd(_backward, setup_context=_keep)
 
 
-class TinyOdin(nn.Module):
+#: The part of a layer's law that takes all steps at once, and that of one step: from what arrives and the state before, which is
+#: None at rest, to potentials, spikes, and the state behind.
+_Law = tuple[Callable[[Tensor], Tensor], Callable[[Tensor, Any], tuple[Tensor, Tensor, Any]]]
+
+
+def _run(x: Tensor, laws: Iterable[_Law]) -> list[tuple[Tensor, Tensor]]:
+    """The potentials of each layer, and its spikes: (time, batch, neurons)."""
+    layers = []
+    for arriving, step in laws:
+        steps, state = [], None
+        for driven in arriving(x):
+            reached, fired, state = step(driven, state)
+            steps.append((reached, fired))
+        reached, x = (torch.stack(own) for own in zip(*steps))
+        layers.append((reached, x))
+    return layers
+
+
+class _Chip(nn.Module):
+    """Layers of neurons in a chip's arithmetic, whose weights are rounded in each call."""
+
+    #: The least and the largest weight.
+    _RANGE = (-8, 7)
+    #: What a weight of 1 adds to a potential.
+    _unit = 1
+
+    def __init__(self, inputs: int, sizes: tuple[int, ...], threshold: int, recurrent: bool = False):
+        super().__init__()
+        self.threshold = threshold
+        one = threshold / self._unit / 16
+        shapes = zip((inputs, *sizes), sizes)
+        self.weights: nn.ParameterList = nn.ParameterList(nn.Parameter(one * (1 + 4 * torch.randn(shape))) for shape in shapes)
+        own = (nn.Parameter(one * 4 * torch.randn(size, size)) for size in sizes if recurrent)
+        self.recurrent: nn.ParameterList = nn.ParameterList(own)
+
+    def _rounded(self, own: Tensor) -> Tensor:
+        return own + (own.detach().round().clamp(*self._RANGE) - own.detach())
+
+    def whole(self) -> list[Tensor]:
+        """The chip's weights by layer, [from, to]; gradients pass on to those that are trained."""
+        return [self._rounded(own) for own in self.weights]
+
+    def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
+        """The potentials of each layer before their reset, and its spikes: (time, batch, neurons)."""
+
+        def law(weights: Tensor, own: Tensor | None) -> _Law:
+            back = None if own is None else self._unit * self._rounded(own)
+            return lambda x: self._counted(x).to(weights.dtype) @ (self._unit * weights), lambda *state: self._step(back, *state)
+
+        return _run(x, itertools.starmap(law, itertools.zip_longest(self.whole(), self.recurrent)))
+
+    def _counted(self, x: Tensor) -> Tensor:
+        return x
+
+    def _step(self, back: Tensor | None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
+        raise NotImplementedError
+
+    def forward(self, x: Tensor) -> Tensor:
+        """The spikes of the last layer."""
+        return self.layers(x)[-1][1]
+
+    def _rule(self) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def save(self, path: str | Path) -> None:
+        """Writes a network for ``spikewire network``, as above: the chip's words, constants in Rust, and its model."""
+
+        def written(own: Tensor) -> list[list[int]]:
+            return (self._unit * self._rounded(own)).detach().T.int().tolist()
+
+        # Potentials are whole numbers: above half a number less is at the threshold.
+        rule = {**self._rule(), "threshold": self.threshold - 0.5}
+        layers = [{"weights": written(own), **rule} for own in self.weights]
+        for layer, own in zip(layers, self.recurrent):
+            layer["recurrent"] = written(own)
+        Path(path).write_text(json.dumps({"layers": layers}))
+
+
+class TinyOdin(_Chip):
     """Layers of neurons in the chip tinyODIN's arithmetic, to be trained.
 
-    The chip fires as they do if its neurons compare once a step: ``spikewire network --compare step``.
+    The chip fires as they do if its neurons compare once a step: :meth:`save`, then ``spikewire network --compare step``.
 
     Weights are whole numbers from -8 to 7, potentials from -2048 to 2047; a leak is an amount, and a neuron that reaches its
     threshold fires and starts again at 0. What is trained are real numbers, of which the chip's weights are the nearest: gradients
@@ -195,53 +280,268 @@ class TinyOdin(nn.Module):
     """
 
     def __init__(self, inputs: int, *sizes: int, threshold: int = 16, leak: int = 1):
-        super().__init__()
-        self.threshold, self.leak = threshold, leak
-        shapes = zip((inputs, *sizes), sizes)
-        self.weights = nn.ParameterList(nn.Parameter(1 + 4 * torch.randn(shape)) for shape in shapes)
+        super().__init__(inputs, sizes, threshold)
+        self.leak = leak
 
-    def whole(self) -> list[Tensor]:
-        """The chip's weights by layer, [from, to]; gradients pass on to those that are trained."""
-        return [own + (own.detach().round().clamp(-8, 7) - own.detach()) for own in self.weights]
+    def _step(self, back: Tensor | None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
+        kept = 0 if state is None else state.sign() * (state.abs() - self.leak).clamp(min=0)
+        reached = (kept + driven).clamp(-2048, 2047)
+        fired = _Fire.apply(reached, self.threshold, True, 1.0)
+        return reached, fired, reached * (1 - fired.detach())
 
-    def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """The potentials of each layer before their reset, and its spikes: (time, batch, neurons)."""
-        layers = []
-        for weights in self.whole():
-            potentials, steps = x.new_zeros(x.shape[1], weights.shape[1], dtype=weights.dtype), []
-            for driven in x.to(weights.dtype) @ weights:
-                kept = potentials.sign() * (potentials.abs() - self.leak).clamp(min=0)
-                reached = (kept + driven).clamp(-2048, 2047)
-                fired = _Fire.apply(reached, self.threshold)
-                potentials = reached * (1 - fired.detach())
-                steps.append((reached, fired))
-            reached, x = (torch.stack(own) for own in zip(*steps))
-            layers.append((reached, x))
-        return layers
+    def _rule(self) -> dict[str, Any]:
+        return {"leak": self.leak}
 
-    def forward(self, x: Tensor) -> Tensor:
-        """The spikes of the last layer."""
-        return self.layers(x)[-1][1]
 
-    def save(self, path: str | Path) -> None:
-        """Writes a network for ``spikewire network FILE --compare step``: the chip's words, constants in Rust, and its model."""
-        # Potentials are whole numbers: above half a number less is at the threshold.
-        rule = {"leak": self.leak, "threshold": self.threshold - 0.5}
-        layers = [{"weights": own.detach().T.int().tolist(), **rule} for own in self.whole()]
-        Path(path).write_text(json.dumps({"layers": layers}))
+class ReckOn(_Chip):
+    """Layers of neurons in the chip ReckOn's arithmetic, to be trained as those of :class:`TinyOdin`.
+
+    The chip fires as they do, a tick a step, unless the spikes of one step take a potential out of its 16 bits: :meth:`save`,
+    then ``spikewire network --on reckon``, with ``--reset subtract-late`` if a spike subtracts.
+
+    Weights are whole numbers from -128 to 127, shifted; a step leaves a share of a potential, rounded down, in units of 1/32768
+    from 0.875; a neuron that reaches its threshold fires, and starts the next step at 0. An input fires once a step at most.
+
+    >>> network = ReckOn(12, 16, 3, recurrent=True)
+    >>> network(torch.ones(5, 4, 12)).shape
+    torch.Size([5, 4, 3])
+
+    Args:
+        inputs: Number of inputs, 256 at most.
+        sizes: Number of neurons of each layer: 256 in all, and 16 of the last.
+        threshold: Potential from which a neuron fires, 32767 at most.
+        keep: Share of a potential that a step leaves.
+        shift: Bits by which the chip shifts weights to the left, 0 to 7. The larger it is, the less rounding costs.
+        recurrent: Whether the spikes of a layer act on itself a step later.
+        subtract: Whether a spike subtracts the threshold in the next step, instead of setting the potential to 0.
+    """
+
+    _RANGE = (-128, 127)
+
+    def __init__(
+        self,
+        inputs: int,
+        *sizes: int,
+        threshold: int = 1024,
+        keep: float = 0.95,
+        shift: int = 4,
+        recurrent: bool = False,
+        subtract: bool = False,
+    ):
+        self._kept = round(keep * 32768)
+        if not 28672 <= self._kept <= 32768:
+            raise ValueError(f"a step leaves 0.875 to 1 of a potential, not {keep}")
+        self._unit = 1 << shift
+        super().__init__(inputs, sizes, threshold, recurrent)
+        self.subtract = subtract
+
+    def _counted(self, x: Tensor) -> Tensor:
+        # `clamp` would stop gradients of single spikes: they are at its end.
+        return x - (x.detach() - 1).clamp(min=0)
+
+    def _step(self, back: Tensor | None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
+        if state is not None:
+            potentials, before = state
+            if back is not None:
+                driven = driven + before @ back
+            share = potentials * (self._kept / 32768)
+            # Products have 31 bits, of which single precision would round some.
+            down = (potentials.detach().double() * self._kept / 32768).floor().to(share.dtype)
+            kept, spiked = down + (share - share.detach()), before.detach()
+            driven = driven + (kept - self.threshold * spiked if self.subtract else kept * (1 - spiked))
+        reached = driven.clamp(-32768, 32767)
+        fired = _Fire.apply(reached, self.threshold, True)
+        return reached, fired, (reached, fired)
+
+    def _rule(self) -> dict[str, Any]:
+        return {"keep": self._kept / 32768}
 
 
 class _Fire(torch.autograd.Function):
-    @staticmethod
-    def forward(ctx: Any, reached: Tensor, threshold: int) -> Tensor:
-        ctx.save_for_backward(reached)
-        ctx.threshold = threshold
-        return (reached >= threshold).to(reached.dtype)
+    """Whether potentials fire. `slope` is that of the gradient at the threshold, one over the threshold unless given."""
 
     @staticmethod
-    def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None]:
-        (reached,) = ctx.saved_tensors
-        return gradient / (1 + 3 * (reached / ctx.threshold - 1).abs()) ** 2, None
+    def forward(ctx: Any, reached: Tensor, threshold: Tensor | float, at: bool, slope: float | None = None) -> Tensor:
+        threshold = torch.as_tensor(threshold, dtype=reached.dtype, device=reached.device)
+        ctx.save_for_backward(reached, threshold)
+        ctx.slope = slope
+        return (reached >= threshold if at else reached > threshold).to(reached.dtype)
+
+    @staticmethod
+    def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, Tensor | None, None, None]:
+        reached, threshold = ctx.saved_tensors
+        # A threshold of 0 has no size of its own.
+        size = threshold.abs().where(threshold != 0, 1)
+        slope = 1 / size if ctx.slope is None else ctx.slope
+        gradient = gradient * slope / (1 + 3 * ((reached - threshold) / size).abs()) ** 2
+        return gradient, -gradient.sum_to_size(threshold.shape) if ctx.needs_input_grad[1] else None, None, None
+
+
+class _Sum(torch.autograd.Function):
+    """``start + x @ weights`` with the bits of the controller, which adds a spike's weights in the order of the inputs."""
+
+    @staticmethod
+    def forward(ctx: Any, start: Tensor, x: Tensor, weights: Tensor) -> Tensor:
+        ctx.save_for_backward(x, weights)
+        ctx.shape, total = start.shape, start.expand(*x.shape[:-1], -1).clone()
+        most = x.flatten(0, -2).amax(0).tolist() if x.numel() else []
+        for spikes, row, count in zip(x.unbind(-1), weights, most):
+            for before in range(int(count)):
+                total += (spikes > before).unsqueeze(-1) * row
+        return total
+
+    @staticmethod
+    def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        x, weights = ctx.saved_tensors
+        grown = x.flatten(0, -2).T @ gradient.flatten(0, -2)
+        return gradient.sum_to_size(ctx.shape), gradient @ weights.T, grown
+
+
+class Controller(nn.Module):
+    """Layers of neurons in the flight controller's arithmetic, to be trained: bit for bit :class:`spikewire.Network`.
+
+    A step multiplies a potential by `keep`, and adds the bias and the weights of the spikes that arrive, in single precision and
+    in the controller's order. Gradients pass through the step with which a neuron fires by a smooth slope, as those of
+    :class:`TinyOdin`, and not through the reset. All that is trained is a parameter of `neurons`, a module for each layer:
+    ``weights`` and ``recurrent`` [from, to], ``bias``, ``inner``, ``keep``, ``current_keep`` and ``threshold``, where a layer
+    has them; ``requires_grad_(False)`` leaves one as it is.
+
+    Inputs are (time, batch, inputs), counts of spikes as those of :class:`Encode` with ``split``. The output is that of the last
+    layer: its spikes, or its potentials if it never fires.
+
+    >>> network = Controller(12, 16, 3, recurrent=True, readout=True)
+    >>> network(torch.ones(5, 4, 12)).shape
+    torch.Size([5, 4, 3])
+    >>> network.network()
+    Network of 12 inputs and layers of 16, 3 neurons
+
+    Args:
+        inputs: Number of inputs.
+        sizes: Number of neurons of each layer.
+        keep: Share of its potential that a neuron keeps in a step.
+        threshold: Potential above which a neuron fires.
+        reset: What a spike does to its neuron's potential.
+        at: Whether neurons fire at their threshold, too.
+        current_keep: Share that a step leaves of the current through which spikes act on the potential; ``None`` for neurons
+            without a current.
+        recurrent: Whether the spikes of a layer act on itself a step later.
+        readout: Whether the last layer never fires.
+    """
+
+    def __init__(
+        self,
+        inputs: int,
+        *sizes: int,
+        keep: float = 0.9,
+        threshold: float = 1.0,
+        reset: Reset = "to-value",
+        at: bool = False,
+        current_keep: float | None = None,
+        recurrent: bool = False,
+        readout: bool = False,
+    ):
+        super().__init__()
+        layers = []
+        for number, (before, count) in enumerate(zip((inputs, *sizes), sizes), 1):
+            fires = not (readout and number == len(sizes))
+            layer: dict[str, Any] = {"name": f"layer {number}", "keep": [keep] * count, "bias": [0.0] * count}
+            layer["weights"] = threshold * torch.randn(count, before) / before**0.5
+            if fires:
+                layer.update(reset=reset, fires="at" if at else "above", threshold=[threshold] * count)
+                if recurrent:
+                    layer["recurrent"] = threshold * torch.randn(count, count) / count**0.5
+            if current_keep is not None:
+                layer.update(current="new", current_keep=[current_keep] * count)
+            layers.append(layer)
+        self.neurons: nn.ModuleList = nn.ModuleList(map(_Layer, layers))
+
+    @classmethod
+    def from_network(cls, network: Network) -> Controller:
+        """The layers of a network, which may have been trained elsewhere."""
+        own = cls(1)
+        own.neurons = nn.ModuleList(map(_Layer, json.loads(network._native.json())["layers"]))
+        return own
+
+    def network(self) -> Network:
+        """The network as it is now, for the controller: its ``to_rust``, ``to_toml`` and ``to_nir`` write it."""
+        return Network(_native.Network.from_json(json.dumps({"layers": [own.written() for own in self.neurons]})))
+
+    def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
+        """The potentials of each layer behind each step, and its spikes: (time, batch, neurons)."""
+        if ((x < 0) | (x != x.trunc())).any():
+            raise ValueError("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
+        return _run(x, ((own.arriving, own.step) for own in self.neurons))
+
+    def forward(self, x: Tensor) -> Tensor:
+        """The spikes of the last layer, or its potentials if it never fires."""
+        return self.layers(x)[-1]["reset" in self.neurons[-1].rule]
+
+
+def _share(keep: Tensor) -> Tensor:
+    """`keep` within 0 to 1, from whose ends gradients lead back."""
+    return keep + (keep.detach().clamp(0, 1) - keep.detach())
+
+
+class _Layer(nn.Module):
+    """A layer of the controller, out of what its file holds."""
+
+    def __init__(self, layer: dict[str, Any]):
+        super().__init__()
+        self.rule = {name: layer[name] for name in ("name", "reset", "fires", "current") if name in layer}
+        for name in ("weights", "recurrent", "bias", "inner", "keep", "current_keep", "threshold", "reset_value"):
+            if name in layer:
+                numbers = torch.as_tensor(layer[name], dtype=torch.float32)
+                setattr(self, name, nn.Parameter(numbers.t().contiguous(), name != "reset_value"))
+        if not hasattr(self, "bias"):
+            self.bias = nn.Parameter(torch.zeros(self.weights.shape[1]))
+
+    def written(self) -> dict[str, Any]:
+        """What the layer's file holds."""
+        numbers = {name: own.detach().t() for name, own in self.named_parameters()}
+        for name in numbers.keys() & {"keep", "current_keep"}:
+            numbers[name] = numbers[name].clamp(0, 1)
+        return {**self.rule, **{name: own.tolist() for name, own in numbers.items()}}
+
+    def arriving(self, x: Tensor) -> Tensor:
+        return _Sum.apply(self.bias, x.to(self.bias.dtype), self.weights)
+
+    def step(self, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
+        rest = torch.zeros_like(driven)
+        v, current, before = state or (rest, rest, rest)
+        if hasattr(self, "recurrent"):
+            driven = _Sum.apply(driven, before, self.recurrent)
+        if hasattr(self, "current_keep"):
+            taken, current = current, current * _share(self.current_keep) + driven
+            driven = taken if self.rule["current"] == "old" else current
+            if hasattr(self, "inner"):
+                driven = driven + self.inner
+
+        def integrated(v: Tensor) -> Tensor:
+            return v * _share(self.keep) + driven
+
+        if "reset" not in self.rule:
+            v = integrated(v)
+            return v, torch.zeros_like(v), (v, current, before)
+        reset, at = self.rule["reset"], self.rule["fires"] == "at"
+        value = getattr(self, "reset_value", self.threshold.detach() if reset.startswith("subtract") else 0.0)
+        over = (v >= self.threshold if at else v > self.threshold).detach()
+        if reset == "to-value-late":
+            reached = integrated(torch.where(over, value, v))
+        elif reset == "to-value-held":
+            reached = torch.where(over, value, integrated(v))
+        else:
+            reached = integrated(v)
+        less = reached - value
+        compared = torch.where(over, less, reached) if reset in ("subtract-late", "subtract-no-delay") else reached
+        fired = _Fire.apply(compared, self.threshold, at)
+        has_fired = fired.detach() > 0
+        if reset == "to-value":
+            v = torch.where(has_fired, value, reached)
+        elif reset in ("subtract", "subtract-no-delay"):
+            v = torch.where(has_fired, less, reached)
+        else:
+            v = compared
+        return v, fired, (v, current, fired)
 
 
 class Windows(Dataset[tuple[Tensor, Tensor]]):
@@ -261,10 +561,12 @@ class Windows(Dataset[tuple[Tensor, Tensor]]):
     """
 
     def __init__(self, samples: Any, labels: Any, length: int, stride: int = 1):
-        self.samples, self.labels = torch.as_tensor(samples), torch.as_tensor(labels)
+        self.samples: Tensor = torch.as_tensor(samples)
+        self.labels: Tensor = torch.as_tensor(labels)
         if len(self.samples) != len(self.labels):
             raise ValueError(f"{len(self.samples)} samples have {len(self.labels)} labels")
-        self.length, self.stride = length, stride
+        self.length: int = length
+        self.stride: int = stride
 
     def __len__(self) -> int:
         return max((len(self.samples) - self.length) // self.stride + 1, 0)

@@ -2,52 +2,33 @@
 
 use std::path::PathBuf;
 
-use lab::network::{Asked, Current, Decay, File, Fires, Flown, Framework, Reset};
+use lab::network::{
+    Asked, ControllerRequest, File, Flown, Model, Numbers, Remarks, bring_to_controller,
+};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use serde::de::DeserializeOwned;
 
 use crate::error::value;
 
-const FRAMEWORKS: [(&str, Framework); 6] = [
-    ("snntorch", Framework::SnnTorch),
-    ("norse", Framework::Norse),
-    ("spikingjelly", Framework::SpikingJelly),
-    ("rockpool", Framework::Rockpool),
-    ("sinabs", Framework::Sinabs),
-    ("nir", Framework::Nir),
-];
-
-const RESETS: [(&str, Reset); 7] = [
-    ("to-value", Reset::ToValue),
-    ("to-value-late", Reset::ToValueLate),
-    ("to-value-held", Reset::ToValueHeld),
-    ("subtract", Reset::Subtract),
-    ("subtract-late", Reset::SubtractLate),
-    ("subtract-no-delay", Reset::SubtractNoDelay),
-    ("none", Reset::NoReset),
-];
-
-const FIRES: [(&str, Fires); 2] = [("above", Fires::Above), ("at", Fires::At)];
-
-const DECAYS: [(&str, Decay); 2] = [("euler", Decay::Euler), ("exponential", Decay::Exponential)];
-
-const CURRENTS: [(&str, Current); 3] =
-    [("new", Current::New), ("old", Current::Old), ("whole", Current::Whole)];
-
 /// The choice of this name.
-fn choice<T: Copy>(keyword: &str, choices: &[(&str, T)], asked: &str) -> PyResult<T> {
-    let found = choices.iter().find(|(name, _)| *name == asked).map(|(_, choice)| *choice);
-    found.ok_or_else(|| {
-        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        PyValueError::new_err(format!("{keyword} {asked:?} must be one of {}", names.join(", ")))
-    })
+fn choice<T: DeserializeOwned>(keyword: &str, asked: &str) -> PyResult<T> {
+    let choice = serde_json::from_value(asked.into());
+    choice.map_err(|error| PyValueError::new_err(format!("{keyword}: {error}")))
 }
 
 /// A network and its state.
 #[pyclass(module = "spikewire._native")]
 pub(crate) struct Network {
+    model: Model,
     flown: Flown,
+}
+
+impl From<Model> for Network {
+    fn from(model: Model) -> Self {
+        Self { flown: model.as_flown(), model }
+    }
 }
 
 /// Spikes and potentials, a row for each step.
@@ -62,19 +43,60 @@ impl Network {
     fn new(path: PathBuf, said: Said, resets: Vec<String>, dt: Option<f64>) -> PyResult<Self> {
         let [framework, fires, decay, current] = said;
         let asked = Asked {
-            framework: framework.map(|own| choice("framework", &FRAMEWORKS, &own)).transpose()?,
-            resets: resets
-                .iter()
-                .map(|own| choice("reset", &RESETS, own))
-                .collect::<PyResult<_>>()?,
-            fires: fires.map(|own| choice("fires", &FIRES, &own)).transpose()?,
-            decay: decay.map(|own| choice("decay", &DECAYS, &own)).transpose()?,
-            current: current.map(|own| choice("current", &CURRENTS, &own)).transpose()?,
+            framework: framework.map(|own| choice("framework", &own)).transpose()?,
+            resets: resets.iter().map(|own| choice("reset", own)).collect::<PyResult<_>>()?,
+            fires: fires.map(|own| choice("fires", &own)).transpose()?,
+            decay: decay.map(|own| choice("decay", &own)).transpose()?,
+            current: current.map(|own| choice("current", &own)).transpose()?,
             dt,
         };
         let model = File::read(&path).and_then(|file| file.on_controller(&asked));
-        let model = model.map_err(value)?;
-        Ok(Self { flown: model.as_flown() })
+        Ok(model.map_err(value)?.into())
+    }
+
+    #[staticmethod]
+    fn from_toml(text: &str) -> PyResult<Self> {
+        Ok(Model::from_toml(text).map_err(value)?.into())
+    }
+
+    fn toml(&self) -> PyResult<String> {
+        self.model.to_toml().map_err(value)
+    }
+
+    #[staticmethod]
+    fn from_json(text: &str) -> PyResult<Self> {
+        Ok(Model::from_json(text).map_err(value)?.into())
+    }
+
+    fn json(&self) -> PyResult<String> {
+        self.model.to_json().map_err(value)
+    }
+
+    /// Writes the network as a Rust module. `steps` are the inputs that fire in each step of a recording.
+    fn rust(
+        &self,
+        py: Python,
+        steps: Vec<Vec<u16>>,
+        numbers: &str,
+        source: String,
+    ) -> PyResult<String> {
+        for step in &steps {
+            self.check(step)?;
+        }
+        let numbers = choice::<Numbers>("numbers", numbers)?;
+        let inputs = format!("{}, of spikes as they are", self.flown.inputs());
+        let request = ControllerRequest {
+            model: &self.model,
+            numbers,
+            tuned: &steps,
+            held_out: None,
+            progress: &|_, _| {},
+        };
+        let brought = py.detach(|| {
+            bring_to_controller(&request)
+                .map(|own| own.network.emit(&Remarks { source, inputs, step_us: None }))
+        });
+        brought.map_err(value)
     }
 
     fn layers(&self) -> Vec<usize> {
@@ -100,11 +122,7 @@ impl Network {
 
     /// Takes a step with the numbers of the inputs that fire.
     fn step(&mut self, inputs: Vec<u16>) -> PyResult<()> {
-        let count = self.flown.inputs();
-        if let Some(odd) = inputs.iter().find(|input| usize::from(**input) >= count) {
-            let words = format!("input {odd}: the network has inputs 0 to {}", count - 1);
-            return Err(PyValueError::new_err(words));
-        }
+        self.check(&inputs)?;
         self.flown.step(&inputs);
         Ok(())
     }
@@ -123,5 +141,19 @@ impl Network {
             potentials.push(self.flown.potentials().to_vec());
         }
         Ok((PyArray2::from_vec2(py, &spikes)?, PyArray2::from_vec2(py, &potentials)?))
+    }
+}
+
+impl Network {
+    /// Returns an error if the network lacks one of these inputs.
+    fn check(&self, inputs: &[u16]) -> PyResult<()> {
+        let count = self.flown.inputs();
+        match inputs.iter().find(|input| usize::from(**input) >= count) {
+            None => Ok(()),
+            Some(odd) => Err(PyValueError::new_err(format!(
+                "input {odd}: the network has inputs 0 to {}",
+                count - 1
+            ))),
+        }
     }
 }

@@ -1,5 +1,7 @@
 """Networks of three frameworks against what these gave, and what is refused."""
 
+import importlib.util
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,10 @@ import pytest
 import spikewire as sw
 
 PEERS = Path(__file__).parents[3] / "laptop/cli/tests/peers/nir"
+
+
+def unnamed(rust):
+    return re.sub("node `.*?`: (a neuron|weights)", r"\1", rust)
 
 
 def steps(name):
@@ -44,10 +50,64 @@ def test_what_a_file_leaves_open_is_asked_for():
     path = PEERS / "braille_subtract.nir"
     with pytest.raises(ValueError, match="subtract-late"):
         sw.Network.from_nir(path, "snntorch")
-    with pytest.raises(ValueError, match="framework \"torch\" must be one of snntorch"):
+    with pytest.raises(ValueError, match="framework: unknown variant `torch`, expected one of `snntorch`"):
         sw.Network.from_nir(path, "torch")
     network = sw.Network.from_nir(path, "snntorch", reset="subtract-late")
     with pytest.raises(ValueError, match="input 12: the network has inputs 0 to 11"):
         network.step([12])
     with pytest.raises(ValueError, match="12 counts"):
         network.step(np.ones(3))
+
+
+RULES = [
+    ("braille_subtract", "snntorch", {"reset": "subtract-no-delay"}),
+    ("snntorch_recurrent", "snntorch", {"reset": ["subtract-late", "subtract-no-delay"]}),
+    ("snntorch_one_to_one", "snntorch", {"reset": "none"}),
+    ("norse_cell", "norse", {"current": "whole", "dt": 1e-3}),
+    ("norse_if", "norse", {"dt": 1e-3}),
+    ("spikingjelly", "spikingjelly", {"reset": "subtract"}),
+    ("spikingjelly_cuba", "spikingjelly", {}),
+]
+
+
+@pytest.mark.parametrize(("name", "framework", "rule"), RULES)
+def test_files_bring_the_network_back(name, framework, rule, tmp_path):
+    network = sw.Network.from_nir(PEERS / f"{name}.nir", framework, **rule)
+    counts = np.random.default_rng(1).poisson(0.4, (300, network.inputs))
+    (tmp_path / "own.toml").write_text(network.to_toml())
+    own = [sw.Network.from_toml(network.to_toml()), sw.Network.from_nir(tmp_path / "own.toml")]
+    with pytest.raises(sw.Error, match="holds the rule"):
+        sw.Network.from_nir(tmp_path / "own.toml", framework)
+    if importlib.util.find_spec("nir"):
+        keywords = network.to_nir(tmp_path / "own.nir")
+        own.append(sw.Network.from_nir(tmp_path / "own.nir", **keywords))
+    for again in own:
+        for one, other in zip(again.run(counts), network.run(counts)):
+            assert np.array_equal(one, other)
+        # A graph's nodes have names of their own.
+        assert unnamed(again.to_rust(counts)) == unnamed(network.to_rust(counts))
+    assert "pub fn is_intact() -> bool" in network.to_rust(counts, numbers="i8", source="own.toml")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("keep = [", "keep = [2.0, "), "3 values of `keep` for 2 neurons"),
+        (("threshold = [1.0, 1.0]", ""), "neurons with a threshold have `reset` and `fires`"),
+        (("keep = [0.9", "keep = [1.5"), "neuron 0 keeps 1.5"),
+        (("[[layers]]", "[[layer]]"), "no network in TOML"),
+        (("[0.5, 0.25]", "[0.5]"), "neuron 1 has 1 weights where the first has 2"),
+    ],
+)
+def test_a_wrong_file_is_told(change, words):
+    layers = """[[layers]]
+name = "one"
+reset = "to-value"
+fires = "at"
+keep = [0.9, 0.9]
+threshold = [1.0, 1.0]
+weights = [[0.5, 1.0], [0.5, 0.25]]
+"""
+    assert sw.Network.from_toml(layers).to_toml() == layers
+    with pytest.raises(sw.Error, match=re.escape(words)):
+        sw.Network.from_toml(layers.replace(*change))

@@ -3,7 +3,9 @@
 import copy
 import importlib.util
 import json
+import os
 import pickle
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,7 @@ torch = pytest.importorskip("torch")
 
 from torch.utils.data import DataLoader
 
-from spikewire.torch import Encode, TinyOdin, Windows
+from spikewire.torch import Controller, Encode, ReckOn, TinyOdin, Windows
 
 X = torch.sin(torch.linspace(0, 60, 4 * 50 * 6)).reshape(4, 50, 6)  # (batch, time, features)
 SLOTS = sw.Slots(neurons=5, slots=3, min=-1, max=1)
@@ -157,3 +159,122 @@ def test_tiny_odin_is_saved(tmp_path):
     assert (layer["threshold"], layer["leak"]) == (15.5, 1)
     with pytest.raises(sw.Error, match="tinyODIN's"):
         sw.Network.from_nir(tmp_path / "chip.json")
+
+
+@pytest.mark.skipif("SPIKEWIRE" not in os.environ, reason="needs the laptop program")
+@pytest.mark.parametrize(
+    ("network", "words"),
+    [
+        (TinyOdin(12, 16, 5), "--on tinyodin --compare step"),
+        (ReckOn(12, 16, 5), "--on reckon"),
+        (ReckOn(12, 17, 9, 5, recurrent=True, keep=0.9), "--on reckon"),
+        (ReckOn(12, 16, 5, recurrent=True, subtract=True), "--on reckon --reset subtract-late"),
+        (ReckOn(12, 3, shift=0, threshold=100, keep=1.0), "--on reckon"),
+    ],
+)
+def test_chips_fire_as_the_networks_do(network, words, tmp_path):
+    inputs = np.random.default_rng(1).integers(0, 2, (400, 12))
+    trains = {"inputs": inputs, "outputs": network(torch.from_numpy(inputs)[:, None])[:, 0].detach().numpy()}
+    for name, spikes in trains.items():
+        lines = (" ".join(map(str, np.flatnonzero(step))) for step in spikes)
+        (tmp_path / name).write_text("\n".join(lines) + "\n")
+    network.save(tmp_path / "chip.json")
+    program = [os.environ["SPIKEWIRE"], "network", "chip.json", "inputs", *words.split(), "--no-held-out"]
+    program += ["--trained-spikes", "outputs", "--json", "-o", "chip.rs"]
+    ran = subprocess.run(program, cwd=tmp_path, check=True, capture_output=True)
+    (log,) = json.loads(ran.stdout)["logs"]
+    tuned = log["tuned"]
+    assert 0.01 < trains["outputs"].mean() < 0.98
+    assert (tuned["steps"], tuned["agreeing"], tuned["lost"]) == (400, 400, 0)
+
+
+def test_reckon_learns():
+    torch.manual_seed(1)
+    network = ReckOn(6, 20, 2, recurrent=True)
+    spikes = Encode(sw.StepForward(threshold=0.02), time=1, split=True)(X[..., :3])
+    wanted = (X[..., :2].transpose(0, 1) > 0).float()
+    optimizer = torch.optim.Adam(network.parameters(), 1.0)
+    losses = []
+    for _ in range(60):
+        rate = torch.stack(network(spikes).split(10)).mean(1)
+        loss = (rate - torch.stack(wanted.split(10)).mean(1)).square().mean()
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        losses.append(loss.item())
+    assert losses[-1] < losses[0] / 2
+    with pytest.raises(ValueError, match="0.875 to 1"):
+        ReckOn(2, 2, keep=0.8)
+
+
+RESETS = ["to-value", "to-value-late", "to-value-held", "subtract", "subtract-late", "subtract-no-delay", "none"]
+
+
+def are_the_same(controller, network, counts):
+    """Spikes and potentials of each recording are the network's, bit for bit."""
+    fires = "reset" in controller.neurons[-1].rule
+    layers = [[own.detach().numpy() for own in pair] for pair in controller.layers(torch.from_numpy(counts))]
+    for recording in range(counts.shape[1]):
+        ran = network.run(counts[:, recording])
+        potentials, fired = (own[:, recording] for own in layers[-1])
+        assert np.array_equal(fired > 0, ran.spikes)
+        assert np.array_equal(potentials, ran.potentials)
+        network.reset()
+        for at, step in enumerate(counts[:, recording]):
+            network.step(step)
+            assert network.fired == [np.flatnonzero(own[at, recording]).tolist() for _, own in layers]
+    return fires and 0 < layers[-1][1].mean() < 1
+
+
+@pytest.mark.parametrize("reset", RESETS)
+@pytest.mark.parametrize("at", [False, True])
+@pytest.mark.parametrize("current_keep", [None, 0.7])
+def test_controller_is_the_network(reset, at, current_keep):
+    torch.manual_seed(1)
+    options = dict(keep=0.8, reset=reset, at=at, current_keep=current_keep, recurrent=True)
+    counts = np.random.default_rng(1).integers(0, 3, (60, 3, 5)).astype(np.float32)
+    for readout in (False, True):
+        controller = Controller(5, 9, 4, readout=readout, **options)
+        with torch.no_grad():
+            # Halves let potentials meet thresholds.
+            for name, own in controller.named_parameters():
+                own.copy_(torch.randn_like(own) if "bias" in name else (2 * own).round() / 2)
+        network = controller.network()
+        assert are_the_same(controller, network, counts) != readout
+        for again in (sw.Network.from_toml(network.to_toml()), Controller.from_network(network).network()):
+            assert again.to_toml() == network.to_toml()
+
+
+@pytest.mark.parametrize(
+    ("name", "framework", "rule"),
+    [
+        ("braille_bias_zero", "snntorch", {"reset": "to-value"}),
+        ("norse_cell", "norse", {"current": "whole", "dt": 1e-3}),
+        ("spikingjelly_cuba", "spikingjelly", {}),
+    ],
+)
+def test_controller_takes_networks_of_frameworks(name, framework, rule):
+    place = Path(__file__).parents[3] / "laptop/cli/tests/peers/nir" / f"{name}.nir"
+    network = sw.Network.from_nir(place, framework, **rule)
+    counts = np.random.default_rng(1).poisson(0.3, (200, 2, network.inputs)).astype(np.float32)
+    are_the_same(Controller.from_network(network), network, counts)
+
+
+def test_controller_learns():
+    torch.manual_seed(1)
+    network = Controller(6, 20, 2, current_keep=0.5, recurrent=True, readout=True)
+    spikes = Encode(sw.StepForward(threshold=0.02), time=1, split=True)(X[..., :3])
+    wanted = torch.stack([X[..., 0].T, -X[..., 1].T], -1)
+    optimizer = torch.optim.Adam(network.parameters(), 0.02)
+    losses = []
+    for _ in range(60):
+        loss = (network(spikes) - wanted).square().mean()
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        losses.append(loss.item())
+    assert losses[-1] < losses[0] / 3
+    assert all(own.grad.abs().sum() > 0 for own in network.parameters())
+    assert not are_the_same(network, network.network(), spikes.numpy())
+    with pytest.raises(ValueError, match="counts of spikes"):
+        network(-spikes)

@@ -3,6 +3,7 @@
 import functools
 import multiprocessing
 import os
+import sys
 import threading
 import warnings
 
@@ -386,6 +387,8 @@ def test_spikes_are_an_array(x):
     total = np.zeros(array.shape)
     np.add(total, spikes, out=total)
     assert np.array_equal(total, array)
+    if sys.version_info >= (3, 12):
+        assert np.array_equal(memoryview(spikes), array)
     with pytest.raises(TypeError, match="spikes are not written to"):
         np.add(total, 1, out=spikes)
     assert spikes.count == np.abs(array.astype(int)).sum()
@@ -394,6 +397,11 @@ def test_spikes_are_an_array(x):
 def test_words_for_a_wrong_scheme_or_axis(x):
     with pytest.raises(KeyError, match="there is no scheme 'x'; there are tbr, "):
         sw.schemes["x"]
-    with pytest.raises(ValueError, match="axis is that of time, one of 2, and not None"):
-        sw.StepForward(threshold=0.1).encode(x, axis=None)
+    step = sw.StepForward(threshold=0.1)
+    spikes = step.encode(x).array
+    for call in (step.encode, lambda x, axis: step.decode(spikes, 0, axis), lambda x, axis: step.decode_weighted(spikes, 0, axis)):
+        with pytest.raises(ValueError, match="axis is that of time, a number below 2, and not None"):
+            call(x, axis=None)
+        with pytest.raises(ValueError, match="axis 2: the array has 2 axes"):
+            call(x, axis=2)
     assert "x" not in sw.schemes and sw.schemes.get("x") is None

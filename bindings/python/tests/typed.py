@@ -5,7 +5,7 @@ from torch import nn
 from torch.utils.data import DataLoader
 
 import spikewire as sw
-from spikewire.torch import Encode, Windows
+from spikewire.torch import Controller, Encode, ReckOn, TinyOdin, Windows
 
 layer = Encode(sw.StepForward(threshold=0.1), time=1, split=True, gradient="straight")
 own = Encode(sw.Bernoulli(min=0, max=1), 25, dtype=torch.bfloat16, gradient=lambda x: 1 / (1 + x.abs()))
@@ -15,3 +15,10 @@ for samples, labels in loader:
     out: torch.Tensor = network(samples)
     spikes: torch.Tensor = layer(samples)
     print(spikes.shape, out.shape, labels)
+
+flown = Controller(12, 20, 3, recurrent=True)
+for chip in (ReckOn(12, 20, 3), TinyOdin(12, 20, 3)):
+    out = chip(layer(torch.zeros(4, 50, 6)))
+rust: str = flown.network().to_rust([[0, 1], [2]])
+array = sw.StepForward(threshold=0.1).encode(np.zeros(9))
+same: np.ndarray = np.asarray(array) * 2

@@ -128,7 +128,7 @@ fn scores_and_pictures_in_pieces_are_those_of_the_whole() {
         for options in [
             "--all",
             "--scheme sf --threshold 0.1 --range 8100..8300",
-            "--scheme hsa --filter triang:15 --range 8192..22000",
+            "--scheme hsa --filter triang:15 --range 8192..11900",
             "--scheme grf-slots --neurons 5 --slots 4 --range 0..40",
         ] {
             let drawn = |input: &str| {

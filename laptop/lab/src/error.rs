@@ -432,6 +432,8 @@ foreign! {
     #[cfg(feature = "networks")]
     hdf5_reader::error::Error,
     #[cfg(feature = "networks")]
+    toml::ser::Error,
+    #[cfg(feature = "networks")]
     spikewire_chips::FormatError,
 }
 

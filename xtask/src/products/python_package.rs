@@ -3,7 +3,7 @@
 use crate::common::{cargo, command, output, paths, run};
 use crate::products::c_library;
 use crate::programs::host;
-use crate::programs::python::{environment_with, install, package, pip};
+use crate::programs::python::{environment_with, install, package, pip, with_path};
 use anyhow::{Result, ensure};
 use std::{
     fs,
@@ -70,14 +70,27 @@ pub fn torch() -> Result<()> {
     let python = environment_with("python-torch", REQUIREMENTS)?;
     install(
         &python,
-        &["torch==2.15.0", "snntorch==1.0.0", "spikingjelly==2.0.0", "mypy==2.4.1", "pdoc==16.0.0"],
+        &[
+            "torch==2.15.0",
+            "snntorch==1.0.0",
+            "spikingjelly==2.0.0",
+            "nir==1.0.8",
+            "mypy==2.4.1",
+            "pyright[nodejs]==1.1.414",
+            "pdoc==16.0.0",
+        ],
     )?;
     package(&python, "dev")?;
-    let tests = "-m pytest --quiet --no-header --doctest-modules bindings/python/tests/test_torch.py bindings/python/tests/test_notebooks.py bindings/python/tests/test_readme.py --pyargs spikewire.torch";
-    run(command(&python).args(tests.split_whitespace()))?;
+    let tests = "-m pytest --quiet --no-header --doctest-modules bindings/python/tests/test_torch.py bindings/python/tests/test_network.py bindings/python/tests/test_notebooks.py bindings/python/tests/test_readme.py --pyargs spikewire.torch";
+    run(command(&python).args(tests.split_whitespace()).env("SPIKEWIRE", host::laptop()?))?;
     run(command(&python).arg("bindings/python/examples/fleet.py"))?;
     let typed = "-m mypy --strict bindings/python/tests/typed.py";
     run(command(&python).args(typed.split_whitespace()))?;
+    for asked in ["bindings/python/tests/typed.py", "--ignoreexternal --verifytypes spikewire"] {
+        let mut pyright = with_path(&python);
+        pyright.args(["-m", "pyright"]).args(asked.split_whitespace());
+        run(&mut pyright)?;
+    }
     let pages = paths::target().join("python-pages");
     let mut pdoc = command(&python);
     pdoc.args(["-m", "pdoc", "--docformat", "google", "--no-show-source", "--output-directory"]);

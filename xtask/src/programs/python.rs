@@ -27,16 +27,22 @@ pub fn environment_with(name: &str, requirements: &str) -> Result<PathBuf> {
 
 /// Prepares `pip install` in the environment.
 pub fn pip(python: &Path) -> Command {
-    let mut pip = command(python);
-    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
     // The builder is a program of the environment.
+    let mut pip = with_path(python);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    pip
+}
+
+/// Prepares a Python that finds the programs of its environment first.
+pub fn with_path(python: &Path) -> Command {
+    let mut own_first = command(python);
     let own = python.parent().map(PathBuf::from).into_iter();
     let others = env::var_os("PATH").unwrap_or_default();
     let all: Vec<PathBuf> = own.chain(env::split_paths(&others)).collect();
     if let Ok(path) = env::join_paths(all) {
-        pip.env("PATH", path);
+        own_first.env("PATH", path);
     }
-    pip
+    own_first
 }
 
 /// Installs packages from PyPI.

@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 /// The spikes of a recording run through the network twice: in double precision, and in the target's arithmetic. A chip
 /// is simulated clock cycle by clock cycle; the controller's arithmetic is reproduced bit by bit.
 ///
-/// NETWORK is a NIR graph or JSON. A NIR graph is an HDF5 file, as snnTorch, Norse, Rockpool, Sinabs, Lava and others
+/// NETWORK is a NIR graph, JSON, or TOML. A NIR graph is an HDF5 file, as snnTorch, Norse, Rockpool, Sinabs, Lava and others
 /// write it. For a chip, the graph must be a chain of up to three layers. Each layer consists of Linear or Affine
 /// weights, followed by LIF, IF or `CubaLIF` neurons. The current of a `CubaLIF` neuron must not last longer than one
 /// step. A layer may be recurrent. On the chip `ReckOn`, the outputs may be a last layer of Linear weights, followed by
@@ -44,6 +44,9 @@ use std::path::{Path, PathBuf};
 /// JSON is {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep": 0.9, "threshold":
 /// 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}. Its weights are listed by neuron, then by input;
 /// `keep` is the factor by which a neuron's potential decays in a step.
+///
+/// TOML, in a file whose name ends in `.toml`, holds all numbers of the controller's form, and the order in which its
+/// neurons decay, fire and reset. The Python package writes it.
 ///
 /// The controller takes any number of layers, `CubaLIF` neurons with currents of any length, and a last layer of
 /// weights without neurons. A NIR file does not contain the order in which neurons decay, fire and reset. The option
@@ -55,7 +58,7 @@ Example:
   spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs
   spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs")]
 pub(crate) struct Network {
-    /// Network: a NIR graph, or JSON
+    /// Network: a NIR graph, JSON, or TOML
     #[arg(value_name = "NETWORK")]
     trained: PathBuf,
     /// Target: the name of a chip, or `controller` for the flight controller

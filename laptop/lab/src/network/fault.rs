@@ -17,7 +17,9 @@ kinds! {
             "the file does not say by which rule its neurons step: {}",
             super::controller::words(spell, *framework, open)
         ),
-        NoNetwork => ("neither a NIR graph, which is an HDF5 file, nor a network in JSON"),
+        NoNetwork => ("neither a NIR graph, which is an HDF5 file, nor a network in JSON or, with the name .toml, in TOML"),
+        NotToml { error: toml::de::Error } => ("no network in TOML: {error}"),
+        HasRule => ("a network in TOML holds the rule by which its neurons step: leave out framework, reset and so on"),
         NotAnInput { word: String } => ("`{word}` is not the number of an input"),
         NoInputs { inputs: usize, step: Vec<u16> } =>
             ("the network has {inputs} inputs, and not those of {step:?}"),
@@ -147,6 +149,9 @@ kinds! {
         LastingCurrent { left: f64 } => (
             "a spike's current lasts: a step leaves {left:.3} of it, and the chip's neurons have no current; train with \
              `tau_syn` of a step, or LIF"
+        ),
+        HalfRule => (
+            "neurons with a threshold have `reset` and `fires`, those with `current_keep` have `current`, and no others"
         ),
         SilentInside => ("neurons that never fire must be the last"),
         NoReadout => ("tinyODIN has no outputs that never fire; ReckOn has"),

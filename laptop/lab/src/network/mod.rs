@@ -35,19 +35,21 @@ use std::path::Path;
 /// The first bytes of every HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// A network file that was read, in one of the two supported formats.
+/// A network file that was read, in one of the supported formats.
 pub enum File {
     /// A network in JSON. Its parameters, such as decay factors, apply to one time step.
     Plain(Trained),
     /// A network as a NIR graph. Its time constants are in seconds.
     Nir(Box<nir::Chain>),
+    /// A network in TOML, which holds the rule of its neurons.
+    Toml(Model),
 }
 
 impl File {
-    /// Reads a network from a file: a NIR graph, or a network in JSON.
+    /// Reads a network from a file: a NIR graph, or a network in JSON or TOML.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be read, or has neither of these two formats.
+    /// Returns an error if the file cannot be read, or has none of these formats.
     pub fn read(path: &Path) -> Result<Self> {
         let unread = |error| Error::open(path.display().to_string(), error);
         let bytes = fs::read(path).map_err(unread)?;
@@ -56,6 +58,10 @@ impl File {
         }
         if bytes.trim_ascii_start().starts_with(b"{") {
             return Ok(Self::Plain(plain::read(&bytes).at(|| path)?));
+        }
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let text = String::from_utf8_lossy(&bytes);
+            return Ok(Self::Toml(Model::from_toml(&text).at(|| path)?));
         }
         Err(NetworkKind::NoNetwork.at(path))
     }
@@ -69,6 +75,7 @@ impl File {
         match self {
             Self::Plain(trained) => Model::of_plain(trained, asked),
             Self::Nir(chain) => Model::of_nir(*chain, asked),
+            Self::Toml(model) => model.unless_asked(asked),
         }
     }
 
@@ -83,6 +90,7 @@ impl File {
         let trained = match self {
             Self::Plain(trained) => trained.reset_by(asked),
             Self::Nir(chain) => Model::of_nir(*chain, &asked.on_chip(seconds))?.on_chip(),
+            Self::Toml(model) => model.unless_asked(asked)?.on_chip(),
         }?;
         let all_reset = trained.layers.iter().all(|layer| layer.reset != Reset::NoReset);
         fault::ensure!(all_reset, FitKind::NoReset);

@@ -100,7 +100,7 @@ impl Model {
         Self::new(Net { layers }, notes)
     }
 
-    fn new(net: Net<f64>, notes: Vec<String>) -> Result<Self> {
+    pub(super) fn new(net: Net<f64>, notes: Vec<String>) -> Result<Self> {
         ensure!(!net.layers.is_empty(), NetworkKind::NoNeurons);
         for pair in net.layers.windows(2) {
             let (before, after) = (&pair[0], &pair[1]);
@@ -134,15 +134,15 @@ impl Layer<f64> {
     }
 }
 
-/// Transposes a matrix of weights: from one row for each neuron to one row for each input.
-fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+/// Transposes a matrix of weights: from one row for each neuron to one row for each input, or back.
+pub(super) fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let inputs = rows.first().map_or(0, Vec::len);
     (0..inputs).map(|input| rows.iter().map(|row| row[input]).collect()).collect()
 }
 
 /// Converts a matrix of recurrent weights, which has one row for each receiving neuron. If all weights between
 /// different neurons are 0, the result contains only the weight from each neuron to itself.
-fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
+pub(super) fn own(rows: &[Vec<f64>]) -> Recurrent<f64> {
     if rows.is_empty() {
         return Recurrent::None;
     }

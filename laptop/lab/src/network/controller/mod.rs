@@ -1,6 +1,7 @@
 //! Brings trained networks onto the flight controller itself, where the crate `spikewire-network` runs them.
 
 mod emit;
+mod file;
 mod form;
 mod net;
 mod number;
@@ -21,6 +22,7 @@ use crate::network::fault::{FitKind, Result};
 use net::{Done, Net, Recurrent, State};
 use number::Number;
 use quantise::Integers;
+use serde::Deserialize;
 
 /// A network in double precision, in the form that `spikewire-network` runs. Its parameters, such as decay factors,
 /// apply to one time step.
@@ -31,11 +33,13 @@ pub struct Model {
 }
 
 /// The type of the network's numbers on the controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Numbers {
     /// Single precision (`f32`), for cores with a floating-point unit.
+    #[serde(rename = "f32")]
     Float,
     /// Integers: weights of 8 bits, potentials of 32 bits.
+    #[serde(rename = "i8")]
     Integer,
 }
 

@@ -3,6 +3,8 @@
 
 use super::super::trained::{self, Readout, Trained};
 use super::Model;
+use super::file::diagonal;
+use super::form::turned;
 use super::net::{Layer, Neuron, Recurrent, Spike};
 use crate::network::fault::{Context, FitKind, Result, ensure};
 
@@ -55,12 +57,6 @@ fn add_clock(layer: &mut trained::Layer) {
     layer.neurons.push(trained::Neuron { keep, threshold: 1.0, leak: 0.0 });
 }
 
-/// Transposes a matrix of weights: from one row for each input to one row for each neuron.
-fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let neurons = rows.first().map_or(0, Vec::len);
-    (0..neurons).map(|neuron| rows.iter().map(|row| row[neuron]).collect()).collect()
-}
-
 fn check_current(neuron: &Neuron<f64>) -> Result<()> {
     let left = neuron.current.unwrap_or(0.0);
     ensure!(left <= CURRENT, FitKind::LastingCurrent { left });
@@ -69,15 +65,10 @@ fn check_current(neuron: &Neuron<f64>) -> Result<()> {
 
 fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
     let Layer { name, weights, own, neurons, rule } = layer;
-    let count = neurons.len();
     let recurrent = match own {
         Recurrent::None => vec![],
         Recurrent::Full(own) => turned(&own),
-        Recurrent::OneToOne(own) => {
-            let row = |at: usize| (0..count).map(move |from| f64::from(u8::from(from == at)));
-            let rows = own.iter().enumerate();
-            rows.map(|(at, weight)| row(at).map(|one| one * weight).collect()).collect()
-        }
+        Recurrent::OneToOne(own) => diagonal(&own),
     };
     let mut layer = trained::Layer {
         name,

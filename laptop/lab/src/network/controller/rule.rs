@@ -2,10 +2,12 @@
 
 use super::open::Choice;
 use crate::network::fault::{NetworkKind, Result};
+use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 
 /// The training framework whose rule a network follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Framework {
     /// The framework snnTorch. It trains with several kinds of reset, and a file does not say which kind was used.
     SnnTorch,
@@ -22,7 +24,8 @@ pub enum Framework {
 }
 
 /// How a spike resets its neuron's potential. The variants have the names of the types in `spikewire-network`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Reset {
     /// Sets the potential to `v_reset` in the same step.
     ToValue,
@@ -38,11 +41,13 @@ pub enum Reset {
     /// above the threshold before a step must exceed twice the threshold to fire in the step.
     SubtractNoDelay,
     /// Leaves the potential as it is.
+    #[serde(rename = "none")]
     NoReset,
 }
 
 /// Whether a neuron fires at its threshold, or only above it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Fires {
     /// The neuron fires only above the threshold.
     Above,
@@ -51,7 +56,8 @@ pub enum Fires {
 }
 
 /// How a time constant `tau` becomes the factor by which a step of length `dt` multiplies a potential or current.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Decay {
     /// The factor is 1 - dt / tau.
     Euler,
@@ -61,7 +67,8 @@ pub enum Decay {
 
 /// The synaptic current that a step adds to the potential: the current of this step, or of the step before. The choice
 /// matters only for neurons that have a synaptic current.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Current {
     /// The current after this step's inputs were added to it.
     New,
@@ -74,7 +81,7 @@ pub enum Current {
 
 /// The parts of the rule for decay, firing and reset that the user gave. Parts that the user did not give are `None` or
 /// empty; the framework may imply some of them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Asked {
     /// The training framework. It may imply parts of the rule that the user did not give.
     pub framework: Option<Framework>,

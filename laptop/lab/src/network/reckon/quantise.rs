@@ -139,6 +139,8 @@ pub(super) struct Source {
     pub(super) layer: usize,
     pub(super) neuron: usize,
     pub(super) keep: f64,
+    /// The neuron's threshold, in the units of the trained network.
+    pub(super) threshold: f64,
     /// The weight of each input.
     pub(super) inputs: Vec<f64>,
     pub(super) bias: f64,
@@ -228,7 +230,14 @@ pub(super) fn quantise(
         })
         .collect();
     let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
-    let change = |&shifts: &[u8; 2]| pairs.iter().map(|pair| change(pair, shifts)).sum::<f64>();
+    let are_whole = |shifts: [u8; 2]| {
+        let mut pairs = pairs.iter();
+        ticks == 1 && pairs.all(|pair| exact_scale(pair, shifts).is_some())
+    };
+    let change = |&shifts: &[u8; 2]| {
+        let changes = pairs.iter().map(|pair| change(pair, shifts));
+        if are_whole(shifts) { -1.0 } else { changes.sum::<f64>() }
+    };
     let changes: Vec<([u8; 2], f64)> = all.map(|shifts| (shifts, change(&shifts))).collect();
     let best = changes.iter().min_by(|(_, one), (_, other)| one.total_cmp(other));
     let shifts = best.map_or([0; 2], |(shifts, _)| *shifts);
@@ -364,8 +373,35 @@ impl Recorded<'_> {
         let own = own.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0);
         recurrent.extend(own.map(|(from, weight)| (places.of(at, from), weight)));
         let bias = layer.bias[neuron] / threshold;
-        Source { layer: at, neuron, keep, inputs, bias, gate, recurrent, peak: peak + gate }
+        Source {
+            layer: at,
+            neuron,
+            keep,
+            threshold,
+            inputs,
+            bias,
+            gate,
+            recurrent,
+            peak: peak + gate,
+        }
     }
+}
+
+/// Returns the scale at which the chip's integers are exactly the trained numbers, as in networks that were trained with
+/// them; `None` if there is none. `shifts` has the same meaning as for [`scale`].
+fn exact_scale(pair: &[Source], shifts: [u8; 2]) -> Option<f64> {
+    let scale = pair.first().map_or(1.0, |source| source.threshold);
+    let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
+    let is_whole = |number: f64, of: f64| (number * of - clipped(number * of)).abs() < 1e-9;
+    let keep = mean_keep(pair, 1);
+    let are_whole = pair.iter().all(|source| {
+        source.threshold == scale
+            && source.bias == 0.0
+            && source.keep * KEEP == f64::from(keep)
+            && source.inputs.iter().all(|weight| is_whole(*weight, inputs))
+            && source.recurrent.iter().all(|(_, weight)| is_whole(*weight, recurrent))
+    });
+    (are_whole && scale <= 32_767.0).then_some(scale)
 }
 
 /// The scale and the leak of a pair, and its neurons' weights in the chip's integers.
@@ -389,6 +425,12 @@ impl Chosen {
         let keep = mean_keep(pair, rule.ticks);
         let of = |source| Traces::new(source, keep, rule, drives, fired, places);
         let traces: Vec<Traces> = pair.iter().map(of).collect();
+        if let Some(scale) = exact_scale(pair, shifts).filter(|_| rule.ticks == 1) {
+            let of = |(source, traces): (&Source, &Traces)| {
+                Rounded::new(source, traces, keep, scale, shifts, 1)
+            };
+            return Self { keep, scale, rounded: pair.iter().zip(&traces).map(of).collect() };
+        }
         let most = scale(pair, shifts);
         let mut rounded: Vec<(f64, f64, Vec<Rounded>)> = (0..SCALES)
             .map(|part| most * (1.0 - 0.5 * f64::from(part) / f64::from(SCALES)))
