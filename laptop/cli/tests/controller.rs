@@ -221,7 +221,7 @@ fn a_file_that_the_framework_would_not_write_is_reported() {
     assert!(report.contains("a gain of 0.040000, where snnTorch writes 1"), "{report}");
 }
 
-/// The Rust module equals the one in the firmware `examples/trained`, which `cargo verify network` compiles for every
+/// The Rust module equals the one in the firmware `examples/trained`, which `cargo verify all-cores` compiles for every
 /// core.
 #[test]
 fn a_network_becomes_the_module_of_the_firmware() {

@@ -1,23 +1,37 @@
-//! `cargo xtask firmware`: runs every example program on every emulated board, and compares its output with the host's.
+//! `cargo xtask firmware`: runs every example program on every emulated board, and compares its output with the host's;
+//! `cargo verify firmware` on those of every day.
 
 use crate::common::paths;
 use crate::figures::bits;
-use crate::programs::boards::{BOARDS, Board, RISC_V};
+use crate::programs::boards::{Board, RISC_V};
 use crate::programs::host::{self, FLIGHT_LOG};
 use crate::programs::{image, qemu, size};
 use crate::setup::needs;
 use anyhow::{Result, bail, ensure};
 use std::{fs, path::PathBuf, thread};
 
-/// Runs the named programs, or all, and fails if a board prints another line than the host.
+/// Runs the named programs, or all, on all boards, and fails if one prints another line than the host.
 pub fn firmware(names: &[String]) -> Result<()> {
+    compare_on(names, Board::all())
+}
+
+/// Runs all programs on the boards of every day.
+pub fn every_day() -> Result<()> {
+    compare_on(&[], Board::every_day())
+}
+
+fn compare_on(names: &[String], boards: impl Iterator<Item = &'static Board>) -> Result<()> {
     needs::ensure_met()?;
     let all = programs()?;
     let chosen = if names.is_empty() { &all } else { names };
+    if let Some(other) = chosen.iter().find(|program| !all.contains(program)) {
+        bail!("no program `{other}`; there are {all:?}");
+    }
+    let boards: Vec<_> = boards.collect();
+    build(chosen, &boards)?;
     let (mut differing, mut flown) = (Vec::new(), Vec::new());
     for program in chosen {
-        ensure!(all.contains(program), "no program `{program}`; there are {all:?}");
-        let (host, outcomes) = run(program)?;
+        let (host, outcomes) = run(program, &boards)?;
         if !compare(program, &host, &outcomes)? {
             differing.push(program.as_str());
         }
@@ -37,9 +51,11 @@ pub fn firmware(names: &[String]) -> Result<()> {
 /// Writes spike counts, and which bits agree, into docs/bits.md.
 pub fn write() -> Result<()> {
     needs::ensure_met()?;
+    let boards: Vec<_> = Board::all().collect();
+    build(&FLIGHT_LOG.map(str::to_owned), &boards)?;
     let mut flown = Vec::new();
     for program in FLIGHT_LOG {
-        let (host, outcomes) = run(program)?;
+        let (host, outcomes) = run(program, &boards)?;
         flown.extend(marked(&host, &outcomes));
     }
     bits::write(&bits::table(&flown))
@@ -82,25 +98,37 @@ impl Outcome {
     }
 }
 
-/// Runs a program everywhere; returns the host's output, and the outcome on each board.
-fn run(program: &str) -> Result<(String, Vec<Outcome>)> {
+/// Returns whether the program runs on the board: all do on a Cortex-M, the recorded flight on RISC-V, too.
+fn runs_on(program: &str, board: &Board) -> bool {
+    FLIGHT_LOG.contains(&program) || RISC_V.iter().all(|other| other.core != board.core)
+}
+
+/// Builds the programs for the boards.
+fn build(programs: &[String], boards: &[&Board]) -> Result<()> {
+    for board in boards {
+        let names = programs.iter().map(String::as_str);
+        let own: Vec<&str> = names.filter(|program| runs_on(program, board)).collect();
+        if !own.is_empty() {
+            image::build_each(&own, board)?;
+        }
+    }
+    Ok(())
+}
+
+/// Runs a program on the host and on the boards for which it was built; returns the host's output, and each outcome.
+fn run(program: &str, boards: &[&'static Board]) -> Result<(String, Vec<Outcome>)> {
     let host = host::on_host(program)?;
     ensure!(!host.is_empty(), "{program} prints nothing on the host");
-    let risc_v = if FLIGHT_LOG.contains(&program) { &RISC_V[..] } else { &[] };
-    let boards: Vec<&'static Board> = BOARDS.iter().chain(risc_v).collect();
-    let images =
-        boards.iter().map(|board| image::build(program, board)).collect::<Result<Vec<_>>>()?;
+    let own = boards.iter().copied().filter(|board| runs_on(program, board));
+    let images: Vec<_> = own.map(|board| (board, image::directory(board).join(program))).collect();
 
     let outcomes = thread::scope(|scope| {
-        let runs: Vec<_> = boards
+        let runs: Vec<_> =
+            images.iter().map(|(board, image)| scope.spawn(|| qemu::run(board, image))).collect();
+        images
             .iter()
-            .zip(&images)
-            .map(|(board, image)| scope.spawn(|| qemu::run(board, image)))
-            .collect();
-        boards
-            .into_iter()
-            .zip(images.iter().zip(runs))
-            .map(|(board, (image, run))| Outcome {
+            .zip(runs)
+            .map(|((board, image), run)| Outcome {
                 board,
                 image: image.clone(),
                 printed: run.join().unwrap_or_else(|_| bail!("its thread panicked")),
@@ -127,9 +155,11 @@ fn compare(program: &str, host: &str, outcomes: &[Outcome]) -> Result<bool> {
     Ok(agree)
 }
 
-/// Returns the host's lines, each with its mark for every board.
+/// Returns the host's lines, each with its mark for every board. One that did not run is taken to agree, as on the page.
 fn marked(host: &str, outcomes: &[Outcome]) -> Vec<(String, String)> {
-    let marks = |line| outcomes.iter().map(|outcome| outcome.mark(line)).collect::<Vec<_>>();
+    let of = |board: &Board| outcomes.iter().find(|outcome| outcome.board.core == board.core);
+    let mark = |board, line| of(board).map_or("=", |outcome| outcome.mark(line));
+    let marks = |line| Board::all().map(|board| mark(board, line)).collect::<Vec<_>>();
     host.lines().map(|line| (line.to_owned(), marks(line).join(" "))).collect()
 }
 

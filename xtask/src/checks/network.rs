@@ -33,12 +33,24 @@ pub fn network(args: &[String]) -> Result<()> {
         return Err(usage("cargo xtask network NETWORK.rs SPIKES.txt".to_owned()));
     };
     let there = |path: &String| fs::canonicalize(path).with_context(|| path.clone());
-    print!("{}", everywhere(&there(network)?, &there(spikes)?)?);
+    print!("{}", everywhere(&there(network)?, &there(spikes)?, BOARDS.iter())?);
     Ok(())
 }
 
-/// Runs the commands of the page as they stand there, and then those of integers; then counts the instructions of a step.
+/// Runs the networks of the page on the boards of every day, and counts the instructions of a step.
 pub fn verify() -> Result<()> {
+    of_page(Board::every_day())?;
+    counts("M4F", &[("A,f32", 2426), ("A,i8", 2871), ("D,f32", 23_711), ("D,i8", 19_939)])?;
+    counts("M0", &[("A,i8", 4663), ("D,i8", 31_551)])
+}
+
+/// Runs the networks of the page on all boards, as the page's own command does.
+pub fn on_all() -> Result<()> {
+    of_page(BOARDS.iter())
+}
+
+/// Runs the commands of the page as they stand there, and then those of integers.
+fn of_page(boards: impl Iterator<Item = &'static Board> + Clone) -> Result<()> {
     let commands = commands()?;
     let [setup, install, export, steps] = &commands[..] else {
         bail!("{PAGE} begins with {} commands, where there were four", commands.len());
@@ -50,16 +62,15 @@ pub fn verify() -> Result<()> {
     let steps = steps.strip_prefix("cargo xtask network ").and_then(|rest| rest.split_once(' '));
     let (module, spikes) = steps.context("the fourth is another")?;
     let at = |path: &str| paths::root().join(path);
-    print!("{}", everywhere(&at(module), &at(spikes))?);
+    print!("{}", everywhere(&at(module), &at(spikes), boards.clone())?);
 
     let kept = "trained/src/braille.rs";
     let is_same = fs::read(at(module))? == fs::read(paths::examples().join(kept))?;
     ensure!(is_same, "`spikewire network` writes another examples/{kept}");
     let packed = module.replace(".rs", "_i8.rs");
     run(&mut host::spikewire(&format!("{} --numbers i8", export.replace(module, &packed)))?)?;
-    println!("i8:\n{}", everywhere(&at(&packed), &at(spikes))?);
-    counts("M4F", &[("A,f32", 2426), ("A,i8", 2871), ("D,f32", 23_711), ("D,i8", 19_939)])?;
-    counts("M0", &[("A,i8", 4663), ("D,i8", 31_551)])
+    println!("i8:\n{}", everywhere(&at(&packed), &at(spikes), boards)?);
+    Ok(())
 }
 
 /// Returns the commands of the page's first block, without comments.
@@ -134,8 +145,12 @@ fn counts(core: &str, known: &[(&str, u32)]) -> Result<()> {
     Ok(())
 }
 
-/// Returns the output, which the host, the five emulated cores and an RP2040 must have in common.
-pub(super) fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
+/// Returns the output, which the host, the emulated boards and an RP2040 must have in common.
+pub(super) fn everywhere(
+    network: &Path,
+    spikes: &Path,
+    boards: impl Iterator<Item = &'static Board>,
+) -> Result<String> {
     let variables = [("NETWORK", network), ("SPIKES", spikes)];
     let target = paths::target();
     let mut build = cargo("build --quiet --manifest-path examples/Cargo.toml --package");
@@ -164,7 +179,7 @@ pub(super) fn everywhere(network: &Path, spikes: &Path) -> Result<String> {
         };
         Ok(())
     };
-    for board in &BOARDS {
+    for board in boards {
         let built = image::build_with(PROGRAM, board, &variables)?;
         let name = if board.core == "M4F" { STM32 } else { board.core };
         compare(name, &qemu::run_counting(board, &built)?)?;

@@ -5,7 +5,7 @@ use super::network::everywhere;
 use super::simulated_drone::{environment, program};
 use crate::common::{output, paths, run};
 use crate::figures::markdown;
-use crate::programs::host;
+use crate::programs::{boards::Board, host};
 use anyhow::Result;
 use std::fs;
 
@@ -31,7 +31,7 @@ fn flown() -> Result<String> {
     let (spikes, module) = (place.join("flip.txt"), place.join("network.rs"));
     let table = output(program(&environment()?, "network_flies.py").arg(&spikes))?;
     run(host::spikewire(EXPORT)?.arg(&spikes).arg("-o").arg(&module))?;
-    let told = everywhere(&module, &spikes)?;
+    let told = everywhere(&module, &spikes, Board::every_day())?;
     let costs: Vec<String> = told
         .lines()
         .filter_map(|line| line.split_once(": the same, "))

@@ -19,6 +19,8 @@ pub fn cargo(args: &str) -> Command {
     let mut command = command("cargo");
     // What is kept for the next change is a third of the disk, and no check changes anything.
     command.args(args.split_whitespace()).env("CARGO_INCREMENTAL", "0");
+    // One profile for all workspaces, so that they share what they can.
+    command.env("CARGO_PROFILE_DEV_DEBUG", "false");
     command
 }
 

@@ -85,6 +85,12 @@ pub const RISC_V: [Board; 2] = [
 ];
 
 impl Board {
+    /// Returns the boards on which firmware is compared with the host every day: a core without floating point and
+    /// without a multiplication of 64 bits, and one with both. `cargo verify all-cores` takes all.
+    pub fn every_day() -> impl Iterator<Item = &'static Self> + Clone {
+        BOARDS.iter().filter(|board| ["M0", "M4F"].contains(&board.core))
+    }
+
     /// Returns the boards of all cores.
     pub fn all() -> impl Iterator<Item = &'static Self> {
         BOARDS.iter().chain(&RISC_V)

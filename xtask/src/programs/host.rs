@@ -31,15 +31,14 @@ fn workspace(verb: &str, args: &str) -> Result<Command> {
 
 /// Prepares the laptop program, built as for its tests; arguments are separated by blanks.
 pub fn spikewire(args: &str) -> Result<Command> {
-    run(&mut tests("--quiet --no-run --test pipes")?)?; // a test that runs the program, so that cargo builds that too
-    let mut spikewire = command(paths::target().join("debug/spikewire"));
+    let mut spikewire = command(laptop()?);
     spikewire.args(args.split_whitespace());
     Ok(spikewire)
 }
 
-/// Builds the laptop program by itself; returns its path.
+/// Builds the laptop program as for its tests; returns its path.
 pub fn laptop() -> Result<PathBuf> {
-    run(&mut cargo("build --package spikewire-cli"))?;
+    run(&mut tests("--quiet --no-run --test pipes")?)?; // a test that runs the program, so that cargo builds that too
     Ok(paths::target().join("debug/spikewire"))
 }
 

@@ -8,7 +8,14 @@ use std::{ffi::OsStr, fs, path::PathBuf, process::Command};
 
 /// Builds the program for the board; returns the path of the image.
 pub fn build(program: &str, board: &Board) -> Result<PathBuf> {
-    Ok(build_all(program, &[program], board)?.join(program))
+    Ok(build_each(&[program], board)?.join(program))
+}
+
+/// Builds programs that have a package each, in one call of cargo, which then compiles once what they share; returns
+/// the directory with the images.
+pub fn build_each(programs: &[&str], board: &Board) -> Result<PathBuf> {
+    let packages: String = programs.iter().map(|program| format!("--package {program} ")).collect();
+    kept(&mut building("build", &packages, board)?, &programs.join(", "), programs, board)
 }
 
 /// Builds the program for the board with these environment variables; returns the path of the image.
@@ -34,11 +41,16 @@ pub fn build_all(package: &str, programs: &[&str], board: &Board) -> Result<Path
     kept(&mut cargo, package, programs, board)
 }
 
+/// Returns the directory with the images of a board: each has its own, as two share a target.
+pub fn directory(board: &Board) -> PathBuf {
+    paths::thumb_target().join("images").join(board.core)
+}
+
 fn kept(cargo: &mut Command, package: &str, programs: &[&str], board: &Board) -> Result<PathBuf> {
     let built = paths::thumb_target().join(board.target).join("release");
     shell::run(cargo).with_context(|| format!("{package} for {}", board.machine))?;
 
-    let images = paths::thumb_target().join("images").join(board.core);
+    let images = directory(board);
     fs::create_dir_all(&images)?;
     for program in programs {
         fs::copy(built.join(program), images.join(program)).context(program.to_string())?;
@@ -63,8 +75,7 @@ pub fn link_checked(program: &str, board: &Board) -> Result<()> {
 }
 
 /// Prepares a build. All boards and checks share one directory and one profile, so that each crate is compiled once for
-/// a core. Boards differ in the compiler's flags, by which cargo tells them apart. Each core has a directory for
-/// images, as two share a target.
+/// a core. Boards differ in the compiler's flags, by which cargo tells them apart.
 fn building(command: &str, packages: &str, board: &Board) -> Result<Command> {
     let build = format!("{command} --release {packages} --manifest-path examples/Cargo.toml");
     let mut cargo = toolchain::cargo_for(board.target, &build)?;

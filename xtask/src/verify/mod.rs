@@ -20,7 +20,7 @@ use std::time::Instant;
 
 const USAGE: &str = "\
 cargo verify [STEP]...     every check, or the named ones
-cargo verify --list        the checks' names
+cargo verify --list        the checks' names, and the seconds of processor time that each took last here
 cargo verify --long        the checks that need more time, by hand before a release
 cargo verify --changed     of all, those that read something else than when they last passed; behind `--long` or names
                            likewise
@@ -140,11 +140,9 @@ const STEPS: &[Step] = &[
     .apart(&[LAST]),
     step("fifo", "a sensor at 8 kHz: driver, and instructions", fifo::fifo).apart(BOARDS),
     step("demo", "the demo's table and picture", || demo::fly().map(drop)).apart(BOARDS),
-    step("firmware", "emulated boards against the host", || firmware::firmware(&[]))
+    step("firmware", "an emulated M0 and M4F against the host", firmware::every_day)
         .apart(&[HOST, LAST]),
-    step("storm", "more events than main takes, on emulated boards and host", storm::storm)
-        .apart(BOARDS),
-    step("logging", "defmt out of an emulated Cortex-M4F, decoded on the host", logging::logging)
+    step("storm", "more events than main takes, on emulated M0 and M4F and host", storm::storm)
         .apart(BOARDS),
     step("link", "a flight over a serial line, board against host", link::link).apart(&[LAST]),
     step("loop", "a flight through a chip's model, board against host", rate_loop::rate_loop)
@@ -200,6 +198,8 @@ const LONG: &[Step] = &[
         "the whole program on the page of boards, compiled and linked with its HAL",
         nucleo::nucleo,
     ),
+    step("logging", "defmt out of an emulated Cortex-M4F, decoded on the host", logging::logging)
+        .apart(BOARDS),
     step("pairs", "every two features of the crate, on the host", everyday::pairs)
         .apart(&[PROSE, HOST, LAST, REST]),
     step("beside", "slices on this machine beside another crate's", long::beside),
@@ -283,6 +283,16 @@ const LONG: &[Step] = &[
         "steps of networks on tinyODIN's own code, against its model",
         reckon::tiny_odin,
     ),
+    step(
+        "all-cores",
+        "firmware, storm and network on all emulated cores, seven for the recorded flight",
+        || {
+            firmware::firmware(&[])?;
+            storm::on_all()?;
+            network::on_all()
+        },
+    )
+    .apart(&[LAST]),
     step("cores", "instruction counts on all five cores, and the log of the smallest", long::cores),
     step(
         "tuner",
@@ -362,7 +372,8 @@ pub fn verify(args: &[String]) -> Result<()> {
 fn list() {
     let lines = |steps: &[Step]| {
         for step in steps {
-            println!("  {:10} {}", step.name, step.what);
+            let took = passed::last_took(step.name).map(|seconds| format!("{seconds} s"));
+            println!("  {:10} {:>6}  {}", step.name, took.unwrap_or_default(), step.what);
         }
     };
     lines(STEPS);
@@ -390,6 +401,7 @@ fn run(steps: &[&'static Step], passed: &Passed) -> Vec<Outcome> {
             Err(error) => println!("FAILED: {error:#}"),
         }
         let (seconds, processor) = (start.elapsed().as_secs_f64(), cpu::seconds() - before);
+        passed::took(step.name, processor);
         println!("--- {}: {seconds:.0} s, {processor:.0} s of processor time", step.name);
         outcomes.push(Outcome { step, good: result.is_ok(), seconds, processor });
         if step.name == SETUP && result.is_err() {

@@ -1,4 +1,5 @@
-//! Records the state with which each step of `cargo verify` last passed, so that `--changed` can skip it.
+//! Records the state with which each step of `cargo verify` last passed, so that `--changed` can skip it, and how long
+//! each took last, for `--list`.
 
 use crate::common::{command, output, paths};
 use anyhow::{Context, Result, ensure};
@@ -59,6 +60,20 @@ impl Passed {
             let _ = fs::write(place().join(name), read(told, apart));
         }
     }
+}
+
+/// Records the processor time of a step. If that cannot be written, the list only lacks it.
+pub fn took(name: &str, seconds: f64) {
+    let _ = fs::write(times(name), format!("{seconds:.0}"));
+}
+
+/// Returns the seconds of processor time that a step took when it last ran here.
+pub fn last_took(name: &str) -> Option<u32> {
+    fs::read_to_string(times(name)).ok()?.parse().ok()
+}
+
+fn times(name: &str) -> PathBuf {
+    place().join(format!("{name}.seconds"))
 }
 
 fn place() -> PathBuf {

@@ -121,8 +121,7 @@ fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
 
 /// Sets a build of the host up to share what the library's own builds compile.
 fn in_dev<'a>(cargo: &'a mut Command, directory: &Path) -> &'a mut Command {
-    cargo.current_dir(directory).env("CARGO_TARGET_DIR", work());
-    cargo.env("CARGO_PROFILE_DEV_DEBUG", "line-tables-only")
+    cargo.current_dir(directory).env("CARGO_TARGET_DIR", work())
 }
 
 /// Fails unless the flights whose bits the crate's test tells have these bits.
