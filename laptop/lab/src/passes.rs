@@ -9,7 +9,7 @@ use catalogue::run::{Asked, Calibrated, SampleType, Words};
 use rayon::prelude::*;
 
 /// Consecutive samples of one segment.
-#[cfg_attr(target_family = "wasm", expect(dead_code, reason = "only pictures ask for times"))]
+#[cfg_attr(target_family = "wasm", allow(dead_code, reason = "only pictures ask for times"))]
 pub(crate) struct Piece<'a> {
     /// The finite samples.
     pub(crate) values: &'a [f64],
