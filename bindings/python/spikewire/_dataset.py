@@ -42,10 +42,12 @@ def dataset(
     `test` is the share of the flights for testing, and `by_directory` makes all logs of a directory one flight. The other
     keywords are those of :func:`~spikewire.read`.
 
-    `client` is a ``dask.distributed.Client``, or an executor of :mod:`concurrent.futures`; without one, `jobs` threads of
-    this process work. A task is a log, or with Dask up to 16 logs if there are many; the workers need the same files under
-    the same paths. Dask gives the tasks of a worker that died to another one. Whoever encodes, the bytes of all files are
-    the same. A call that was ended is continued by the same call.
+    `client` is a ``dask.distributed.Client``, a ``ray.util.multiprocessing.Pool`` or another pool with
+    ``imap_unordered``, or an executor of :mod:`concurrent.futures`; without one, `jobs` threads of this process work. A
+    task is a log, or with Dask up to 16 logs if there are many; the workers need the same files under the same paths.
+    Dask gives the tasks of a worker that died to another one, and so does Ray, if the pool has
+    ``ray_remote_args={"max_restarts": -1, "max_task_retries": -1}``. Whoever encodes, the bytes of all files are the
+    same. A call that was ended is continued by the same call.
     """
     flight = flight if isinstance(flight, Scheme) else Path(flight)
     if isinstance(flight, Path):
@@ -77,7 +79,12 @@ def dataset(
     # A task carries only its own log, not the list of all.
     task = partial(_encoded, {**keywords, "logs": []})
     logs = [str(log) for log in left]
-    rows = _by_dask(client, task, logs) if hasattr(client, "get_executor") else _by_executor(client, jobs, task, logs)
+    if hasattr(client, "get_executor"):
+        rows = _by_dask(client, task, logs)
+    elif hasattr(client, "imap_unordered"):
+        rows = (row for row in client.imap_unordered(task, logs))
+    else:
+        rows = _by_executor(client, jobs, task, logs)
     with _progress.bar(progress, "dataset") as tell, closing(rows):
         for done, row in enumerate(rows, 1):
             run.add(row)

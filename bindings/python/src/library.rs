@@ -10,7 +10,6 @@ use lab::advise::AdviseRequest;
 use lab::coding::Coding;
 use lab::emit::Codec;
 use lab::input::{ChannelOptions, InputOptions, TableKind};
-use lab::look::known_unit;
 use lab::plot::Picture;
 use lab::scheme::Scheme;
 use lab::score::Figures;
@@ -121,8 +120,8 @@ pub(crate) fn plot<'py>(
     let drawn = || -> Result<_> {
         let trials = coders.iter().map(|coder| coder.trial(&recording));
         let trials = trials.collect::<Result<Vec<_>>>()?;
-        let unit = unit.as_deref().or_else(|| known_unit(&recording.name));
-        let picture = Picture { recording: &recording, trials: &trials, unit, shown };
+        let mut picture = Picture::of(&recording, &trials, shown);
+        picture.unit = unit.or(picture.unit);
         Ok(lab::plot::bytes(ending, &picture)?)
     };
     let bytes = work::detached(py, true, drawn)?;

@@ -1,4 +1,4 @@
-"""Data sets of many logs, encoded in threads, in processes, and by Dask while a worker dies."""
+"""Data sets of many logs, encoded in threads, in processes, and by Dask and Ray while a worker dies."""
 
 import filecmp
 import json
@@ -59,7 +59,10 @@ def test_a_flight_and_processes(logs, tmp_path):
     assert told == [(done, 12) for done in range(1, 13)]
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes:
         sw.dataset([logs], flight, tmp_path / "other", client=processes)
+    with get_context("spawn").Pool(2) as pool:
+        sw.dataset([logs], flight, tmp_path / "pool", client=pool)
     assert are_equal(tmp_path / "own", tmp_path / "other")
+    assert are_equal(tmp_path / "own", tmp_path / "pool")
 
 
 def test_mistakes_are_told(logs, tmp_path):
@@ -97,3 +100,28 @@ def test_a_worker_that_is_killed_leaves_no_hole(logs, tmp_path):
     assert are_equal(tmp_path / "own", tmp_path / "dask")
     rows = [json.loads(line) for line in (tmp_path / "dask/manifest.jsonl").read_text().splitlines()]
     assert len({row["log"] for row in rows}) == len(rows) == 12
+
+
+def test_a_worker_of_ray_that_is_killed_leaves_no_hole(logs, tmp_path):
+    """Run by `cargo verify fleet`, which installs Ray."""
+    ray = pytest.importorskip("ray")
+    from ray.util.multiprocessing import Pool
+
+    sw.dataset(logs, SCHEME, tmp_path / "own", channels=["gyro_x"])
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    killed = []
+    try:
+        with Pool(2, ray_remote_args={"max_restarts": -1, "max_task_retries": -1}) as pool:
+            pid = pool.apply(os.getpid)
+
+            def kill(done, total):
+                if not killed:
+                    killed.append(done)
+                    os.kill(pid, signal.SIGKILL)
+
+            counts = sw.dataset(logs, SCHEME, tmp_path / "ray", channels=["gyro_x"], client=pool, progress=kill)
+            assert killed and pool.apply(os.getpid) != pid
+    finally:
+        ray.shutdown()
+    assert (counts["logs"], counts["done_before"]) == (12, 0)
+    assert are_equal(tmp_path / "own", tmp_path / "ray")

@@ -413,9 +413,9 @@ fn a_thousand(logs: &Path) {
 }
 
 /// One run that encodes a thousand logs, killed twice on the way, takes at most 1.2 times the processor time of a
-/// thousand runs with one log each. So do two workers of Dask of which one is killed twice, beside what Dask takes
-/// without logs, if `FLEET_PYTHON` names a Python with the package; their bytes are the same. The test takes minutes,
-/// and runs on Linux only: `cargo verify fleet`.
+/// thousand runs with one log each. So do two workers of Dask, of which one is killed twice, with the start of all
+/// processes counted, if `FLEET_PYTHON` names a Python with the package; their bytes are the same. The test takes
+/// minutes, and runs on Linux only: `cargo verify fleet`.
 #[test]
 #[ignore = "a measurement"]
 fn a_thousand_logs_cost_little_more_than_each_alone() {
@@ -459,7 +459,7 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
         assert!(status.unwrap().success());
         spent() - start
     });
-    println!("Dask {dask:.2} s, of which {idle:.2} s without logs: {:.2}", (dask - idle) / alone);
+    println!("Dask {dask:.2} s, of which {idle:.2} s without logs: {:.2}", dask / alone);
     for file in parts(&out).iter().map(String::as_str).chain(["manifest.jsonl", "dataset.json"]) {
         assert!(
             fs::read(out.join(file)).unwrap() == fs::read(at("dask").join(file)).unwrap(),
@@ -467,5 +467,5 @@ fn a_thousand_logs_cost_little_more_than_each_alone() {
         );
     }
     assert_eq!(parts(&out).len(), parts(&at("dask")).len());
-    assert!(dask - idle <= 1.2 * alone);
+    assert!(dask <= 1.2 * alone);
 }

@@ -93,9 +93,10 @@ fn each_command_takes_a_side_of_a_data_set() {
     }
 }
 
-/// The log that `score` reads in pieces is scored as it is in memory, by every code, also where its clock starts anew.
+/// A log that is read in pieces has the scores and the picture that it has in memory, with every code, also where its
+/// clock starts anew.
 #[test]
-fn a_score_in_pieces_is_that_of_the_whole() {
+fn scores_and_pictures_in_pieces_are_those_of_the_whole() {
     let text = fs::read_to_string(flight("hexarotor.csv")).unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
     let rows: Vec<&str> = rows.lines().collect();
@@ -114,7 +115,7 @@ fn a_score_in_pieces_is_that_of_the_whole() {
     });
     for flights in [flights.collect::<String>(), one.collect()] {
         let text = format!("{header}\n{flights}");
-        let (_directory, path) = common::file("flights.csv", &text);
+        let (directory, path) = common::file("flights.csv", &text);
         for options in ["", "--scheme mw --threshold 0.1 --window 99", "--sample q8.8"] {
             let asked = format!("score {options} --column gyro_x --skip-non-finite --json");
             let read = good(&format!("{asked} {path}"), "");
@@ -123,6 +124,20 @@ fn a_score_in_pieces_is_that_of_the_whole() {
                 assert_eq!(read.schemes(), held.schemes(), "{options}");
                 assert_eq!(read.log()["notes"], held.log()["notes"], "{options}");
             }
+        }
+        for options in [
+            "--all",
+            "--scheme sf --threshold 0.1 --range 8100..8300",
+            "--scheme hsa --filter triang:15 --range 8192..11900",
+            "--scheme grf-slots --neurons 5 --slots 4 --range 0..40",
+        ] {
+            let drawn = |input: &str| {
+                let picture = directory.path().join("picture.svg");
+                let asked = format!("plot {options} --column gyro_x --skip-non-finite {input}");
+                let told = good(&format!("{asked} -o {}", picture.display()), &text).stderr;
+                (fs::read_to_string(picture).unwrap(), told)
+            };
+            assert!(drawn(&path) == drawn("-"), "{options}");
         }
     }
 }
@@ -203,11 +218,11 @@ fn logs_of_several_kinds_are_tuned_together() {
     refused(&format!("{tune} {} {}", at("1.csv"), at("y.csv")), "", &words);
 }
 
-/// `score` takes as little memory for a long log as for a short one. Runs on Linux only: `cargo test --release -p
-/// spikewire-cli --test lists -- --ignored --nocapture`. `SAMPLES` sets the length of the log.
+/// `score` and `plot` take as little memory for a long log as for a short one. Runs on Linux only: `cargo test --release
+/// -p spikewire-cli --test lists -- --ignored --nocapture`. `SAMPLES` sets the length of the log.
 #[test]
 #[ignore = "a measurement"]
-fn a_long_log_is_scored_in_constant_memory() {
+fn a_long_log_is_scored_and_drawn_in_constant_memory() {
     let samples: u64 =
         std::env::var("SAMPLES").map_or(20_000_000, |samples| samples.parse().unwrap());
     let directory = tempfile::tempdir().unwrap();
@@ -222,9 +237,13 @@ fn a_long_log_is_scored_in_constant_memory() {
         file.write_all(&value.to_le_bytes()).unwrap();
     }
     file.flush().unwrap();
-    let most = most_memory(&format!("score {SF} --rate 1000 {}", path.display()), || false);
-    println!("{samples} samples, {most:.1} MB");
-    assert!((1.0..100.0).contains(&most));
+    let picture = directory.path().join("long.png");
+    for command in ["score".to_owned(), format!("plot -o {}", picture.display())] {
+        let asked = format!("{command} {SF} --rate 1000 {}", path.display());
+        let most = most_memory(&asked, || false);
+        println!("{samples} samples, {most:.1} MB: {command}");
+        assert!((1.0..100.0).contains(&most));
+    }
 }
 
 /// Each report has the command, an entry for each log, and a summary.

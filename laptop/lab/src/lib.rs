@@ -24,6 +24,7 @@ mod measure;
 #[cfg(feature = "networks")]
 pub mod network;
 pub mod output;
+mod passes;
 #[cfg(not(target_family = "wasm"))]
 pub mod plot;
 #[cfg(all(feature = "ports", not(target_family = "wasm")))]

@@ -2,13 +2,13 @@
 
 use crate::Result;
 use crate::brief::{brief, json};
-use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind};
+use crate::input::InputOptions;
 use crate::measure::{Measure, Sums};
+use crate::passes::{First, each, pass};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
-use crate::trial::{Recording, Trial, notes};
-use catalogue::run::{Asked, Calibrated, SampleType, Settings, Words};
-use rayon::prelude::*;
+use crate::trial::{Recording, Trial};
+use catalogue::run::{Asked, SampleType, Settings, Words};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -91,7 +91,7 @@ pub struct Scored {
 /// Scores schemes on one channel of a recording. The file is read twice, in constant memory: the first pass finds mean,
 /// range and quantiles. Standard input and pipes, which can be read only once, are held in memory. The figures are the
 /// same. In both cases the usual step of the times, by which gaps and restarts of the clock are found, is that of the
-/// first [`CHUNK`] samples, as for [`encode`](crate::encode).
+/// first [`CHUNK`](crate::input::CHUNK) samples, as for [`encode`](crate::encode).
 ///
 /// # Errors
 /// Returns an error if the input cannot be read, has several channels, or has no finite sample.
@@ -110,100 +110,27 @@ pub fn score(
         let schemes = schemes.iter().map(figures).collect();
         return Ok(Scored { channel: recording.name.clone(), notes: recording.notes(), schemes });
     }
-    input.single("this command")?;
-    let looks_back = schemes.iter().map(|scheme| scheme.looks_back(asked)).max().unwrap_or(0);
-    let First { calibrated, mean, values } = First::read(input, asked, sample, looks_back)?;
-    let known = (&calibrated, mean);
+    let (first, _) = First::read(input, schemes, asked, sample, |_| ())?;
     let mut all: Vec<Result<Measure>> =
-        schemes.iter().map(|scheme| Measure::new(*scheme, asked, sample, known, &values)).collect();
-    let (mut source, mut chunk) = (input.open()?, Chunk::default());
-    source.next(&mut chunk)?;
-    let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
-    let is_timed = !chunk.times.is_empty();
-    let (mut read, mut samples) = (0, 0);
-    while !chunk.is_empty() {
-        let rows = chunk.finite_rows();
-        let column = chunk.columns.first().map_or(&[][..], Vec::as_slice);
-        let mut start = 0;
-        let steps = clock.observe(&chunk.times);
-        let restarts = steps.iter().filter(|step| step.kind == Kind::Restart);
-        let ends = restarts.map(|step| ((step.after + 1 - read) as usize, true));
-        for (end, is_restart) in ends.chain([(rows.len(), false)]) {
-            let own = column[start..end].iter().zip(&rows[start..end]);
-            let finite: Vec<f64> = own.filter(|(_, row)| **row).map(|(value, _)| *value).collect();
-            samples += finite.len();
-            each(&mut all, |measure| measure.observe(&finite, &mut |_, _| ()));
-            if is_restart {
-                each(&mut all, |measure| measure.end_segment(&mut |_, _| ()));
-            }
-            start = end;
+        schemes.iter().map(|scheme| first.measure(*scheme, asked, sample)).collect();
+    let passed = pass(input, |piece| {
+        each(&mut all, |measure| measure.observe(piece.values, &mut |_, _| ()));
+        if piece.is_end {
+            each(&mut all, |measure| measure.end_segment(&mut |_, _| ()));
         }
-        read += rows.len() as u64;
-        source.next(&mut chunk)?;
-    }
-    each(&mut all, |measure| measure.end_segment(&mut |_, _| ()));
-    let rate = clock.rate();
-    let seconds =
-        if is_timed { Some(clock.seconds()) } else { rate.map(|rate| samples as f64 / rate) };
+    })?;
+    let (rate, seconds) = (passed.rate(), passed.seconds());
     let figures = |scheme: Scheme, measure: &Measure| {
         let about = (measure.slope(rate), measure.notes());
         Figures::new(scheme, measure.settings(), measure.sums(), seconds, about)
     };
     Ok(Scored {
-        channel: source.names().first().copied().unwrap_or_default().to_owned(),
-        notes: notes(source.notes(), read as usize - samples, &clock),
+        channel: passed.channel,
+        notes: passed.notes,
         schemes: schemes
             .iter()
             .zip(all)
             .map(|(scheme, own)| (*scheme, own.map(|own| figures(*scheme, &own))))
             .collect(),
     })
-}
-
-/// Results of a first pass over one channel of a recording.
-struct First {
-    calibrated: Calibrated,
-    mean: f64,
-    /// The first finite samples.
-    values: Vec<f64>,
-}
-
-impl First {
-    /// Reads the recording; keeps the first `count` finite samples, and [`CHUNK`] at least.
-    ///
-    /// # Errors
-    /// Returns an error if the input cannot be read, or has no finite sample.
-    fn read(input: &InputOptions, asked: &Asked, sample: SampleType, count: usize) -> Result<Self> {
-        let mut calibrated = Calibrated::of(sample, asked);
-        let (mut values, mut sum, mut finite, mut samples) = (Vec::new(), 0.0, 0, 0);
-        let (mut source, mut chunk) = (input.open()?, Chunk::default());
-        loop {
-            source.next(&mut chunk)?;
-            if chunk.is_empty() {
-                break;
-            }
-            let own = chunk.kept(&chunk.finite_rows()).into_iter().next().unwrap_or_default();
-            calibrated.observe(&own);
-            sum = own.iter().fold(sum, |sum, value| sum + value);
-            let missing = count.max(CHUNK).saturating_sub(values.len());
-            values.extend(own.iter().take(missing));
-            finite += own.len();
-            samples += chunk.len();
-        }
-        if values.is_empty() {
-            return Err(TableKind::NoneFinite { samples }.at(input.name()));
-        }
-        Ok(Self { calibrated, mean: sum / finite as f64, values })
-    }
-}
-
-/// Calls `work` on every measurement that has not failed, in parallel.
-fn each<'a>(all: &mut [Result<Measure<'a>>], work: impl Fn(&mut Measure<'a>) -> Result<()> + Sync) {
-    all.par_iter_mut().for_each(|own| {
-        if let Ok(measure) = own
-            && let Err(error) = work(measure)
-        {
-            *own = Err(error);
-        }
-    });
 }

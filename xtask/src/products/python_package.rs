@@ -33,10 +33,13 @@ pub fn python() -> Result<()> {
     source_package(&python).map(drop)
 }
 
-/// Encodes a thousand logs with the program and with Dask, each killed on the way.
+/// Encodes a thousand logs with the program and with Dask, and a few with Ray, each killed on the way.
 pub fn fleet() -> Result<()> {
     let python = environment_with("python-fleet", REQUIREMENTS)?;
+    install(&python, &["ray==2.60.0"])?;
     package(&python, "release")?;
+    let tests = "-m pytest --quiet --no-header bindings/python/tests/test_dataset.py";
+    run(command(&python).args(tests.split_whitespace()))?;
     let thousand =
         "test --release --package spikewire-cli --test dataset a_thousand -- --ignored --nocapture";
     run(cargo(thousand).env("FLEET_PYTHON", &python))

@@ -11,7 +11,6 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::advise::{Advice, AdviseRequest, BankAdvice, advise};
 use lab::dataset::Found;
-use lab::look::known_unit;
 use lab::output::Output;
 use lab::plot::{Picture, draw};
 use lab::trial::{Recording, Trial};
@@ -283,7 +282,5 @@ fn draw_advised(
     let Some((scheme, row)) = advice.best() else { return Ok(()) };
     let parameters = row.settings.to_asked(scheme.info());
     let trials = [Trial::new(scheme, &parameters, options.sample, recording)?];
-    let unit = known_unit(&recording.name);
-    let shown = 0..recording.values.len();
-    Ok(draw(picture, log, &Picture { recording, trials: &trials, unit, shown })?)
+    Ok(draw(picture, log, &Picture::of(recording, &trials, 0..recording.values.len()))?)
 }

@@ -6,10 +6,8 @@ use crate::options::Coding;
 use crate::words::{of_lab, tell};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use lab::look::known_unit;
-use lab::plot::{Picture, draw};
+use lab::plot::draw;
 use lab::scheme::Scheme;
-use lab::trial::{Recording, Trial};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -54,46 +52,44 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
         bail!("--scheme must say which, or --params, or --all");
     }
     let (schemes, sample, parameters) = chosen(coding)?;
-    let recording = Recording::read(&input.to_lab()?)?;
-    let shown = shown(range.as_deref(), recording.values.len())?;
     // The paper's figure has one population code, GRF.
     let is_drawn = |scheme: &Scheme| !options.all || scheme.info().is_drawn;
-    let mut trials = Vec::new();
-    let mut refused = Vec::new();
-    for scheme in schemes.into_iter().filter(is_drawn) {
-        match Trial::new(scheme, &parameters, sample, &recording) {
-            Ok(trial) => trials.push(trial),
+    let schemes: Vec<Scheme> = schemes.into_iter().filter(is_drawn).collect();
+    let shown = range.as_deref().map(shown).transpose()?;
+    let read = lab::plot::read(&input.to_lab()?, &schemes, &parameters, sample, shown.clone())?;
+    if let Some(Range { start, end }) = shown.filter(|own| own.end > read.samples) {
+        bail!("--range {start}..{end}: two samples at least, within 0..{}", read.samples);
+    }
+    let (mut notes, mut refused) = (Vec::new(), Vec::new());
+    for (scheme, own) in read.schemes {
+        match own {
+            Ok(own) => notes.extend(own.iter().map(|note| format!("{}: {note}", scheme.name()))),
             Err(error) if options.all => {
                 refused.push(format!("{}: {}", scheme.name(), of_lab(&error)));
             }
             Err(error) => return Err(error.into()),
         }
     }
-    if trials.is_empty() {
+    if refused.len() == schemes.len() {
         bail!("no scheme takes this recording: {}", refused.join("; "));
     }
-    tell(&recording.notes());
+    tell(&read.notes);
     for words in &refused {
         eprintln!("not drawn: {words}");
     }
-    for trial in &trials {
-        for note in &trial.notes {
-            eprintln!("{}: {note}", trial.scheme.name());
-        }
+    for note in &notes {
+        eprintln!("{note}");
     }
-    let unit = options.unit.as_deref().or_else(|| known_unit(&recording.name));
-    let picture = Picture { recording: &recording, trials: &trials, unit, shown };
+    let mut picture = read.picture;
+    picture.unit = options.unit.clone().or(picture.unit);
     Ok(draw(output, &input.input, &picture)?)
 }
 
-fn shown(range: Option<&str>, samples: usize) -> Result<Range<usize>> {
-    let Some(text) = range else {
-        return Ok(0..samples);
-    };
+fn shown(text: &str) -> Result<Range<usize>> {
     let (start, end) =
         text.split_once("..").with_context(|| format!("--range {text}: give it as START..END"))?;
     match (start.parse(), end.parse()) {
-        (Ok(start), Ok(end)) if start + 1 < end && end <= samples => Ok(start..end),
-        _ => bail!("--range {text}: two samples at least, within 0..{samples}"),
+        (Ok(start), Ok(end)) if start + 1 < end => Ok(start..end),
+        _ => bail!("--range {text}: two samples at least"),
     }
 }

@@ -1,23 +1,23 @@
-//! Draws the panel of spiking efficiencies, with a bar for each trial. The efficiency is the share of samples without a
+//! Draws the panel of spiking efficiencies, with a bar for each panel before it. The efficiency is the share of samples without a
 //! spike.
 
 use super::FONT;
 use super::palette::{self, GRID, INK};
+use super::picture::Panel;
 use super::title::{Drawn, TITLE, title};
 use crate::scheme::Scheme;
-use crate::trial::Trial;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 pub(super) fn draw<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
-    trials: &[Trial],
+    panels: &[Panel],
     letter: char,
 ) -> Drawn<B> {
     let details = ["of the whole recording".to_owned()];
     title(area, Some(letter), "Spiking efficiency, % of samples without a spike", &details)?;
     let mut ranked: Vec<(Scheme, f64)> =
-        trials.iter().map(|trial| (trial.scheme, trial.efficiency())).collect();
+        panels.iter().map(|panel| (panel.scheme, panel.efficiency)).collect();
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
     let area = area.margin(TITLE, 12, 16, 40);
     let rows = ranked.len() as f64;

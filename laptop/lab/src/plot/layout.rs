@@ -11,28 +11,34 @@ const COLUMNS: usize = 2;
 
 /// Returns the width and height of a picture of trials, in pixels.
 pub(super) fn size(picture: &Picture) -> (u32, u32) {
-    if picture.trials.len() == 1 {
+    if !picture.is_grid {
         return SINGLE;
     }
-    let rows = (picture.trials.len() + 1).div_ceil(COLUMNS) as u32;
+    let rows = (picture.panels.len() + 1).div_ceil(COLUMNS) as u32;
     (PANEL.0 * COLUMNS as u32, PANEL.1 * rows)
+}
+
+/// Returns the number of columns of pixels of a panel's time axis.
+pub(super) fn columns(is_grid: bool) -> u32 {
+    panel::columns(if is_grid { PANEL.0 } else { SINGLE.0 })
 }
 
 /// Draws a single trial alone, or several trials in a grid whose last panel shows the efficiencies.
 pub(super) fn fill<B: DrawingBackend>(area: &DrawingArea<B, Shift>, picture: &Picture) -> Drawn<B> {
     area.fill(&WHITE)?;
-    if let [trial] = picture.trials {
-        return panel::draw(area, picture, trial, None);
+    let panels = &picture.panels;
+    if let ([panel], false) = (&panels[..], picture.is_grid) {
+        return panel::draw(area, picture, panel, None);
     }
-    let rows = (picture.trials.len() + 1).div_ceil(COLUMNS);
+    let rows = (panels.len() + 1).div_ceil(COLUMNS);
     let areas = area.split_evenly((rows, COLUMNS));
-    for ((area, trial), letter) in areas.iter().zip(picture.trials).zip('A'..) {
-        panel::draw(area, picture, trial, Some(letter))?;
+    for ((area, panel), letter) in areas.iter().zip(panels).zip('A'..) {
+        panel::draw(area, picture, panel, Some(letter))?;
     }
-    match areas.get(picture.trials.len()) {
+    match areas.get(panels.len()) {
         Some(last) => {
-            let letter = ('A'..).nth(picture.trials.len()).unwrap_or('H');
-            efficiencies::draw(last, picture.trials, letter)
+            let letter = ('A'..).nth(panels.len()).unwrap_or('H');
+            efficiencies::draw(last, panels, letter)
         }
         None => Ok(()),
     }

@@ -7,33 +7,22 @@ pub mod front;
 mod layout;
 mod palette;
 mod panel;
+mod picture;
 mod title;
 
 use crate::error::At;
 use crate::output::OutputKind;
-use crate::trial::{Recording, Trial};
 use crate::{Error, Result};
 use bitmap::Bitmap;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use std::io::Write;
-use std::ops::Range;
 use std::path::Path;
 use tiny_skia::{Color, Pixmap};
 
 use crate::output::Output;
 
-/// The recording that a picture shows, and the trials of schemes on this recording.
-pub struct Picture<'a> {
-    /// The recording that was encoded and decoded in the trials.
-    pub recording: &'a Recording,
-    /// The trials, one for each panel.
-    pub trials: &'a [Trial],
-    /// The unit of the signal, if it is known.
-    pub unit: Option<&'a str>,
-    /// Range of the samples to show, by index.
-    pub shown: Range<usize>,
-}
+pub use picture::{Picture, Read, read};
 
 /// Name of the embedded font. In an SVG, the viewer's own sans-serif font takes its place.
 const FONT: &str = "sans-serif";
@@ -58,7 +47,7 @@ pub fn draw_fronts(path: &Path, input: &Path, panels: &[front::Panel]) -> Result
 /// The trials or the Pareto fronts to draw.
 #[derive(Clone, Copy)]
 enum Drawing<'a> {
-    Trials(&'a Picture<'a>),
+    Trials(&'a Picture),
     Fronts(&'a [front::Panel]),
 }
 

@@ -15,7 +15,7 @@ const MOST: usize = 1 << 16;
 
 /// Reads an array as a CSV table.
 pub(super) fn array(input: impl Read + 'static) -> Result<Box<dyn Read>> {
-    let array = Array::open(input, "")?;
+    let array = Array::open(BufReader::new(input), "")?;
     let names: Vec<String> = array.fields.iter().map(|own| own.name.clone()).collect();
     Ok(Box::new(Lines::new(names, Arrays(vec![array]))))
 }
