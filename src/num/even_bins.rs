@@ -1,6 +1,6 @@
 //! Bins of equal width over a range of values: one multiplication finds the bin of a value.
 
-use super::binary::HAS_DIVISION;
+use super::HAS_DIVISION;
 
 /// Bins of equal width, numbered upwards from an origin; a value below the origin lies in bin 0.
 ///
