@@ -135,11 +135,18 @@ class Network:
         """The number of neurons of each layer."""
         return self._native.layers()
 
-    def run(self, spikes: ArrayLike | Sequence[Sequence[int]]) -> Ran:
-        """Runs the network from rest. `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by
+    def run(self, spikes: ArrayLike | Sequence[Sequence[int]], *, numbers: Literal["f32", "i8"] = "f32") -> Ran:
+        """Runs the network from rest, in `numbers` as :meth:`to_rust` writes them out of the same spikes. `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by
         rising input, or a list with a list for each step: the numbers of the inputs that fire, in order."""
         self.reset()
-        return Ran(*self._native.steps(self._steps(spikes)))
+        steps = self._steps(spikes)
+        if numbers == "f32":
+            return Ran(*self._native.steps(steps))
+        fired, potentials = self._native.ran(steps, numbers)
+        spiked = np.zeros(potentials.shape, np.bool_)
+        for row, neurons in zip(spiked, fired):
+            row[neurons] = True
+        return Ran(spiked, potentials.astype(np.float32))
 
     def _steps(self, spikes: ArrayLike | Sequence[Sequence[int]]) -> list[list[int]]:
         return [_numbers(step, self.inputs) for step in spikes]

@@ -178,8 +178,8 @@ def _backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None]:
 _encode.register_autograd(_backward, setup_context=_keep)
 
 
-#: The part of a layer's law that takes all steps at once, and that of one step: from what arrives and the state before, which is
-#: None at rest, to potentials, spikes, and the state behind.
+#: A layer's law. The first function turns the layer's inputs in all steps into what drives its neurons. The second takes one
+#: step, from what drives the neurons and the state before (None at rest), to potentials, spikes and the state behind.
 _Law = tuple[Callable[[Tensor], Tensor], Callable[[Tensor, Any], tuple[Tensor, Tensor, Any]]]
 
 
@@ -194,6 +194,11 @@ def _run(x: Tensor, laws: Iterable[_Law]) -> list[tuple[Tensor, Tensor]]:
         reached, x = (torch.stack(own) for own in zip(*steps))
         layers.append((reached, x))
     return layers
+
+
+def _passed(value: Tensor, own: Tensor) -> Tensor:
+    """`value`, whose gradients pass straight on to `own`."""
+    return value.detach() + (own - own.detach())
 
 
 class _Chip(nn.Module):
@@ -214,7 +219,7 @@ class _Chip(nn.Module):
         self.recurrent: nn.ParameterList = nn.ParameterList(own)
 
     def _rounded(self, own: Tensor) -> Tensor:
-        return own + (own.detach().round().clamp(*self._RANGE) - own.detach())
+        return _passed(own.round().clamp(*self._RANGE), own)
 
     def whole(self) -> list[Tensor]:
         """The chip's weights by layer, [from, to]; gradients pass on to those that are trained."""
@@ -346,8 +351,8 @@ class ReckOn(_Chip):
                 driven = driven + before @ back
             share = potentials * (self._kept / 32768)
             # Products have 31 bits, of which single precision would round some.
-            down = (potentials.detach().double() * self._kept / 32768).floor().to(share.dtype)
-            kept, spiked = down + (share - share.detach()), before.detach()
+            down = (potentials.double() * self._kept / 32768).floor().to(share.dtype)
+            kept, spiked = _passed(down, share), before.detach()
             driven = driven + (kept - self.threshold * spiked if self.subtract else kept * (1 - spiked))
         reached = driven.clamp(-32768, 32767)
         fired = _Fire.apply(reached, self.threshold, True)
@@ -400,8 +405,8 @@ class _Sum(torch.autograd.Function):
 class Controller(nn.Module):
     """Layers of neurons in the flight controller's arithmetic, to be trained: bit for bit :class:`spikewire.Network`.
 
-    A step multiplies a potential by `keep`, and adds the bias and the weights of the spikes that arrive, in single precision and
-    in the controller's order. Gradients pass through the step with which a neuron fires by a smooth slope, as those of
+    A step multiplies a potential by `keep`, and adds the bias and the weights of the spikes that arrive, in single precision in
+    the controller's order, or in integers. Gradients pass through the step with which a neuron fires by a smooth slope, as those of
     :class:`TinyOdin`, and not through the reset. All that is trained is a parameter of `neurons`, a module for each layer:
     ``weights`` and ``recurrent`` [from, to], ``bias``, ``inner``, ``keep``, ``current_keep`` and ``threshold``, where a layer
     has them; ``requires_grad_(False)`` leaves one as it is.
@@ -426,6 +431,8 @@ class Controller(nn.Module):
             without a current.
         recurrent: Whether the spikes of a layer act on itself a step later.
         readout: Whether the last layer never fires.
+        numbers: ``"i8"`` trains in weights of 8 bits and potentials of 32, for cores without a floating-point unit:
+            ``network().to_rust(…, numbers="i8")`` writes just these.
     """
 
     def __init__(
@@ -439,6 +446,7 @@ class Controller(nn.Module):
         current_keep: float | None = None,
         recurrent: bool = False,
         readout: bool = False,
+        numbers: Literal["f32", "i8"] = "f32",
     ):
         super().__init__()
         layers = []
@@ -453,13 +461,13 @@ class Controller(nn.Module):
             if current_keep is not None:
                 layer.update(current="new", current_keep=[current_keep] * count)
             layers.append(layer)
-        self.neurons: nn.ModuleList = nn.ModuleList(map(_Layer, layers))
+        self.neurons: nn.ModuleList = nn.ModuleList(_Layer(own, numbers) for own in layers)
 
     @classmethod
-    def from_network(cls, network: Network) -> Controller:
+    def from_network(cls, network: Network, numbers: Literal["f32", "i8"] = "f32") -> Controller:
         """The layers of a network, which may have been trained elsewhere."""
         own = cls(1)
-        own.neurons = nn.ModuleList(map(_Layer, json.loads(network._native.json())["layers"]))
+        own.neurons = nn.ModuleList(_Layer(layer, numbers) for layer in json.loads(network._native.json())["layers"])
         return own
 
     def network(self) -> Network:
@@ -467,81 +475,125 @@ class Controller(nn.Module):
         return Network(_native.Network.from_json(json.dumps({"layers": [own.written() for own in self.neurons]})))
 
     def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """The potentials of each layer behind each step, and its spikes: (time, batch, neurons)."""
+        """The potentials of each layer behind each step, and its spikes: (time, batch, neurons); of `i8` in the layer's integers."""
         if ((x < 0) | (x != x.trunc())).any():
             raise ValueError("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
-        return _run(x, ((own.arriving, own.step) for own in self.neurons))
+        return _run(x, [own.law() for own in self.neurons])
 
     def forward(self, x: Tensor) -> Tensor:
         """The spikes of the last layer, or its potentials if it never fires."""
-        return self.layers(x)[-1]["reset" in self.neurons[-1].rule]
-
-
-def _share(keep: Tensor) -> Tensor:
-    """`keep` within 0 to 1, from whose ends gradients lead back."""
-    return keep + (keep.detach().clamp(0, 1) - keep.detach())
+        potentials, fired = self.layers(x)[-1]
+        last = self.neurons[-1]
+        if "reset" in last.rule:
+            return fired.float()
+        scale, finer = last.unit()
+        return (potentials / (scale * finer)).float()
 
 
 class _Layer(nn.Module):
     """A layer of the controller, out of what its file holds."""
 
-    def __init__(self, layer: dict[str, Any]):
+    def __init__(self, layer: dict[str, Any], numbers: str):
         super().__init__()
+        self.numbers = numbers
         self.rule = {name: layer[name] for name in ("name", "reset", "fires", "current") if name in layer}
         for name in ("weights", "recurrent", "bias", "inner", "keep", "current_keep", "threshold", "reset_value"):
             if name in layer:
-                numbers = torch.as_tensor(layer[name], dtype=torch.float32)
-                setattr(self, name, nn.Parameter(numbers.t().contiguous(), name != "reset_value"))
+                own = torch.as_tensor(layer[name], dtype=torch.float32)
+                setattr(self, name, nn.Parameter(own.t().contiguous(), name != "reset_value"))
         if not hasattr(self, "bias"):
             self.bias = nn.Parameter(torch.zeros(self.weights.shape[1]))
 
+    def unit(self) -> tuple[Tensor, int]:
+        """How many integers a weight of 1 is, by neuron, and how many a potential has of each: as `spikewire network` chooses."""
+        if self.numbers == "f32":
+            return torch.ones_like(self.keep), 1
+        own = {name: own.detach().double().abs() for name, own in self.named_parameters()}
+        weights = torch.cat([own[name] for name in ("weights", "recurrent") if name in own]).amax(0)
+        most = torch.stack([own[name] for name in ("bias", "inner", "threshold", "reset_value") if name in own]).amax(0)
+        largest = weights.where(weights > 0, most)
+        scale = 127 / largest.where(largest > 0, 127)
+        shift = next((shift for shift in range(8, 0, -1) if (most * scale).max() * 2**shift <= 2**27), 0)
+        return torch.minimum(scale, 2.0 ** (27 - shift) / most.clamp(min=1e-300)), 2**shift
+
+    def held(self) -> dict[str, Tensor]:
+        """The numbers in which the controller calculates; gradients pass on to those that are trained."""
+        held: dict[str, Tensor] = dict(self.named_parameters())
+        scale, finer = self.unit()
+        for name, own in held.items():
+            is_share, is_weight = name.endswith("keep"), name in ("weights", "recurrent")
+            if is_share:
+                own = _passed(own.clamp(0, 1), own)
+            if self.numbers == "i8":
+                own = own.double() * (65536 if is_share else scale * (1 if is_weight else finer))
+                own = _passed(own.round().clamp(-127, 127) if is_weight else own.round(), own) * (finer if is_weight else 1)
+            held[name] = own
+        return held
+
     def written(self) -> dict[str, Any]:
         """What the layer's file holds."""
-        numbers = {name: own.detach().t() for name, own in self.named_parameters()}
-        for name in numbers.keys() & {"keep", "current_keep"}:
-            numbers[name] = numbers[name].clamp(0, 1)
-        return {**self.rule, **{name: own.tolist() for name, own in numbers.items()}}
+        scale, finer = self.unit()
+        numbers = {name: own.detach().double() for name, own in self.held().items()}
+        for name, own in numbers.items():
+            if self.numbers == "i8":
+                numbers[name] = own / (65536 if name.endswith("keep") else scale * finer)
+        return {**self.rule, **{name: own.t().tolist() for name, own in numbers.items()}}
 
-    def arriving(self, x: Tensor) -> Tensor:
-        return _Sum.apply(self.bias, x.to(self.bias.dtype), self.weights)
+    def law(self) -> _Law:
+        held, reset, at = self.held(), self.rule.get("reset"), self.rule.get("fires") == "at"
+        bias, weights, threshold = held["bias"], held["weights"], held.get("threshold")
+        value = held.get("reset_value", threshold.detach() if reset and reset.startswith("subtract") else 0.0)
+        is_whole = self.numbers == "i8"
 
-    def step(self, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
-        rest = torch.zeros_like(driven)
-        v, current, before = state or (rest, rest, rest)
-        if hasattr(self, "recurrent"):
-            driven = _Sum.apply(driven, before, self.recurrent)
-        if hasattr(self, "current_keep"):
-            taken, current = current, current * _share(self.current_keep) + driven
-            driven = taken if self.rule["current"] == "old" else current
-            if hasattr(self, "inner"):
-                driven = driven + self.inner
+        def summed(start: Tensor, x: Tensor, weights: Tensor) -> Tensor:
+            # Sums of integers do not depend on their order.
+            return start + x @ weights if is_whole else _Sum.apply(start, x, weights)
 
-        def integrated(v: Tensor) -> Tensor:
-            return v * _share(self.keep) + driven
+        def share(v: Tensor, keep: Tensor) -> Tensor:
+            return _passed((v * keep / 65536).floor(), v * keep / 65536) if is_whole else v * keep
 
-        if "reset" not in self.rule:
-            v = integrated(v)
-            return v, torch.zeros_like(v), (v, current, before)
-        reset, at = self.rule["reset"], self.rule["fires"] == "at"
-        value = getattr(self, "reset_value", self.threshold.detach() if reset.startswith("subtract") else 0.0)
-        over = (v >= self.threshold if at else v > self.threshold).detach()
-        if reset == "to-value-late":
-            reached = integrated(torch.where(over, value, v))
-        elif reset == "to-value-held":
-            reached = torch.where(over, value, integrated(v))
-        else:
-            reached = integrated(v)
-        less = reached - value
-        compared = torch.where(over, less, reached) if reset in ("subtract-late", "subtract-no-delay") else reached
-        fired = _Fire.apply(compared, self.threshold, at)
-        has_fired = fired.detach() > 0
-        if reset == "to-value":
-            v = torch.where(has_fired, value, reached)
-        elif reset in ("subtract", "subtract-no-delay"):
-            v = torch.where(has_fired, less, reached)
-        else:
-            v = compared
-        return v, fired, (v, current, fired)
+        def bounded(v: Tensor) -> Tensor:
+            return v.clamp(-(2**29), 2**29 - 1) if is_whole else v
+
+        def step(driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
+            rest = torch.zeros_like(driven)
+            v, current, before = state or (rest, rest, rest)
+            if "recurrent" in held:
+                driven = summed(driven, before, held["recurrent"])
+            if "current_keep" in held:
+                taken, current = current, share(current, held["current_keep"]) + driven
+                driven = taken if self.rule["current"] == "old" else current
+                current = bounded(current)
+                if "inner" in held:
+                    driven = driven + held["inner"]
+
+            def integrated(v: Tensor) -> Tensor:
+                return share(v, held["keep"]) + driven
+
+            if threshold is None:
+                v = bounded(integrated(v))
+                return v, torch.zeros_like(v), (v, current, before)
+            over = (v >= threshold if at else v > threshold).detach()
+            if reset == "to-value-late":
+                reached = integrated(torch.where(over, value, v))
+            elif reset == "to-value-held":
+                reached = torch.where(over, value, integrated(v))
+            else:
+                reached = integrated(v)
+            less = reached - value
+            compared = torch.where(over, less, reached) if reset in ("subtract-late", "subtract-no-delay") else reached
+            fired = _Fire.apply(compared, threshold, at)
+            has_fired = fired.detach() > 0
+            if reset == "to-value":
+                v = torch.where(has_fired, value, reached)
+            elif reset in ("subtract", "subtract-no-delay"):
+                v = torch.where(has_fired, less, reached)
+            else:
+                v = compared
+            v = bounded(v)
+            return v, fired, (v, current, fired)
+
+        return lambda x: summed(bias, x.to(bias.dtype), weights), step
 
 
 class Windows(Dataset[tuple[Tensor, Tensor]]):

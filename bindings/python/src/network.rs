@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use lab::network::{
-    Asked, ControllerRequest, File, Flown, Model, Numbers, Remarks, bring_to_controller,
+    Asked, ControllerRequest, File, Flown, Model, OnChip, Remarks, Trains, bring_to_controller,
 };
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
@@ -33,6 +33,9 @@ impl From<Model> for Network {
 
 /// Spikes and potentials, a row for each step.
 type Rows<'py> = (Bound<'py, PyArray2<bool>>, Bound<'py, PyArray2<f32>>);
+
+/// Neurons that fire and potentials, by step.
+type Held<'py> = (Trains, Bound<'py, PyArray2<f64>>);
 
 /// The framework, when a neuron fires, how it decays and which current it takes, as far as they are said.
 type Said = [Option<String>; 4];
@@ -72,6 +75,13 @@ impl Network {
         self.model.to_json().map_err(value)
     }
 
+    /// Runs the network from rest in these numbers: the last layer's spikes and potentials, by step.
+    fn ran<'py>(&self, py: Python<'py>, steps: Trains, numbers: &str) -> PyResult<Held<'py>> {
+        let ran = self.brought(py, &steps, numbers, |network| network.run(&steps))?;
+        let fired = ran.fired.into_iter().next_back().unwrap_or_default();
+        Ok((fired, PyArray2::from_vec2(py, &ran.potentials)?))
+    }
+
     /// Writes the network as a Rust module. `steps` are the inputs that fire in each step of a recording.
     fn rust(
         &self,
@@ -80,23 +90,9 @@ impl Network {
         numbers: &str,
         source: String,
     ) -> PyResult<String> {
-        for step in &steps {
-            self.check(step)?;
-        }
-        let numbers = choice::<Numbers>("numbers", numbers)?;
         let inputs = format!("{}, of spikes as they are", self.flown.inputs());
-        let request = ControllerRequest {
-            model: &self.model,
-            numbers,
-            tuned: &steps,
-            held_out: None,
-            progress: &|_, _| {},
-        };
-        let brought = py.detach(|| {
-            bring_to_controller(&request)
-                .map(|own| own.network.emit(&Remarks { source, inputs, step_us: None }))
-        });
-        brought.map_err(value)
+        let remarks = Remarks { source, inputs, step_us: None };
+        self.brought(py, &steps, numbers, |network| Ok(network.emit(&remarks)))
     }
 
     fn layers(&self) -> Vec<usize> {
@@ -145,6 +141,23 @@ impl Network {
 }
 
 impl Network {
+    /// Brings the network onto the controller, with numbers of this type, and returns what is asked of it there.
+    fn brought<T: Send>(
+        &self,
+        py: Python,
+        steps: &Trains,
+        numbers: &str,
+        asked: impl FnOnce(&dyn OnChip) -> lab::Result<T> + Send,
+    ) -> PyResult<T> {
+        for step in steps {
+            self.check(step)?;
+        }
+        let numbers = choice("numbers", numbers)?;
+        let (model, progress) = (&self.model, &|_, _| {});
+        let request = ControllerRequest { model, numbers, tuned: steps, held_out: None, progress };
+        py.detach(|| asked(&*bring_to_controller(&request)?.network)).map_err(value)
+    }
+
     /// Returns an error if the network lacks one of these inputs.
     fn check(&self, inputs: &[u16]) -> PyResult<()> {
         let count = self.flown.inputs();

@@ -245,6 +245,32 @@ def test_controller_is_the_network(reset, at, current_keep):
             assert again.to_toml() == network.to_toml()
 
 
+@pytest.mark.parametrize("reset", RESETS)
+@pytest.mark.parametrize("at", [False, True])
+@pytest.mark.parametrize("current_keep", [None, 0.7])
+def test_integers_are_those_of_the_controller(reset, at, current_keep):
+    torch.manual_seed(1)
+    options = dict(keep=0.8, reset=reset, at=at, current_keep=current_keep, recurrent=True, numbers="i8")
+    counts = np.random.default_rng(1).integers(0, 3, (60, 3, 5)).astype(np.float32)
+    for readout in (False, True):
+        controller = Controller(5, 9, 4, readout=readout, **options)
+        with torch.no_grad():
+            for layer in controller.neurons:
+                layer.bias += torch.randn_like(layer.bias) / 4
+        out = controller(torch.from_numpy(counts))
+        out.square().sum().backward()
+        assert all(own.grad.abs().sum() > 0 for own in controller.parameters())
+        network = controller.network()
+        for recording in range(3):
+            ran = network.run(counts[:, recording], numbers="i8")
+            mine = out.detach().numpy()[:, recording]
+            # An integer is 1e-5 or more.
+            assert np.abs(mine - (ran.potentials if readout else ran.spikes)).max() < 3e-6
+        assert Controller.from_network(network, "i8").network().to_rust(counts[:, 0], numbers="i8") == network.to_rust(
+            counts[:, 0], numbers="i8"
+        )
+
+
 @pytest.mark.parametrize(
     ("name", "framework", "rule"),
     [

@@ -167,3 +167,45 @@ fn an_error_at_every_access_comes_back_typed() {
         assert_eq!(result, Err(ChipError::Bus(number)));
     }
 }
+
+/// Registers that hold what `peers/xylo.py` recorded.
+struct Table(Vec<u32>);
+
+impl Registers for Table {
+    type Error = ();
+
+    fn write(&mut self, _address: u16, _value: u32) -> Result<(), ()> {
+        Ok(())
+    }
+
+    fn read(&mut self, address: u16) -> Result<u32, ()> {
+        let addresses = [0x149, 0x14A, 0x14B, 0x14C, 0x152, 0x153, 0x171];
+        let at = addresses.iter().position(|one| *one == address).ok_or(())?;
+        Ok(self.0[at])
+    }
+}
+
+/// Reads numbers that spaces separate.
+fn numbers(column: &str) -> Vec<u32> {
+    column.split_whitespace().map(|one| one.parse().unwrap()).collect()
+}
+
+/// The vendor's own software, run by `peers/xylo.py`, takes as many of the counts as [`pack_counts`], and reads counts,
+/// bank, end of a step and outputs from the same registers as the driver.
+#[test]
+fn the_vendors_software_reads_the_same_registers() {
+    for line in include_str!("../peers/xylo.txt").lines() {
+        let columns: Vec<Vec<u32>> = line.split(';').map(numbers).collect();
+        let [counts, taken, values, read, done, outputs] = &columns[..] else { panic!("{line}") };
+        let packed = |counts: &[u32]| pack_counts(std::array::from_fn(|at| counts[at] as u8));
+        assert_eq!(packed(counts), packed(taken), "{line}");
+        assert!(taken.iter().all(|count| *count <= 15), "{line}");
+
+        let mut xylo = Xylo::new(Table(values.clone()), XyloMap::AUDIO_3, 1);
+        let first = usize::from(xylo.next_bank() == Ok(Some(InputBank::Second))) * 2;
+        assert_eq!(packed(read), values[first..first + 2], "{line}");
+        let fired = outputs.iter().fold(0, |fired, output| fired | 1 << output);
+        let expected = if done == &[1] { Ok(fired) } else { Err(ChipError::Unfinished) };
+        assert_eq!(xylo.step(), expected, "{line}");
+    }
+}

@@ -333,6 +333,7 @@ fn a_network_that_was_trained_without_the_chip_in_mind_keeps_most_of_its_steps()
 fn reckon_fires_as_frameworks_do_with_several_ticks_a_step() {
     for (name, reset) in [
         ("snntorch", "subtract-late"),
+        ("snntorch", "subtract-no-delay"),
         ("snntorch", "to-value"),
         ("snntorch_one_to_one", "to-value"),
         ("snntorch_one_to_one", "subtract-late"),
@@ -361,6 +362,36 @@ fn reckon_fires_as_frameworks_do_with_several_ticks_a_step() {
         let share = figures(held_out, "outputs agree in ")[2];
         assert!(share >= 90.0, "{name} {reset}: {}", ran.stderr);
         assert_eq!(ran.output.matches("ReckOnTick {").count(), 4, "{}", ran.output);
+    }
+}
+
+/// A reset without a delay takes three of the chip's neurons for each of the network's, and four in a recurrent layer.
+/// If they do not fit the chip, the chip's own reset replaces it, and the report says so.
+#[test]
+fn a_reset_without_a_delay_takes_several_neurons_of_reckon() {
+    let steps = ["0 1", "", "", "1", "", "0", ""].map(|line| format!("{line}\n"));
+    let (_steps, steps) = file("steps.txt", steps.concat().repeat(30));
+    let two = "[127, 60], [-40, 120]";
+    let recurrent = r#""recurrent": [[0, -64], [32, 0]],"#;
+    let many = ["[127, 60]"; 86].join(",");
+    for (weights, more, neurons) in [(two, "", 6), (two, recurrent, 8), (&many, "", 86)] {
+        let outputs = vec!["1"; weights.matches('[').count()].join(",");
+        let json = format!(
+            r#"{{"layers": [{{"weights": [{weights}], {more} "threshold": 64.5, "keep": 0.9}}],
+            "readout": {{"weights": [[{outputs}]]}}}}"#,
+        );
+        let (_network, network) = file("net.json", json);
+        let reset = "--chip reckon --reset subtract-no-delay";
+        let ran = good(&format!("network {network} {steps} {reset}"), "");
+        let held_out = ran.stderr.split("held out:").nth(1).unwrap();
+        let [_, _, spikes, _, distance] = figures(held_out, "layer 1: ")[..] else {
+            panic!("{}", ran.stderr)
+        };
+        let fits = neurons < 86;
+        assert_eq!(distance < 0.02 * spikes, fits, "{}", ran.stderr);
+        assert_eq!(ran.stderr.contains("do not fit"), !fits, "{}", ran.stderr);
+        let size = format!("{neurons} of the chip's 256 neurons");
+        assert!(ran.stderr.contains(&size) && spikes > 10.0, "{}", ran.stderr);
     }
 }
 

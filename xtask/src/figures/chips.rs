@@ -10,12 +10,13 @@ const PAGE: &str = "docs/chips.md";
 const MARKER: &str = "agrees";
 
 /// Networks that frameworks exported: the file, how it is read, the rule of its resets, and its layers in words.
-const NETWORKS: [(&str, &str, &str, &str); 13] = [
+const NETWORKS: [(&str, &str, &str, &str); 14] = [
     ("snntorch", "--as snntorch", "to-value", "snnTorch, `Leaky`"),
     ("snntorch", "--as snntorch", "subtract-late", "snnTorch, `Leaky`"),
     ("snntorch", "--as snntorch", "subtract-no-delay", "snnTorch, `Leaky`"),
     ("snntorch_one_to_one", "--as snntorch", "to-value", "snnTorch, `RLeaky`"),
     ("snntorch_one_to_one", "--as snntorch", "subtract-late", "snnTorch, `RLeaky`"),
+    ("snntorch_one_to_one", "--as snntorch", "subtract-no-delay", "snnTorch, `RLeaky`"),
     ("spikingjelly", "--as spikingjelly", "to-value", "SpikingJelly, `IFNode` and `LIFNode`"),
     ("spikingjelly", "--as spikingjelly", "subtract", "SpikingJelly, `IFNode` and `LIFNode`"),
     (

@@ -1,7 +1,6 @@
 //! Brings a trained network onto a chip: quantises the network, runs the quantised network on the chip's model, and
 //! compares the spikes with those of the original.
 
-use super::trained::Layer;
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
 use crate::network::NetworkKind;
@@ -152,9 +151,9 @@ pub fn bring(request: &Request) -> Result<Brought> {
     }
     let network = chip.quantise(trained, tuned, &original.fired, compare, progress)?;
     let shown = (held_out.map_or(tuned, |all| all.steps), other.as_ref().unwrap_or(&original));
-    let has_own_reset = trained.layers.iter().any(Layer::has_own_reset);
-    let own_reset = has_own_reset.then_some(Cost::Reset);
-    let costs = network.costs().into_iter().chain(own_reset).filter_map(|cost| {
+    let resets_otherwise = trained.layers.iter().any(|layer| !network.resets_as(layer.reset));
+    let reset = resets_otherwise.then_some(Cost::Reset);
+    let costs = network.costs().into_iter().chain(reset).filter_map(|cost| {
         let alone = cost.alone(trained, (tuned, &original.fired), shown.0);
         Some((cost, agreement(shown.1.fired.last()?.get(from..)?, alone.get(from..)?)?))
     });

@@ -1,7 +1,7 @@
 //! The interface of a target (a chip, or the flight controller) onto which a trained network can be brought.
 
 use super::costs::Cost;
-use super::{ReckOn, TinyOdin, Trained, Trains};
+use super::{ReckOn, Reset, TinyOdin, Trained, Trains};
 use crate::network::fault::{FitKind, ModelKind, Result};
 use spikewire_chips::ChipError;
 use std::fmt::Display;
@@ -86,6 +86,12 @@ pub trait OnChip {
     /// Returns the parts of the chip's arithmetic, such as rounded weights, whose effect on the spikes can be measured
     /// one by one.
     fn costs(&self) -> Vec<Cost>;
+
+    /// Returns whether neurons that were trained with this reset have it in this network. Otherwise, they have the most
+    /// similar reset of the chip.
+    fn resets_as(&self, reset: Reset) -> bool {
+        !matches!(reset, Reset::ToValueHeld | Reset::SubtractNoDelay)
+    }
 
     /// Returns a text for the user that says why spikes may be lost on their way into the chip.
     fn loss(&self) -> &'static str;

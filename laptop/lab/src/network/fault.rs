@@ -19,7 +19,11 @@ kinds! {
         ),
         NoNetwork => ("neither a NIR graph, which is an HDF5 file, nor a network in JSON or, with the name .toml, in TOML"),
         NotToml { error: toml::de::Error } => ("no network in TOML: {error}"),
-        HasRule => ("a network in TOML holds the rule by which its neurons step: leave out framework, reset and so on"),
+        HasRule => (
+            "a network in TOML holds the rule by which its neurons step: leave out {}, {} and the like",
+            spell("as"),
+            spell("reset")
+        ),
         NotAnInput { word: String } => ("`{word}` is not the number of an input"),
         NoInputs { inputs: usize, step: Vec<u16> } =>
             ("the network has {inputs} inputs, and not those of {step:?}"),

@@ -120,7 +120,7 @@ impl Layer {
         self.weights.first().map_or(0, Vec::len)
     }
 
-    /// Replaces a reset that no chip supports with the most similar reset that chips support.
+    /// Replaces a reset that a neuron of a chip does not have with the most similar reset that it has.
     pub(super) fn reset_by_chip(self) -> Self {
         let reset = match self.reset {
             Reset::ToValueHeld => Reset::ToValue,
@@ -130,10 +130,13 @@ impl Layer {
         Self { reset, ..self }
     }
 
-    /// Returns whether the layer resets as [`Reset::ToValueHeld`] or [`Reset::SubtractNoDelay`], which no chip
-    /// supports.
-    pub(super) fn has_own_reset(&self) -> bool {
-        matches!(self.reset, Reset::ToValueHeld | Reset::SubtractNoDelay)
+    /// Returns whether a potential makes neuron `at` fire.
+    pub(super) fn is_over(&self, at: usize, potential: f64) -> bool {
+        let Neuron { threshold, .. } = self.neurons[at];
+        match self.fires {
+            Fires::Above => potential > threshold,
+            Fires::At => potential >= threshold,
+        }
     }
 
     fn check(&self) -> Result<()> {
@@ -197,10 +200,7 @@ impl Layer {
     /// step adds to the potential. Calls `see` with the potential that the neuron compares with its threshold.
     fn step(&self, at: usize, driven: f64, potential: &mut f64, see: impl FnOnce(f64)) -> bool {
         let Neuron { threshold, .. } = self.neurons[at];
-        let fires = |potential| match self.fires {
-            Fires::Above => potential > threshold,
-            Fires::At => potential >= threshold,
-        };
+        let fires = |potential| self.is_over(at, potential);
         let (before, was_over) = (*potential, fires(*potential));
         let next = self.neurons[at].left(before) + driven;
         let less = next - threshold;
@@ -294,13 +294,19 @@ impl Trained {
         Ok(self)
     }
 
+    /// Replaces resets that a neuron of a chip does not have with the most similar resets that it has.
+    pub(super) fn reset_by_chip(self) -> Self {
+        let layers = self.layers.into_iter().map(Layer::reset_by_chip).collect();
+        Self { layers, ..self }
+    }
+
     /// Adapts layers to chips on which a spike subtracts the threshold one step later. Changes only layers in which a
     /// spike subtracts the threshold in the same step. In the trained layer, the leak of the next step also reduces the
     /// subtracted amount. The chip subtracts the whole threshold, after the leak. A positive weight from each neuron to
     /// itself adds the difference to the potential.
     pub(super) fn late(mut self) -> Self {
         for layer in &mut self.layers {
-            if !matches!(layer.reset, Reset::Subtract | Reset::SubtractNoDelay) {
+            if layer.reset != Reset::Subtract {
                 continue;
             }
             let count = layer.neurons.len();

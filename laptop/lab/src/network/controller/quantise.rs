@@ -5,6 +5,7 @@ use super::net::{Layer, Net, Neuron, Recurrent, Spike};
 use super::number::ONE;
 use super::rule::Rule;
 use rayon::prelude::*;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Scales to try for a neuron's weights, as multiples of the scale at which the largest weight becomes 127. Multiples
@@ -18,6 +19,9 @@ const LARGEST: f64 = 127.0;
 const SHIFT: u32 = 8;
 /// Largest absolute value of a bias, threshold or reset value after it was converted to an integer.
 const MOST: f64 = (1 << 27) as f64;
+/// Largest distance from an integer of a number that is taken for it, in units of the integers. Products of doubles that
+/// mean an integer are off by less.
+const EXACT: f64 = 1e-6;
 /// Maximum number of steps of the recording that are simulated in the search for scales.
 const STEPS: usize = 4_000;
 
@@ -85,6 +89,11 @@ pub(super) fn integers(
                 Some(_) => fired.iter().map(|fired| f64::from(u8::from(has(fired, at)))).collect(),
                 None => potentials.iter().map(|step| step[at]).collect(),
             };
+            let first = Column::new(layer, at, SCALES[0], shift);
+            if first.is_exact {
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+                return first;
+            }
             let tried = SCALES.iter().map(|share| Column::new(layer, at, *share, shift));
             let distance =
                 |column: &Column| column.distance(layer.rule, &before, fired, &target, at);
@@ -120,6 +129,8 @@ struct Column {
     own: Vec<i32>,
     neuron: Neuron<i32>,
     clipped: usize,
+    /// Whether the integers are exactly the trained numbers, as in networks that were trained with them.
+    is_exact: bool,
     /// Factor that converts an integer potential to the units of the trained network.
     unit: f64,
 }
@@ -195,16 +206,21 @@ impl Column {
         let finer = f64::from(1 << shift);
         // If the threshold is far above the weights, its range limits the scale, and the weights become small.
         let scale = (layer.scale(at) * share).min(MOST / finer / neuron.largest().max(1e-300));
-        let mut clipped = 0;
+        let (mut clipped, is_exact) = (0, Cell::new(true));
+        let rounded = |number: f64| {
+            let rounded = number.round();
+            is_exact.set(is_exact.get() && (number - rounded).abs() < EXACT);
+            rounded
+        };
         let mut weight = |weight: f64| {
-            let rounded = (weight * scale).round();
+            let rounded = rounded(weight * scale);
             clipped += usize::from(rounded.abs() > LARGEST);
             (rounded.clamp(-LARGEST, LARGEST) as i32) << shift
         };
         let weights = layer.weights.iter().map(|row| weight(row[at])).collect();
         let own = layer.own_weights(at).into_iter().map(&mut weight).collect();
-        let whole = |number: f64| (number * scale * finer).round() as i32;
-        let part = |decay: f64| (decay * ONE).round() as u32;
+        let whole = |number: f64| rounded(number * scale * finer) as i32;
+        let part = |decay: f64| rounded(decay * ONE) as u32;
         let neuron = Neuron {
             current: neuron.current.map(part),
             decay: part(neuron.decay),
@@ -215,7 +231,8 @@ impl Column {
                 reset: whole(reset),
             }),
         };
-        Self { weights, own, neuron, clipped, unit: 1.0 / (scale * finer) }
+        let is_exact = is_exact.get();
+        Self { weights, own, neuron, clipped, is_exact, unit: 1.0 / (scale * finer) }
     }
 
     /// Runs neuron `at` in integers, and returns the distance of its spikes or potentials from `target`. `own` contains

@@ -2,14 +2,16 @@
 //! weights of 8 bits.
 
 mod emit;
+mod part;
 mod place;
 mod quantise;
+mod recorded;
 mod round;
 mod run;
 
 use super::chip::{Chip, Compare, OnChip, Ran, Remarks, written};
 use super::costs::Cost;
-use super::{Trained, Trains};
+use super::{Reset, Trained, Trains};
 use crate::Result;
 use quantise::{Quantised, quantise};
 use spikewire_chips::{DescribeReckOn, ReckOnBytes};
@@ -31,8 +33,15 @@ impl Chip for ReckOn {
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Box<dyn OnChip>> {
         // The chip subtracts a threshold one step after the spike, after the leak.
-        let trained = trained.clone().late();
-        Ok(Box::new(quantise(&trained, inputs, fired, progress)?))
+        let quantised = |trained: Trained| quantise(&trained.late(), inputs, fired, progress);
+        match quantised(trained.clone()) {
+            Err(error) if trained.layers.iter().any(|l| l.reset == Reset::SubtractNoDelay) => {
+                let mut network = quantised(trained.clone().reset_by_chip())?;
+                network.no_room = Some(error.to_string());
+                Ok(Box::new(network))
+            }
+            network => Ok(Box::new(network?)),
+        }
     }
 }
 
@@ -80,6 +89,19 @@ impl OnChip for Quantised {
                 100.0 * change.relative()
             ));
         }
+        if self.places.has_parts() {
+            notes.push(
+                "a reset without a delay takes three of the chip's neurons for each neuron of the layer, four in a \
+                 recurrent layer"
+                    .to_owned(),
+            );
+        }
+        if let Some(error) = &self.no_room {
+            notes.push(format!(
+                "warning: resets without a delay, which take several of the chip's neurons for each neuron, do not fit, \
+                 and are the chip's own: {error}"
+            ));
+        }
         if self.shared_keeps.0 > 0 {
             let (count, most) = self.shared_keeps;
             notes.push(format!(
@@ -92,6 +114,14 @@ impl OnChip for Quantised {
 
     fn costs(&self) -> Vec<Cost> {
         vec![Cost::Weights { largest: 127.0 }]
+    }
+
+    fn resets_as(&self, reset: Reset) -> bool {
+        match reset {
+            Reset::ToValueHeld => false,
+            Reset::SubtractNoDelay => self.places.has_parts(),
+            _ => true,
+        }
     }
 
     fn loss(&self) -> &'static str {

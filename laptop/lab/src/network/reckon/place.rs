@@ -1,8 +1,10 @@
 //! Assigns the neurons of a network to those of the chip.
 
 use super::super::Trained;
+use super::part::{Part, Seat};
 use crate::Spot;
 use crate::network::fault::{FitKind, Result, ensure};
+use std::collections::BTreeMap;
 
 const NEURONS: usize = 256;
 const OUTPUTS: usize = 16;
@@ -10,17 +12,20 @@ const OUTPUTS: usize = 16;
 /// potential by its decay factor.
 const SAME: f64 = 1e-4;
 
+/// The order of a layer's parts on the chip. Two parts of the same neuron form a pair if their leaks are the same.
+const PARTS: [&[Part]; 3] = [&[Part::Main, Part::Over], &[Part::Return], &[Part::Relay]];
+
 /// The assignment of the network's neurons to the chip's neurons. Two adjacent neurons of the chip form a pair, which
-/// shares a leak and a threshold. The network's neurons in a pair therefore belong to the same layer, and their trained
-/// leaks are as similar as possible.
+/// shares a leak and a threshold. The neurons in a pair therefore belong to the same layer, and their leaks are as
+/// similar as possible.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// The network's neuron that each neuron of the chip holds: the index of the layer, then the index of the neuron in
-    /// the layer. `None` if the chip's neuron stays free. One neuron of a pair stays free if a layer has an odd number
-    /// of neurons, or if no other neuron of the layer has a similar leak.
-    pub(super) neurons: Vec<Option<(usize, usize)>>,
-    /// Index of the chip's neuron that holds a neuron of the network, by layer and by the neuron's index in the layer.
-    by_layer: Vec<Vec<usize>>,
+    /// For each neuron of the chip, the part of a neuron of the network that it is. `None` if the chip's neuron stays
+    /// free. One neuron of a pair stays free if a layer has an odd number of neurons, or if no other neuron of the layer
+    /// has a similar leak.
+    pub(super) neurons: Vec<Option<Seat>>,
+    /// Index of the chip's neuron for each part of each neuron of the network.
+    by_seat: BTreeMap<Seat, usize>,
 }
 
 /// Returns the location that an error reports for the layer `name`.
@@ -49,31 +54,35 @@ impl Places {
     /// # Errors
     /// Returns an error if the chip has too few neurons, inputs or outputs.
     fn placed(trained: &Trained, has_bias: bool, most: f64) -> Result<Self> {
-        let mut neurons = Vec::new();
-        let mut by_layer = Vec::new();
+        let (mut neurons, mut by_seat) = (Vec::new(), BTreeMap::new());
         for (at, layer) in trained.layers.iter().enumerate() {
             let mut order: Vec<usize> = (0..layer.neurons.len()).collect();
             order.sort_by(|&one, &other| {
                 layer.neurons[one].keep.total_cmp(&layer.neurons[other].keep)
             });
-            if !neurons.len().is_multiple_of(2) {
-                neurons.push(None);
-            }
-            let mut own = vec![0; order.len()];
-            let mut last = 0.0;
-            for neuron in order {
-                let keep = layer.neurons[neuron].keep;
-                if !neurons.len().is_multiple_of(2) && keep - last > most {
+            let has = |part: &&Part| Part::of(layer).contains(part);
+            for parts in PARTS.iter().filter(|parts| parts.iter().any(|part| has(&part))) {
+                if !neurons.len().is_multiple_of(2) {
                     neurons.push(None);
                 }
-                last = keep;
-                own[neuron] = neurons.len();
-                neurons.push(Some((at, neuron)));
+                let mut last = 0.0;
+                for &neuron in &order {
+                    for &part in parts.iter().filter(has) {
+                        // Parts that only repeat spikes all have the same leak.
+                        let keep = if part.repeats() { 1.0 } else { layer.neurons[neuron].keep };
+                        if !neurons.len().is_multiple_of(2) && keep - last > most {
+                            neurons.push(None);
+                        }
+                        last = keep;
+                        let seat = Seat { layer: at, part, neuron };
+                        by_seat.insert(seat, neurons.len());
+                        neurons.push(Some(seat));
+                    }
+                }
             }
             let (count, needed) = (layer.neurons.len(), neurons.len());
             let kind = || FitKind::Neurons { most: NEURONS, layer: count, needed };
             ensure!(needed <= NEURONS, kind().at(layer_at(&layer.name)));
-            by_layer.push(own);
         }
         let inputs = trained.inputs() + usize::from(has_bias);
         let kind = || FitKind::Inputs { most: Self::INPUTS, inputs, has_bias };
@@ -84,17 +93,25 @@ impl Places {
             (None, None) => ("", 0),
         };
         ensure!(outputs <= OUTPUTS, FitKind::Outputs { most: OUTPUTS, outputs }.at(layer_at(name)));
-        Ok(Self { neurons, by_layer })
+        Ok(Self { neurons, by_seat })
     }
 
-    /// Returns the number of the chip's neuron that holds neuron `neuron` of layer `layer`.
-    pub(super) fn of(&self, layer: usize, neuron: usize) -> usize {
-        self.by_layer[layer][neuron]
+    /// Returns the number of the chip's neuron that is this part of a neuron of the network.
+    ///
+    /// # Panics
+    /// Panics if the neuron of the network has no such part.
+    pub(super) fn of(&self, seat: Seat) -> usize {
+        self.by_seat[&seat]
     }
 
-    /// Returns, for each pair of neurons on the chip, the network's neurons that the pair holds. Each is given by its
-    /// layer and its index in the layer. A pair holds two neurons, or one if its second place stays free.
-    pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
+    /// Returns, for each pair of neurons on the chip, what the two neurons are. A pair holds two neurons, or one if its
+    /// second place stays free.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = Vec<Seat>> {
         self.neurons.chunks(2).map(|pair| pair.iter().flatten().copied().collect())
+    }
+
+    /// Returns whether the layers that reset without a delay do so on the chip, with several neurons for each of theirs.
+    pub(super) fn has_parts(&self) -> bool {
+        self.by_seat.keys().any(|seat| seat.part != Part::Main)
     }
 }

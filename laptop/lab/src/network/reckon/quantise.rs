@@ -1,8 +1,10 @@
 //! Quantises a network from double precision to the integers of the chip `ReckOn`.
 
-use super::super::trained::{Layer, Neuron, Readout, fires_at};
+use super::super::trained::{Readout, fires_at};
 use super::super::{Distance, Trained, Trains};
+use super::part::{Part, Seat};
 use super::place::Places;
+use super::recorded::{Group, Recorded};
 use super::round::{Rounded, Traces, clipped};
 use crate::network::Fires;
 use crate::network::fault::{FitKind, Result, ensure};
@@ -10,6 +12,7 @@ use rayon::prelude::*;
 use spikewire_chips::{
     DescribeReckOn, ReckOnOutputs, ReckOnPair, ReckOnShared, ReckOnSteps, ReckOnTick,
 };
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The integer that stands for a decay factor of 1. Each tick of the chip multiplies a neuron's potential by its decay
@@ -24,12 +27,9 @@ const KEEP_TOLERANCE: f64 = 1e-4;
 const LEAK_TOLERANCE: f64 = 0.02;
 /// Smallest factor by which the chip can multiply a neuron's potential in a tick. One step of the network takes one or
 /// more ticks of the chip.
-const LEAST_KEEP: f64 = 0.875;
+pub(super) const LEAST_KEEP: f64 = 0.875;
 /// Maximum number of the chip's ticks that one step of the network takes.
 const MOST_TICKS: u32 = 16;
-/// Safety factor for gates. A gate is an input that lowers a neuron to keep it from firing. It lowers the neuron by
-/// this factor times the amount that suffices in the recording.
-const SPARE: f64 = 1.5;
 pub(super) const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
@@ -72,6 +72,8 @@ pub(super) struct Quantised {
     /// two decay factors of a step. Leaks differ because the two neurons of a pair share one, and because a tick keeps
     /// at least [`LEAST_KEEP`].
     pub(super) shared_keeps: (usize, f64),
+    /// The reason for which resets without a delay are not on the chip. `None` if they are, or if there are none.
+    pub(super) no_room: Option<String>,
 }
 
 /// A tick of a step. At each tick, the chip's neurons leak and compare their potentials with their thresholds.
@@ -133,17 +135,18 @@ impl Change {
     }
 }
 
-/// A neuron of the trained network, and the weights that lead to the neuron. Weights and potentials are in units of the
-/// neuron's threshold.
+/// A neuron of the chip in double precision, and the weights that lead to the neuron. Weights and potentials are in
+/// units of the neuron's threshold.
 pub(super) struct Source {
-    pub(super) layer: usize,
-    pub(super) neuron: usize,
+    pub(super) seat: Seat,
     pub(super) keep: f64,
     /// The neuron's threshold, in the units of the trained network.
     pub(super) threshold: f64,
     /// The weight of each input.
     pub(super) inputs: Vec<f64>,
     pub(super) bias: f64,
+    /// Amount that the gates add in each step, besides raising the neuron by what they lowered it.
+    pub(super) raise: f64,
     /// Amount by which gates lower the neuron; 0 if the neuron needs no gates. Gates are inputs that keep the neuron
     /// from firing at some ticks.
     pub(super) gate: f64,
@@ -221,13 +224,10 @@ pub(super) fn quantise(
     ensure!(neurons.all(|neuron| neuron.leak == 0.0), FitKind::LeakByAmount { owner: "ReckOn's" });
     let at = trained.layers.first().map_or(Fires::Above, |layer| layer.fires);
     let ticks = ticks(trained);
-    let original =
-        Recorded { trained, places: &places, ticks, peaks: peaks(trained, inputs, fired), fired };
+    let original = Recorded::new(trained, &places, ticks, inputs, fired);
     let pairs: Vec<Vec<Source>> = places
         .pairs()
-        .map(|pair| {
-            pair.into_iter().map(|(layer, neuron)| original.source(layer, neuron)).collect()
-        })
+        .map(|pair| pair.into_iter().map(|seat| original.source(seat)).collect())
         .collect();
     let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
     let are_whole = |shifts: [u8; 2]| {
@@ -242,17 +242,11 @@ pub(super) fn quantise(
     let best = changes.iter().min_by(|(_, one), (_, other)| one.total_cmp(other));
     let shifts = best.map_or([0; 2], |(shifts, _)| *shifts);
 
-    let drives = drives(trained, inputs, fired);
     let done = AtomicUsize::new(0);
-    let total: usize = trained.layers.iter().map(|layer| layer.neurons.len()).sum();
+    let total: usize = places.neurons.iter().flatten().count();
     let rule = Rule { ticks, resets_to_zero, fires: at };
-    let recorded = |pair: &[Source]| {
-        let layer = pair.first().map_or(0, |source| source.layer);
-        (&drives[layer][..], &fired[layer])
-    };
     let chosen = pairs.par_iter().map(|pair| {
-        let (drives, fired) = recorded(pair);
-        let chosen = Chosen::new(pair, drives, fired, shifts, rule, &places);
+        let chosen = Chosen::new(pair, &original, shifts, rule);
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
         chosen
     });
@@ -276,6 +270,7 @@ pub(super) fn quantise(
             .map(|layer| Change { name: layer.name.clone(), ..Change::default() })
             .collect(),
         shared_keeps: (0, 0.0),
+        no_room: None,
         places,
     };
     for (pair, Chosen { keep, scale, rounded }) in pairs.iter().zip(&chosen) {
@@ -300,91 +295,25 @@ pub(super) fn quantise(
 }
 
 /// Returns the number of ticks in a step: the smallest number of ticks, up to [`MOST_TICKS`], in which a neuron of the
-/// chip can leak as much as the network's neurons leak in a step.
+/// chip can leak as much as the network's neurons leak in a step. Neurons that compare twice in a step need two ticks.
 fn ticks(trained: &Trained) -> usize {
     let neurons = trained.layers.iter().flat_map(|layer| &layer.neurons);
     let least = neurons.map(|neuron| neuron.keep).fold(1.0, f64::min);
     let most = LEAST_KEEP.powi(MOST_TICKS as i32);
-    (least.max(most).ln() / LEAST_KEEP.ln() - 1e-9).ceil().max(1.0) as usize
+    let compared =
+        if trained.layers.iter().any(|layer| Part::of(layer).len() > 1) { 2.0 } else { 1.0 };
+    (least.max(most).ln() / LEAST_KEEP.ln() - 1e-9).ceil().max(compared) as usize
 }
 
 /// Returns the factor by which a tick multiplies a neuron's potential. The factor is at least [`LEAST_KEEP`]. `keep` is
 /// the factor for a whole step, and `ticks` is the number of ticks in a step.
-fn keep_of(keep: f64, ticks: usize) -> f64 {
+pub(super) fn keep_of(keep: f64, ticks: usize) -> f64 {
     keep.powf(1.0 / ticks as f64).max(LEAST_KEEP)
 }
 
 fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
     let kept = pair.iter().map(|source| keep_of(source.keep, ticks));
     (kept.sum::<f64>() / pair.len().max(1) as f64 * KEEP).round() as u16
-}
-
-/// A network in double precision, with its largest potentials and its spikes in the recording.
-struct Recorded<'a> {
-    trained: &'a Trained,
-    places: &'a Places,
-    ticks: usize,
-    /// Largest absolute potential of each neuron, by layer.
-    peaks: Vec<Vec<f64>>,
-    fired: &'a [Trains],
-}
-
-impl Recorded<'_> {
-    /// Returns neuron `neuron` of layer `at`, and the weights that lead to it.
-    fn source(&self, at: usize, neuron: usize) -> Source {
-        let Self { trained, places, ticks, .. } = *self;
-        let layer = &trained.layers[at];
-        let Neuron { keep, threshold, .. } = layer.neurons[neuron];
-        let part = |weight: &f64| weight / threshold;
-        let row = layer.weights[neuron].iter().map(part);
-        let mut inputs = vec![0.0; trained.inputs()];
-        let mut recurrent: Vec<(usize, f64)> = Vec::new();
-        match at.checked_sub(1) {
-            None => inputs = row.collect(),
-            Some(before) => {
-                let of = |(from, weight)| (places.of(before, from), weight);
-                recurrent.extend(row.enumerate().map(of));
-            }
-        }
-        // The layer's own spikes, and a reset that subtracts, act at the tick after the layer has compared. Until it
-        // compares again, less is left of them than in training, where they act when the neuron compares.
-        let kept = keep_of(keep, ticks);
-        let grown = kept.powi(1 - ticks as i32);
-        let mut own: Vec<f64> =
-            layer.recurrent.get(neuron).into_iter().flatten().map(part).collect();
-        own.resize(layer.neurons.len(), 0.0);
-        for weight in &mut own {
-            *weight *= grown;
-        }
-        if layer.reset.subtracts() {
-            own[neuron] += 1.0 - grown;
-        }
-        let peak = self.peaks[at][neuron] / threshold;
-        let gate = if ticks > 1 && own.iter().any(|weight| *weight != 0.0) {
-            let sum = |fired: &Vec<u16>| -> f64 {
-                fired.iter().map(|&from| own[usize::from(from)]).sum()
-            };
-            let added = self.fired[at].iter().map(sum).fold(0.0, f64::max);
-            let left = if layer.reset.subtracts() { (peak * kept - 1.0).max(kept) } else { kept };
-            SPARE * (left + added)
-        } else {
-            0.0
-        };
-        let own = own.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0);
-        recurrent.extend(own.map(|(from, weight)| (places.of(at, from), weight)));
-        let bias = layer.bias[neuron] / threshold;
-        Source {
-            layer: at,
-            neuron,
-            keep,
-            threshold,
-            inputs,
-            bias,
-            gate,
-            recurrent,
-            peak: peak + gate,
-        }
-    }
 }
 
 /// Returns the scale at which the chip's integers are exactly the trained numbers, as in networks that were trained with
@@ -412,18 +341,10 @@ struct Chosen {
 }
 
 impl Chosen {
-    /// Chooses the scale of a pair, as [`quantise`] says. The pair belongs to one layer: `drives` are the spikes that
-    /// act on the layer, and `fired` those that it fires.
-    fn new(
-        pair: &[Source],
-        drives: &[Drive],
-        fired: &Trains,
-        shifts: [u8; 2],
-        rule: Rule,
-        places: &Places,
-    ) -> Self {
+    /// Chooses the scale of a pair, as [`quantise`] says.
+    fn new(pair: &[Source], original: &Recorded, shifts: [u8; 2], rule: Rule) -> Self {
         let keep = mean_keep(pair, rule.ticks);
-        let of = |source| Traces::new(source, keep, rule, drives, fired, places);
+        let of = |source: &Source| Traces::new(source, keep, rule, original.group(source.seat));
         let traces: Vec<Traces> = pair.iter().map(of).collect();
         if let Some(scale) = exact_scale(pair, shifts).filter(|_| rule.ticks == 1) {
             let of = |(source, traces): (&Source, &Traces)| {
@@ -446,8 +367,8 @@ impl Chosen {
         rounded.truncate(SIMULATED);
         let simulated = rounded.into_iter().map(|(error, scale, all)| {
             let of = |(source, rounded): (&Source, &Rounded)| {
-                let held = Held::new(rounded, keep, scale, shifts, rule, places);
-                held.distance(drives, fired, source.neuron)
+                let held = Held::new(rounded, keep, scale, shifts, rule);
+                held.distance(original.group(source.seat), source.seat.neuron)
             };
             let distance: f64 = pair.iter().zip(&all).map(of).sum();
             (distance + error, Self { keep, scale, rounded: all })
@@ -455,52 +376,6 @@ impl Chosen {
         let best = simulated.min_by(|(one, _), (other, _)| one.total_cmp(other));
         best.expect("several scales are simulated").1
     }
-}
-
-/// Returns the largest absolute potential that each neuron reaches in double precision, by layer and neuron.
-fn peaks(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<f64>> {
-    let before = std::iter::once(inputs).chain(fired);
-    let of_layer = |(layer, before): (&Layer, &Trains)| {
-        let mut peaks = vec![0.0_f64; layer.neurons.len()];
-        layer.follow(before, |at, potential| peaks[at] = peaks[at].max(potential.abs()));
-        peaks
-    };
-    trained.layers.iter().zip(before).map(of_layer).collect()
-}
-
-/// The spikes that act on a layer in a step, and the spikes that the layer fires in the step.
-pub(super) struct Drive {
-    /// Numbers of the network's inputs that fire. No input occurs twice.
-    pub(super) inputs: Vec<u16>,
-    /// Neurons of the preceding layer that fire in the step. Each entry is the index of that layer, then the index of
-    /// the neuron in the layer.
-    pub(super) before: Vec<(usize, usize)>,
-    /// Neurons of the layer itself that fire in the step. Each entry is the index of the layer, then the index of the
-    /// neuron in the layer. These spikes act one tick later.
-    pub(super) own: Vec<(usize, usize)>,
-}
-
-/// Returns the spikes that act on each layer in each step, if all neurons fire as in double precision.
-fn drives(trained: &Trained, inputs: &Trains, fired: &[Trains]) -> Vec<Vec<Drive>> {
-    let of_layer = |at: usize| {
-        let spikes = |layer: usize, step: usize| {
-            fired[layer][step].iter().map(move |&neuron| (layer, neuron.into())).collect()
-        };
-        let of_step = |step: usize| {
-            let mut drive = Drive { inputs: vec![], before: vec![], own: spikes(at, step) };
-            match at.checked_sub(1) {
-                None => {
-                    drive.inputs.clone_from(&inputs[step]);
-                    drive.inputs.sort_unstable();
-                    drive.inputs.dedup();
-                }
-                Some(before) => drive.before = spikes(before, step),
-            }
-            drive
-        };
-        (0..inputs.len()).map(of_step).collect()
-    };
-    (0..trained.layers.len()).map(of_layer).collect()
 }
 
 /// The rule by which all neurons of the chip fire and reset.
@@ -513,32 +388,22 @@ pub(super) struct Rule {
 }
 
 /// A neuron in the chip's integers, for a simulation of this neuron alone.
-struct Held<'a> {
+struct Held {
     keep: i32,
     threshold: i32,
     inputs: Vec<i32>,
-    recurrent: Vec<i32>,
+    recurrent: BTreeMap<usize, i32>,
     bias: i32,
     /// Amount by which gates lower the neuron, and amount by which gates raise the neuron again. Gates are inputs that
     /// keep the neuron from firing at some ticks.
     gates: (i32, i32),
     rule: Rule,
-    places: &'a Places,
 }
 
-impl<'a> Held<'a> {
-    fn new(
-        rounded: &Rounded,
-        keep: u16,
-        scale: f64,
-        shifts: [u8; 2],
-        rule: Rule,
-        places: &'a Places,
-    ) -> Self {
-        let mut recurrent = vec![0; places.neurons.len()];
-        for &(from, weight) in &rounded.recurrent {
-            recurrent[from] = i32::from(weight) << shifts[1];
-        }
+impl Held {
+    fn new(rounded: &Rounded, keep: u16, scale: f64, shifts: [u8; 2], rule: Rule) -> Self {
+        let of = |&(from, weight): &(usize, i8)| (from, i32::from(weight) << shifts[1]);
+        let recurrent = rounded.recurrent.iter().map(of).collect();
         Self {
             keep: keep.into(),
             threshold: fires_at(scale, rule.fires) as i32,
@@ -547,31 +412,28 @@ impl<'a> Held<'a> {
             bias: i32::from(rounded.bias) << shifts[0],
             gates: rounded.gates,
             rule,
-            places,
         }
     }
 
-    /// Runs the neuron on the spikes in `drives`. Returns the distance between two spike trains: the neuron's spikes in
-    /// this run, and the spikes that `fired` contains for the neuron with index `neuron`.
-    fn distance(&self, drives: &[Drive], fired: &Trains, neuron: usize) -> f64 {
+    /// Runs the neuron on the spikes that act on `group`. Returns the distance between two spike trains: the neuron's
+    /// spikes in this run, and the spikes of the neuron with index `neuron` in double precision.
+    fn distance(&self, group: &Group, neuron: usize) -> f64 {
         let (mut potential, mut distance) = (0_i32, Distance::default());
         let (mut is_over, mut raised) = (false, 0);
-        let mut own = 0;
-        for (drive, meant) in drives.iter().zip(fired) {
-            let sum = |spikes: &[(usize, usize)]| -> i32 {
-                spikes.iter().map(|&(l, n)| self.recurrent[self.places.of(l, n)]).sum()
-            };
-            let first = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
-            let first = first.sum::<i32>() + sum(&drive.before) + self.bias + raised;
+        let mut added = vec![0; self.rule.ticks];
+        for (drive, meant) in group.drives.iter().zip(&group.fired) {
+            added.fill(0);
+            added[0] += raised;
+            if let Some(second) = added.get_mut(1) {
+                *second -= self.gates.0;
+            }
+            let inputs = drive.inputs.iter().map(|&input| self.inputs[usize::from(input)]);
+            added[group.ahead] += inputs.sum::<i32>() + self.bias;
+            for (tick, from) in &drive.spikes {
+                added[*tick] += self.recurrent.get(from).unwrap_or(&0);
+            }
             let mut count = 0;
-            for tick in 0..self.rule.ticks {
-                let added = own
-                    + match tick {
-                        0 => first,
-                        1 => -self.gates.0,
-                        _ => 0,
-                    };
-                own = if tick == 0 { sum(&drive.own) } else { 0 };
+            for added in &added {
                 let kept = match (is_over, self.rule.resets_to_zero) {
                     (false, _) => (potential * self.keep) >> 15,
                     (true, true) => 0,
@@ -624,10 +486,11 @@ impl Quantised {
             let mut weights = Vec::new();
             for (pair, Chosen { scale, rounded, .. }) in pairs.iter().zip(chosen) {
                 for (source, rounded) in pair.iter().zip(rounded) {
-                    if source.layer % self.ticks.len() == tick && source.bias != 0.0 {
-                        weights.push((self.places.of(source.layer, source.neuron), rounded.bias));
+                    let Seat { layer, .. } = source.seat;
+                    if layer % self.ticks.len() == tick && source.bias != 0.0 {
+                        weights.push((self.places.of(source.seat), rounded.bias));
                         let scale = scale / f64::from(1 << shift);
-                        let change = &mut self.changes[source.layer];
+                        let change = &mut self.changes[layer];
                         change.held(rounded.exact_bias, rounded.bias, scale);
                     }
                 }
@@ -639,41 +502,40 @@ impl Quantised {
         }
     }
 
-    /// Adds the gates of each layer. Gates are inputs that keep a layer from firing except at its own tick of a step.
-    /// Some gates lower the layer's neurons before the tick after the layer's own. The others raise the neurons again
-    /// before the layer's own tick comes again.
+    /// Adds the gates. Gates are inputs that keep neurons from firing except at their own tick of a step. Some gates
+    /// lower the neurons before the tick after their own. The others raise the neurons again before their own tick comes
+    /// again.
     fn put_gates(&mut self, pairs: &[Vec<Source>], chosen: &[Chosen], shift: u8) {
         let ticks = self.ticks.len();
-        for layer in 0..self.layers.len() {
-            let mut rests: Vec<(usize, [i32; 2])> = Vec::new();
+        for (lowers, tick) in (0..ticks).flat_map(|tick| [(true, tick), (false, tick)]) {
+            let mut rests: Vec<(usize, i32)> = Vec::new();
             for (pair, Chosen { rounded, .. }) in pairs.iter().zip(chosen) {
-                for (source, rounded) in pair.iter().zip(rounded) {
-                    if source.layer == layer {
-                        let (lowered, raised) = rounded.gates;
-                        let at = self.places.of(layer, source.neuron);
-                        rests.push((at, [-lowered >> shift, raised >> shift]));
+                for (Source { seat, .. }, Rounded { gates, .. }) in pair.iter().zip(rounded) {
+                    let own = seat.part.tick(seat.layer, ticks);
+                    let (at, amount) =
+                        if lowers { ((own + 1) % ticks, -gates.0) } else { (own, gates.1) };
+                    if at == tick {
+                        rests.push((self.places.of(*seat), amount >> shift));
                     }
                 }
             }
-            for (kind, tick) in [(0, (layer + 1) % ticks), (1, layer % ticks)] {
-                while rests.iter().any(|(_, rest)| rest[kind] != 0) {
-                    let take = |(at, rest): &mut (usize, [i32; 2])| {
-                        let weight = rest[kind].clamp(-128, 127);
-                        rest[kind] -= weight;
-                        (*at, weight as i8)
-                    };
-                    let weights: Vec<(usize, i8)> = rests.iter_mut().map(take).collect();
-                    let input = self.add_input(weights);
-                    let tick = &mut self.ticks[tick];
-                    if kind == 0 { &mut tick.always } else { &mut tick.raises }.push(input as u8);
-                }
+            while rests.iter().any(|(_, rest)| *rest != 0) {
+                let take = |(at, rest): &mut (usize, i32)| {
+                    let weight = (*rest).clamp(-128, 127);
+                    *rest -= weight;
+                    (*at, weight as i8)
+                };
+                let weights: Vec<(usize, i8)> = rests.iter_mut().map(take).collect();
+                let input = self.add_input(weights) as u8;
+                let Tick { always, raises } = &mut self.ticks[tick];
+                if lowers { always.push(input) } else { raises.push(input) }
             }
         }
     }
 
     fn put(&mut self, source: &Source, rounded: &Rounded, scale: f64, shifts: [u8; 2]) {
-        let at = self.places.of(source.layer, source.neuron);
-        let change = &mut self.changes[source.layer];
+        let at = self.places.of(source.seat);
+        let change = &mut self.changes[source.seat.layer];
         let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
         for ((row, &weight), &held) in
             self.inputs.iter_mut().zip(&source.inputs).zip(&rounded.inputs)
@@ -733,7 +595,7 @@ impl Quantised {
         self.outputs = vec![vec![0; weights.len()]; self.places.neurons.len()];
         for (output, row) in weights.iter().enumerate() {
             for (neuron, &weight) in row.iter().enumerate() {
-                self.outputs[self.places.of(last, neuron)][output] =
+                self.outputs[self.places.of(Seat::main(last, neuron))][output] =
                     change.weight(weight, scale / f64::from(1 << shift));
             }
         }
@@ -750,7 +612,7 @@ impl Quantised {
         let outputs = self.layers[last].1;
         self.outputs = vec![vec![0; outputs]; self.places.neurons.len()];
         for output in 0..outputs {
-            self.outputs[self.places.of(last, output)][output] = weight;
+            self.outputs[self.places.of(Seat::main(last, output))][output] = weight;
         }
         self.shared.shifts[2] = shift;
         self.shared.keep = keep;

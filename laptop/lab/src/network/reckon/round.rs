@@ -1,8 +1,8 @@
 //! Rounds the weights of a neuron to the chip's integers, all together.
 
-use super::super::Trains;
-use super::place::Places;
-use super::quantise::{Drive, KEEP, LARGEST, Rule, Source};
+use super::quantise::{KEEP, LARGEST, Rule, Source};
+use super::recorded::{Drive, Group};
+use std::collections::BTreeMap;
 
 /// Rounds a number to an integer in the range of the chip's weights.
 pub(super) fn clipped(number: f64) -> f64 {
@@ -55,38 +55,44 @@ impl Traces {
     /// recordings only the first steps are summed, but at least 100.
     const WORK: usize = 20_000_000;
 
-    pub(super) fn new(
-        source: &Source,
-        keep: u16,
-        rule: Rule,
-        drives: &[Drive],
-        fired: &Trains,
-        places: &Places,
-    ) -> Self {
+    pub(super) fn new(source: &Source, keep: u16, rule: Rule, group: &Group) -> Self {
+        let Group { ahead, drives, fired, .. } = group;
         let inputs = source.inputs.len();
-        let mut at = vec![None; places.neurons.len()];
-        for (number, (from, _)) in source.recurrent.iter().enumerate() {
-            at[*from] = Some(inputs + 1 + number);
-        }
+        let senders = source.recurrent.iter().map(|(from, _)| *from);
+        let at: BTreeMap<usize, usize> = senders.zip(inputs + 1..).collect();
         let count = inputs + 1 + source.recurrent.len();
         let kept = f64::from(keep) / KEEP;
-        let late = kept.powi(rule.ticks as i32 - 1);
+        // The share that is left, when the neuron compares again, of what acts at a tick after it has compared.
+        let left = |tick: usize| kept.powi((rule.ticks - tick) as i32);
         let (mut traces, mut products) = (vec![0.0; count], vec![vec![0.0; count]; count]);
-        let mut own: &[(usize, usize)] = &[];
         let steps = drives.len().min((Self::WORK / (count * count)).max(100));
+        let mut before: Option<&Drive> = None;
         for (step, drive) in drives[..steps].iter().enumerate() {
-            let has_fired = |step: usize| fired[step].contains(&(source.neuron as u16));
+            let has_fired = |step: usize| fired[step].contains(&(source.seat.neuron as u16));
             let is_reset = rule.resets_to_zero && step.checked_sub(1).is_some_and(has_fired);
-            let kept = if is_reset { 0.0 } else { kept * late };
+            let kept = if is_reset { 0.0 } else { left(0) };
             for trace in &mut traces {
                 *trace *= kept;
             }
-            let place = |&(layer, neuron): &(usize, usize)| at[places.of(layer, neuron)];
-            own.iter().filter_map(place).for_each(|weight| traces[weight] += late);
-            drive.before.iter().filter_map(place).for_each(|weight| traces[weight] += 1.0);
-            drive.inputs.iter().for_each(|input| traces[usize::from(*input)] += 1.0);
             traces[inputs] += 1.0;
-            own = &drive.own;
+            for (drive, is_now) in
+                before.map(|drive| (drive, false)).into_iter().chain([(drive, true)])
+            {
+                let share = |tick: usize| match (tick, is_now) {
+                    (0, true) => 1.0,
+                    (0, false) | (_, true) => 0.0,
+                    (tick, false) => left(tick),
+                };
+                for input in &drive.inputs {
+                    traces[usize::from(*input)] += share(*ahead);
+                }
+                for (tick, from) in &drive.spikes {
+                    if let Some(weight) = at.get(from) {
+                        traces[*weight] += share(*tick);
+                    }
+                }
+            }
+            before = Some(drive);
             for (row, one) in products.iter_mut().zip(&traces) {
                 row.iter_mut().zip(&traces).for_each(|(sum, other)| *sum += one * other);
             }
@@ -170,7 +176,7 @@ impl Rounded {
         let off = off(&held);
         let error: f64 = off.iter().zip(&slopes).map(|(off, slope)| off * slope).sum();
         let mean: f64 = off.iter().zip(&traces.means).map(|(off, mean)| off * mean).sum();
-        let more = (lost - mean) * scale;
+        let more = (lost - mean + source.raise) * scale;
         let (inputs, recurrent) = held.split_at(bias + 1);
         Self {
             inputs: inputs[..bias].iter().map(|weight| *weight as i8).collect(),

@@ -3,6 +3,7 @@
 use super::super::Trains;
 use super::super::chip::{Ran, refused};
 use super::Quantised;
+use super::part::{Part, Seat};
 use super::quantise::Tick;
 use crate::network::fault::{ModelKind, Result};
 use silicon::reckon::{Board, Port, Spi};
@@ -60,11 +61,14 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
             ran.clocks.push(board.pins().chip.clocks - before);
         }
         for neuron in std::mem::take(&mut board.pins().chip.fired) {
-            let Some((layer, place)) = network.places.neurons[usize::from(neuron)] else {
+            let Some(Seat { layer, part, neuron: place }) =
+                network.places.neurons[usize::from(neuron)]
+            else {
                 return Err(ModelKind::StrayNeuron { neuron }.into());
             };
             // A layer fires only at its own tick, unless a gate is too weak.
             if let Some(step) = step.checked_sub((layer + 1) / ticks.len())
+                && part == Part::Main
                 && layer < read_out
                 && let Some(step) = ran.fired[layer].get_mut(step)
             {
