@@ -65,8 +65,13 @@ fn check_values() {
     let scheme = WeightedPhase::<i16, 4>::new(0..=999);
     assert_eq!(scheme.encoder().encode(700), PhaseBits::new(0b1011));
     assert_eq!(scheme.decoder().decode(PhaseBits::new(0b1011)), 718);
-    // Outside the range, and not a number.
+    // An image's whole numbers, each on the edge of a cell: a range that is a power of two divides them exactly.
+    let scheme = WeightedPhase::<f32, 8>::new(0.0..=256.0);
+    assert!((0..256).all(|x: u16| scheme.encoder().encode(x.into()) == PhaseBits::new(x)));
+    // The largest value below the maximum, whose distance from the minimum rounds to the range.
     let scheme = WeightedPhase::<f32, 4>::new(-1.0..=1.0);
+    assert_eq!(scheme.encoder().encode(1.0_f32.next_down()), PhaseBits::new(0b1111));
+    // Outside the range, and not a number.
     let digits = [-9.0, -1.0, 0.0, 1.0, 9.0, f32::NAN].map(|x| scheme.encoder().encode(x).digits());
     assert_eq!(digits, [0, 0, 8, 15, 15, 0]);
 }

@@ -249,12 +249,12 @@ macro_rules! integer_arithmetic {
 
             #[inline]
             fn plus(self, step: Self) -> Self {
-                self.saturating_add(step)
+                Self::of_level(self.level().saturating_add(step.level()))
             }
 
             #[inline]
             fn minus(self, step: Self) -> Self {
-                self.saturating_sub(step)
+                Self::of_level(self.level().saturating_sub(step.level()))
             }
 
             #[inline]

@@ -47,6 +47,12 @@ fn digit_by_digit(mut rest: f32, range: f32, count: u32) -> u32 {
     digits
 }
 
+/// Whether a number above 0 is a power of two, and not subnormal: it has no fraction. Also true of infinity.
+#[inline]
+const fn is_power_of_two(number: f32) -> bool {
+    number.to_bits() << 9 == 0
+}
+
 impl Binary for f32 {
     /// Rounds `self - min` and `max - min` once each; the rest is exact.
     ///
@@ -63,7 +69,13 @@ impl Binary for f32 {
         let (rest, range) = (self - min, max - min);
         let place = rest / range * (1_u32 << (count & 31)) as f32;
         let digits = place as u32;
-        if digits as f32 == place { digit_by_digit(rest, range, count) } else { digits }
+        // Dividing by a power of two does not round, unless the distance itself has been rounded up to the range.
+        let is_exact = is_power_of_two(range) && digits >> (count & 31) == 0;
+        if digits as f32 == place && !is_exact {
+            digit_by_digit(rest, range, count)
+        } else {
+            digits
+        }
     }
 
     /// `min + (max - min) (2 digits + 1) / 2^(count + 1)`: the quotient is exact, the rest rounded once each.
@@ -86,8 +98,34 @@ impl Binary for f32 {
     }
 }
 
-/// Whether the core divides in an instruction: every one but a Cortex-M0, which has no compare-and-swap either.
-pub(super) const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
+/// The first `count` binary digits of `rest / range`, exactly; `rest` is less than `range`.
+#[inline]
+fn by_doubling(mut rest: u32, range: u32, count: u32) -> u32 {
+    let mut digits = 0;
+    for _ in 0..count {
+        // Twice the rest may exceed 32 bits, so that the rest is compared with `range - rest`.
+        let lacking = range.wrapping_sub(rest);
+        digits <<= 1;
+        if rest >= lacking {
+            rest = rest.wrapping_sub(lacking);
+            digits |= 1;
+        } else {
+            rest = rest.wrapping_add(rest);
+        }
+    }
+    digits
+}
+
+/// [`by_doubling`] out of line, for ranges so wide that a division has no room for the digits.
+#[cold]
+#[inline(never)]
+fn without_room(rest: u32, range: u32, count: u32) -> u32 {
+    by_doubling(rest, range, count)
+}
+
+/// Whether the core divides, and counts leading zeros, in an instruction: every one but a Cortex-M0, which has no
+/// compare-and-swap either.
+pub(crate) const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
 
 macro_rules! integer {
     // 16 digits of a range of 16 bits fit 32.
@@ -106,38 +144,31 @@ macro_rules! integer {
                 }
                 let [value, min, max] = [self.max(min), min, max].map(|x| i32::from($to_bits(x)));
                 let range = max.wrapping_sub(min).cast_unsigned();
-                let mut rest = value.wrapping_sub(min).cast_unsigned();
-                if HAS_DIVISION && (<$bits>::BITS == 16 || range.leading_zeros() >= count) {
-                    return (rest << (count & 31)).checked_div(range).unwrap_or(0);
+                let rest = value.wrapping_sub(min).cast_unsigned();
+                if !HAS_DIVISION {
+                    by_doubling(rest, range, count)
+                } else if <$bits>::BITS == 16 || range.leading_zeros() >= count {
+                    (rest << (count & 31)).checked_div(range).unwrap_or(0)
+                } else {
+                    without_room(rest, range, count)
                 }
-                let mut digits = 0;
-                for _ in 0..count {
-                    // Twice the rest may exceed 32 bits, so that the rest is compared with `range - rest`.
-                    let lacking = range.wrapping_sub(rest);
-                    digits <<= 1;
-                    if rest >= lacking {
-                        rest = rest.wrapping_sub(lacking);
-                        digits |= 1;
-                    } else {
-                        rest = rest.wrapping_add(rest);
-                    }
-                }
-                digits
             }
 
             #[inline]
             fn of_digits(digits: u32, count: u32, min: Self, max: Self) -> Self {
                 let [low, high] = [min, max].map(|x| i32::from($to_bits(x)));
                 let range = <$wide>::from(high.wrapping_sub(low).cast_unsigned());
-                // How far above the minimum the first and the last value with these digits are.
+                // How far above the minimum the first value with these digits is, and the first one after them.
                 let above = range.wrapping_mul(digits.into()).wrapping_add(ones(count).into());
                 let first = (above >> (count & 31)) as i32;
-                let last = if digits == ones(count) {
-                    range as i32
+                let after = (above.wrapping_add(range) >> (count & 31)) as i32;
+                let is_last = digits == ones(count);
+                let middle = if <$bits>::BITS == 16 {
+                    first.wrapping_add(after).wrapping_add(is_last.into()).wrapping_sub(1) >> 1
                 } else {
-                    ((above.wrapping_add(range) >> (count & 31)) as i32).wrapping_sub(1)
+                    let last = if is_last { range as i32 } else { after.wrapping_sub(1) };
+                    first.wrapping_add(last.wrapping_sub(first) >> 1)
                 };
-                let middle = first.wrapping_add(last.wrapping_sub(first) >> 1);
                 $from_bits(low.wrapping_add(middle) as $bits)
             }
 

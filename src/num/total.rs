@@ -29,7 +29,7 @@ pub trait Total: Copy + PartialOrd + Debug + Send + Sync + Stored {
     fn capped(self) -> Self;
 
     /// `self * count`.
-    fn times(self, count: u32) -> Self;
+    fn times(self, count: i32) -> Self;
 
     /// `self * 2^times`, for results that the type holds.
     fn doubled(self, times: u8) -> Self;
@@ -48,6 +48,14 @@ pub trait Total: Copy + PartialOrd + Debug + Send + Sync + Stored {
         } else {
             self.minus(self.halved(power))
         }
+    }
+
+    /// `self + above`, less `width` if the sum reaches that, and whether it does; `self` is less than `width`, `above` at most
+    /// that.
+    #[inline]
+    fn carried(self, above: Self, width: Self) -> (Self, bool) {
+        let sum = self.plus(above);
+        if sum >= width { (sum.minus(width), true) } else { (sum, false) }
     }
 
     /// Whether `2^17 self >= (2 draw + 1) range`, for a draw of 16 bits.
@@ -98,7 +106,7 @@ impl Total for f32 {
     }
 
     #[inline]
-    fn times(self, count: u32) -> f32 {
+    fn times(self, count: i32) -> f32 {
         self * count as f32
     }
 
@@ -155,8 +163,8 @@ macro_rules! integer_total {
             }
 
             #[inline]
-            fn times(self, count: u32) -> Self {
-                self.$times(count as Self)
+            fn times(self, count: i32) -> Self {
+                self.$times(count.into())
             }
 
             #[inline]
@@ -173,6 +181,26 @@ macro_rules! integer_total {
             #[inline]
             fn halved_to_nearest(self, times: u8) -> Self {
                 self.$plus((1 as Self).wrapping_shl(times.into()) / 2).halved(times)
+            }
+
+            // A width of 32-bit samples fits 32 bits, as does what the sum lacks of it.
+            #[inline]
+            fn carried(self, above: Self, width: Self) -> (Self, bool) {
+                if Self::BITS == 32 {
+                    let sum = self.wrapping_add(above);
+                    return if sum >= width {
+                        (sum.wrapping_sub(width), true)
+                    } else {
+                        (sum, false)
+                    };
+                }
+                let [sum, above, width] = [self, above, width].map(|part| part as u32);
+                let lacking = width.wrapping_sub(sum);
+                if above >= lacking {
+                    (above.wrapping_sub(lacking) as Self, true)
+                } else {
+                    (sum.wrapping_add(above) as Self, false)
+                }
             }
 
             #[inline]

@@ -1,8 +1,8 @@
 //! Samples of `NumPy` arrays as they lie in memory, and decoded values.
 
-use std::ops::Range;
+use std::{array, ops::Range};
 
-use catalogue::run::{self, Codec, SampleType};
+use catalogue::run::{self, Calibrated, Codec, SampleType};
 use numpy::PyReadonlyArrayDyn;
 use numpy::ndarray::{ArrayView1, ArrayViewD, Axis, Ix1, Ix2, Slice};
 use pyo3::prelude::*;
@@ -77,6 +77,14 @@ impl Lane<'_> {
             Self::F32(lane) => lane.as_slice().map(run::Samples::F32),
             Self::F64(lane) => lane.as_slice().map(run::Samples::F64),
             Self::I16(lane) => lane.as_slice().map(run::Samples::I16),
+        }
+    }
+
+    /// Adds the samples, which are good, to a calibration.
+    pub(crate) fn observe(&self, calibrated: &mut Calibrated) {
+        match self.in_memory() {
+            Some(samples) => calibrated.observe_samples(samples),
+            None => calibrated.observe(&self.to_vec()),
         }
     }
 
@@ -201,11 +209,17 @@ impl<'a> Grid<'a> {
             let start = self.start(channel);
             let lanes = (channel - channels.start) * self.length;
             let lanes = &mut tile[lanes..lanes + count * self.length];
-            for time in 0..self.length {
+            let mut copy = |time: usize| {
                 let row = &all[start + time * self.step..][..count];
                 for (place, sample) in row.iter().enumerate() {
                     lanes[place * self.length + time] = *sample;
                 }
+            };
+            let whole = if count == RUN { self.length / TIMES * TIMES } else { 0 };
+            (whole..self.length).for_each(&mut copy);
+            for time in (0..whole).step_by(TIMES) {
+                let rows = array::from_fn(|row| &all[start + (time + row) * self.step..][..RUN]);
+                transpose(rows, time, self.length, lanes);
             }
             channel += count;
         }
@@ -215,6 +229,19 @@ impl<'a> Grid<'a> {
 
 /// Number of neighbouring channels that are copied together: 16 samples of `float32` at one time are a line of the cache.
 pub(crate) const RUN: usize = 16;
+
+/// Number of neighbouring times that are copied together.
+const TIMES: usize = 8;
+
+/// Copies [`RUN`] channels, of which the rows have these times, to lanes of this length.
+#[inline]
+fn transpose<T: Copy>(rows: [&[T]; TIMES], time: usize, length: usize, lanes: &mut [T]) {
+    for (place, lane) in lanes.chunks_exact_mut(length).enumerate() {
+        for (room, row) in lane[time..][..TIMES].iter_mut().zip(rows) {
+            *room = row[place];
+        }
+    }
+}
 
 /// Room for copies of channels whose samples lie apart in memory.
 #[derive(Default)]

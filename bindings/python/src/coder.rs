@@ -126,7 +126,7 @@ impl Coder {
         self.scheme.info().name
     }
 
-    fn fitted(&self, samples: &View, is_shared: bool) -> Result<Fitted> {
+    fn fitted(&self, samples: &View, is_shared: bool, is_wide: bool) -> Result<Fitted> {
         let (scheme, sample, count) = (self.scheme, self.sample, samples.count());
         let past = samples.length().min(self.looks_back());
         let has_own_start = self.asked.get("start").is_none() && scheme.info().has_first_value();
@@ -150,7 +150,7 @@ impl Coder {
             let calibrated = needs_signal.then(|| {
                 let mut calibrated = Calibrated::of(self.sample, &self.asked);
                 for lane in group {
-                    calibrated.observe(&lane.to_vec());
+                    lane.observe(&mut calibrated);
                 }
                 calibrated
             });
@@ -172,7 +172,7 @@ impl Coder {
             let channels = vec![settle((0, lanes))?];
             return Ok(Fitted::new(scheme, sample, channels, None, 1));
         }
-        let channels: Vec<_> = if is_wide(count, count * samples.length()) {
+        let channels: Vec<_> = if is_wide {
             lanes.par_chunks(1).enumerate().map(settle).collect::<Result<_>>()?
         } else {
             lanes.chunks(1).enumerate().map(settle).collect::<Result<_>>()?
@@ -218,11 +218,11 @@ impl Coder {
         if length == 0 && count > 0 {
             return Err(value(anyhow!("channel 0 has no samples")));
         }
+        let is_wide = is_wide(count, count * length) && work::has_threads(py)?;
         let fitted = || match samples.bad(self.sample) {
             Some((channel, bad)) => Err(told(channel, 0, &bad)),
-            None => self.fitted(&samples, is_shared),
+            None => self.fitted(&samples, is_shared, is_wide),
         };
-        let is_wide = is_wide(count, count * length);
         work::detached(py, is_wide, fitted)?.map_err(value)
     }
 
@@ -333,6 +333,13 @@ impl Fitted {
         Ok(codec)
     }
 
+    /// Whether so many channels are encoded side by side, though each is long.
+    fn has_lanes(&self, count: usize, length: usize) -> bool {
+        /// Copies of longer ones would take too much memory.
+        const MOST: usize = 1 << 20;
+        count > 1 && length <= MOST && self.start(0).is_ok_and(|codec| codec.has_lanes())
+    }
+
     /// How many cells a row has.
     fn width(&self) -> Result<usize> {
         let shape = self.scheme.shape(self.common(0)?)?;
@@ -410,9 +417,10 @@ impl Fitted {
         let output = PyArray1::zeros(py, total * width, false);
         let mut access = output.readwrite();
         let cells = access.as_slice_mut()?;
-        let is_wide = is_wide(count, total * width);
-        let is_short = RUN * length <= PIECE && self.channels.len() == 1 && self.count == count;
-        let grid = samples.grid().filter(|_| is_short);
+        let is_wide = is_wide(count, total * width) && work::has_threads(py)?;
+        let is_one = self.channels.len() == 1 && self.count == count;
+        let goes_at_once = is_one && (length <= PIECE / RUN || self.has_lanes(count, length));
+        let grid = samples.grid().filter(|_| goes_at_once);
         let lanes = if grid.is_some() { Vec::new() } else { samples.lanes() };
         let run = if grid.is_some() { run_of(length * width) } else { 1 };
         let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {

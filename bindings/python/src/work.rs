@@ -40,7 +40,7 @@ impl Meter {
 const PERIOD: Duration = Duration::from_millis(100);
 
 /// So much is over before anybody could press a key.
-const SHORT: usize = 1 << 18;
+const SHORT: usize = 1 << 19;
 
 /// The threads of a process.
 struct Pool {
@@ -67,6 +67,15 @@ fn pool(_: Python) -> PyResult<Arc<ThreadPool>> {
     // The parent's threads are not here to be ended.
     mem::forget(known.replace(Pool { process: own, threads: Arc::clone(&threads) }));
     Ok(threads)
+}
+
+/// Returns whether this process has several threads. A single one would work on another core than the caller, with
+/// nothing in its cache.
+///
+/// # Errors
+/// The system has no more threads.
+pub(crate) fn has_threads(py: Python) -> PyResult<bool> {
+    Ok(pool(py)?.current_num_threads() > 1)
 }
 
 /// Works without the interpreter's lock: on all threads of the process if `is_wide`, where alone rayon may be used.

@@ -80,6 +80,14 @@ def test_runs_of_channels(scheme, sample, x):
     assert np.array_equal(np.moveaxis(beside, 0, 2), apart)
 
 
+@pytest.mark.parametrize("name", ["tbr", "mw", "sf", "hsa", "t-hsa", "lif"])
+def test_long_channels_side_by_side(name, x):
+    """Channels longer than a run, several of which are encoded at once."""
+    own = paper(sw.schemes[name]).fit(x)
+    long = np.stack([np.resize(np.roll(x[0], 7 * place), 5000) for place in range(3)])
+    assert np.array_equal(own.encode(long).array, [own.encode(row).array for row in long])
+
+
 @pytest.mark.parametrize("scheme, sample", cases())
 def test_chunks_are_coded_as_the_whole(scheme, sample, x):
     own, _ = of(scheme, sample, x)

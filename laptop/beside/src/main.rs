@@ -3,6 +3,7 @@
 //! Ends with status 1 if a form for slices is slower than single samples.
 
 mod beside;
+mod six;
 mod slices;
 mod timing;
 
@@ -19,6 +20,7 @@ const BY_CHANCE: (&str, &str) = ("lif", "q16.16, hexarotor");
 
 fn main() -> ExitCode {
     beside::tables();
+    six::tables();
     memory();
     let mut measured = slices::every_scheme::<f32>("f32", None);
     measured.append(&mut slices::every_scheme::<i16>("i16", Some(32768.0)));

@@ -114,6 +114,68 @@ fn channels_in_one_call() {
     }
 }
 
+/// Codes of several channels at once have the cells of a codec each: for more channels than lanes, recordings shorter
+/// than filter and window and longer than a block, samples of any type, and thresholds at which rounding decides.
+#[test]
+fn channels_in_lanes() {
+    let cases = [
+        ("hsa", "filter=triang:15,peak=0.1 shift=0.125"),
+        ("hsa", "filter=triang:2 shift=0"),
+        ("t-hsa", "filter=triang:15,peak=0.1 shift=0.125 threshold=0.15"),
+        ("t-hsa", "filter=triang:24,peak=0.1 shift=0 threshold=0"),
+        ("bsa", "filter=hann:24,peak=0.2 shift=0.125 criterion=sub threshold=0.3"),
+        ("bsa", "filter=triang:9,peak=0.5 shift=0 criterion=mul threshold=0.9"),
+        ("tbr", "threshold=0.012"),
+        ("tbr", "threshold=0.012 start=0.5"),
+        ("sf", "threshold=0.1"),
+        ("sf", "threshold=0.1 start=0.5"),
+        ("mw", "threshold=0.05 window=5"),
+        ("mw", "threshold=0.05 window=30 start=0.5"),
+        ("if", "threshold=0.7 power=4 reference=0.4 spikes=1"),
+        ("lif", "threshold=0.7 power=4 reference=0.4 spikes=1"),
+        ("lif", "threshold=0.7 power=4 reference=0.4 spikes=3"),
+    ];
+    // Multiples of what the taps are made of, so that sums often fall on the threshold itself.
+    let samples: Vec<f32> =
+        (0..14_300).map(|i| (f32::from(i as u16 % 89) - 20.0).abs() * 0.0125).collect();
+    let wide: Vec<f64> = samples.iter().copied().map(f64::from).collect();
+    for (name, options) in cases {
+        let scheme = *ALL.iter().find(|scheme| scheme.info().name == name).unwrap();
+        let mut asked = Asked::default();
+        for (name, value) in options.split(' ').filter_map(|option| option.split_once('=')) {
+            let parameter = scheme.info().parameter(name).unwrap();
+            asked.set(parameter.name, parameter.read(value).unwrap());
+        }
+        let past = scheme.looks_back(&asked);
+        for length in [1, 14, 100, 1300] {
+            let all = 11 * length;
+            let first = &wide[..past.min(length)];
+            let known = Known { calibrated: None, first, can_calibrate: false };
+            let settings = scheme.resolve(SampleType::F32, &asked, &known).unwrap();
+            let shape = scheme.shape(&settings).unwrap();
+            let width = length * shape.neurons * shape.slots;
+            let mut expected = vec![0; 11 * width];
+            for (samples, cells) in wide[..all].chunks(length).zip(expected.chunks_mut(width)) {
+                let own = if settings.get("start").is_some() {
+                    settings.clone()
+                } else {
+                    settings.beginning(&samples[..settings.first.len()])
+                };
+                let mut codec = scheme.codec_from(&own, own.first_value()).unwrap();
+                let made = codec.encode_cells(Samples::F64(samples), cells);
+                codec.finish_cells(&mut cells[made * width / length..]);
+            }
+            assert!(length < 100 || expected.iter().any(|cell| *cell != 0), "{name} {options}");
+            let mut codec = scheme.codec_from(&settings, settings.first_value()).unwrap();
+            for samples in [Samples::F32(&samples[..all]), Samples::F64(&wide[..all])] {
+                let mut cells = vec![0; 11 * width];
+                codec.encode_channels(samples, length, 0, &mut cells);
+                assert!(cells == expected, "{name} {options}, {length} samples");
+            }
+        }
+    }
+}
+
 /// Names and colours of schemes are distinct.
 #[test]
 fn schemes_differ() {

@@ -112,6 +112,11 @@ impl<S: Sample> ThresholdHough<S> {
         let rule = threshold_hough::ThresholdHough::try_new(taps.one()?, threshold)?;
         Ok(Self { taps, shift: S::ZERO, rule })
     }
+
+    /// The largest error at which a sample spikes, in the samples' unit.
+    pub fn threshold(&self) -> S {
+        self.rule.threshold()
+    }
 }
 
 impl<S: Sample> Bsa<S> {
@@ -122,6 +127,11 @@ impl<S: Sample> Bsa<S> {
     pub fn try_new(taps: Taps<S>, criterion: Criterion<S>) -> Result<Self, ConfigError> {
         let rule = bsa::Bsa::try_new(taps.one()?, criterion)?;
         Ok(Self { taps, shift: S::ZERO, rule })
+    }
+
+    /// How it compares the two errors.
+    pub fn criterion(&self) -> Criterion<S> {
+        self.rule.criterion()
     }
 }
 

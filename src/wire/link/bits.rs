@@ -1,5 +1,6 @@
 //! Strings of bits, high bit first, and exponential Golomb codes.
 
+use crate::num::HAS_DIVISION;
 use crate::wire::bytes::Cursor;
 
 /// A sink of bits.
@@ -15,8 +16,21 @@ pub(super) trait PutBits {
 #[inline]
 fn code(value: u32, k: u32) -> (u32, u32, u32) {
     let number = value.wrapping_add(1_u32.wrapping_shl(k));
-    let bits = 32 - number.leading_zeros();
+    let bits = bits_of(number);
     (bits.wrapping_sub(k).wrapping_sub(1), number, bits)
+}
+
+/// The length of a number in bits. A Cortex-M0 has small ones in a table, as it would call the runtime.
+#[inline]
+fn bits_of(number: u32) -> u32 {
+    const SMALL: [u8; 32] = [
+        0, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5,
+        5, 5,
+    ];
+    match SMALL.get(number as usize) {
+        Some(&bits) if !HAS_DIVISION => bits.into(),
+        _ => 32 - number.leading_zeros(),
+    }
 }
 
 /// A string of fewer than 32 bits. A longer one keeps only its length.

@@ -6,6 +6,7 @@ use super::Coding;
 use super::bits::{PutBits, TakeBits};
 use crate::Polarity;
 use crate::event::{Event, Tick};
+use crate::num::HAS_DIVISION;
 
 /// The longest time from the frame's tick to an event, in µs: 8.9 minutes.
 const MAX_SINCE_START: u32 = 1 << 29;
@@ -52,7 +53,13 @@ impl Place {
                 let (steps, jitter) = nearest_step(since, period.into());
                 bits.put(1, 1);
                 bits.put_code(zigzag(steps.wrapping_sub(1)), 0);
-                bits.put_code(zigzag(jitter), jitter_bits.into());
+                let jitter_bits = u32::from(jitter_bits);
+                if jitter == 0 && !HAS_DIVISION {
+                    // The code of 0, as a timer has no jitter. Other cores code any number as quickly.
+                    bits.put(1_u32.wrapping_shl(jitter_bits), jitter_bits + 1);
+                } else {
+                    bits.put_code(zigzag(jitter), jitter_bits);
+                }
                 bits.put_code(address << POLARITY | up, address_bits);
             }
         }

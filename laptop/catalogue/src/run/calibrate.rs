@@ -1,7 +1,11 @@
 //! Calibrates a scheme on a whole recording, in any sample type.
 
+use std::any::TypeId;
+
+use bytemuck::{Pod, cast_slice};
+
 use super::quantiles::Quantiles;
-use super::{Asked, SampleType};
+use super::{Asked, SampleType, Samples};
 use crate::for_sample_type;
 use spikewire::temporal::TemporalContrast;
 use spikewire::{Calibration, ConfigError, Sample};
@@ -34,11 +38,17 @@ impl Calibrated {
 
     /// Adds the next samples, which must be finite.
     pub fn observe(&mut self, samples: &[f64]) {
+        self.observe_samples(Samples::F64(samples));
+    }
+
+    /// Adds the next samples, which must be finite, of any type.
+    pub fn observe_samples(&mut self, samples: Samples) {
         self.calibration.observe(samples, self.one);
-        if let Some(quantiles) = &mut self.quantiles {
-            for sample in samples {
-                quantiles.observe(*sample);
-            }
+        let Some(quantiles) = &mut self.quantiles else { return };
+        match samples {
+            Samples::F32(own) => own.iter().for_each(|own| quantiles.observe((*own).into())),
+            Samples::F64(own) => own.iter().for_each(|own| quantiles.observe(*own)),
+            Samples::I16(own) => own.iter().for_each(|own| quantiles.observe((*own).into())),
         }
     }
 
@@ -66,15 +76,36 @@ impl Calibrated {
 
 /// The crate's calibration, for any sample type.
 trait Calibrate {
-    fn observe(&mut self, samples: &[f64], one: f64);
+    fn observe(&mut self, samples: Samples, one: f64);
     fn range(&self) -> Option<(f64, f64)>;
     fn threshold(&self, factor: f32, of_magnitudes: bool) -> Result<f64, ConfigError>;
 }
 
-impl<S: Sample> Calibrate for Calibration<S> {
-    fn observe(&mut self, samples: &[f64], one: f64) {
+/// Observes samples with a copy of the calibration, which stays in registers.
+fn observe_all<S: Sample, T: Pod + Into<f64>>(
+    calibration: &mut Calibration<S>,
+    samples: &[T],
+    one: f64,
+) {
+    let mut local = *calibration;
+    if one == 1.0 && TypeId::of::<T>() == TypeId::of::<S>() {
+        for sample in cast_slice::<_, S>(samples) {
+            local.observe(*sample);
+        }
+    } else {
         for sample in samples {
-            Self::observe(self, S::from_f64(sample * one));
+            local.observe(S::from_f64((*sample).into() * one));
+        }
+    }
+    *calibration = local;
+}
+
+impl<S: Sample> Calibrate for Calibration<S> {
+    fn observe(&mut self, samples: Samples, one: f64) {
+        match samples {
+            Samples::F32(own) => observe_all(self, own, one),
+            Samples::F64(own) => observe_all(self, own, one),
+            Samples::I16(own) => observe_all(self, own, one),
         }
     }
 

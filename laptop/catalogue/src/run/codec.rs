@@ -9,7 +9,7 @@ use std::{
     ops::Range,
 };
 
-use bytemuck::Pod;
+use bytemuck::{Pod, cast_slice, try_cast_slice};
 use rand_pcg::Pcg32;
 use spikewire::population::{Probabilistic, ProbabilisticState};
 use spikewire::rate::{Average, Bernoulli, BernoulliState};
@@ -17,6 +17,7 @@ use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, Scheme, Spike, timi
 
 #[cfg(feature = "states")]
 use super::ErrorKind;
+use super::lanes::{Lanes, Recordings};
 use super::settings::generator;
 use super::{Result, Runs, Settings, Shape, Visit};
 use crate::State;
@@ -88,6 +89,11 @@ impl Codec {
     /// Returns the latency: how many samples after a sample its code comes out.
     pub fn latency(&self) -> usize {
         self.running.latency()
+    }
+
+    /// Returns whether several recordings in one call take less time than one after the other.
+    pub fn has_lanes(&self) -> bool {
+        self.running.has_lanes()
     }
 
     /// Starts anew, on another recording of the same settings that begins with these samples: as many as the encoder
@@ -238,10 +244,11 @@ impl Sink<'_> {
             return false;
         };
         let cells = rows.get_mut(*made..).unwrap_or_default();
-        for (cell, spike) in cells.iter_mut().zip(spikes.iter().take(count)) {
+        let spikes = &spikes[..count.min(cells.len())];
+        for (cell, spike) in cells.iter_mut().zip(spikes) {
             *cell = *spike as i8;
-            *made += 1;
         }
+        *made += spikes.len();
         true
     }
 
@@ -315,6 +322,7 @@ fn step(polarity: Polarity) -> i8 {
 /// A codec that processes many samples in a call, so that the dynamic call costs nothing.
 trait Running {
     fn latency(&self) -> usize;
+    fn has_lanes(&self) -> bool;
     fn restart(&mut self, past: &[f64]);
     fn encode_channels(&mut self, samples: Samples, length: usize, channel: u64, cells: &mut [i8]);
     fn encode(&mut self, samples: Samples, sink: &mut Sink);
@@ -355,6 +363,7 @@ impl<S: Sample> Visit<S> for Start<'_> {
             past: Vec::new(),
             block: Vec::new(),
             outputs: Vec::new(),
+            lanes: Lanes::of(&scheme),
             scheme,
         });
         running.begin(&settings.first, first);
@@ -369,6 +378,8 @@ struct Channel<P: Scheme> {
     start: P::EncoderState,
     encoder: P::EncoderState,
     decoder: P::DecoderState,
+    /// The scheme for several channels at once, where that is faster.
+    lanes: Option<Lanes>,
     /// The code without spikes.
     silent: P::Code,
     /// Whether the decoder starts from a value, and whether that is the value of the first sample.
@@ -436,7 +447,7 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
         let is_own = one == 1.0 && TypeId::of::<T>() == TypeId::of::<P::Sample>();
         for samples in samples.chunks(BLOCK) {
             let block: &[P::Sample] = if is_own {
-                bytemuck::cast_slice(samples)
+                cast_slice(samples)
             } else {
                 self.block.clear();
                 self.block.extend(samples.iter().map(|value| sample::<P::Sample>(*value, one)));
@@ -466,14 +477,48 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
         channel: u64,
         cells: &mut [i8],
     ) {
-        let shape = self.shape;
-        let rows = cells.chunks_exact_mut(length * self.seen.len());
-        for ((samples, rows), channel) in samples.chunks_exact(length).zip(rows).zip(channel..) {
+        let (shape, width) = (self.shape, length * self.seen.len());
+        let count = samples.len() / length;
+        let mut uses_lanes = self.lanes.as_ref().is_some_and(|lanes| !lanes.is_slow_at_rest());
+        for place in 0..count {
+            let (rest, rows) = (&samples[place * length..], &mut cells[place * width..]);
+            if uses_lanes && place + 1 < count && self.encode_in_lanes(rest, length, rows) {
+                return;
+            }
+            let (own, rows) = (&rest[..length], &mut rows[..width]);
             let mut sink = Sink::Cells { rows, shape, made: 0 };
-            self.begin_encoder(channel, samples);
-            self.encode_all(samples, &mut sink);
+            self.begin_encoder(channel + place as u64, own);
+            self.encode_all(own, &mut sink);
             self.finish_all(&mut sink);
+            let is_slow = self.lanes.as_ref().is_some_and(Lanes::is_slow_at_rest);
+            uses_lanes = is_slow && is_dense(&cells[place * width..][..width]);
         }
+    }
+
+    /// Encodes recordings at once, if that is faster; returns whether it has.
+    fn encode_in_lanes<T: Pod + Into<f64>>(
+        &mut self,
+        samples: &[T],
+        length: usize,
+        cells: &mut [i8],
+    ) -> bool {
+        // Only schemes of `f32` have lanes, whose past samples are of that type.
+        let (Some(lanes), Ok(past)) = (&mut self.lanes, try_cast_slice(&self.past)) else {
+            return false;
+        };
+        let converted: Vec<f32>;
+        let samples = if TypeId::of::<T>() == TypeId::of::<f32>() {
+            cast_slice(samples)
+        } else {
+            converted = samples.iter().map(|value| (*value).into() as f32).collect();
+            &converted
+        };
+        let begins_with = self.begins_with;
+        let is_done = lanes.encode(Recordings { samples, length, begins_with, past }, cells);
+        if !is_done {
+            cells.fill(0);
+        }
+        is_done
     }
 
     fn finish_all(&mut self, sink: &mut Sink) {
@@ -524,6 +569,14 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     }
 }
 
+/// Whether more than one cell in 16 has a spike, in the middle of a recording.
+fn is_dense(cells: &[i8]) -> bool {
+    const MOST: usize = 512;
+    let middle = &cells[cells.len().saturating_sub(MOST) / 2..];
+    let middle = &middle[..middle.len().min(MOST)];
+    middle.iter().filter(|cell| **cell != 0).count() > middle.len() / 16
+}
+
 /// Brings a value of the signal to a sample type in which `one` stands for 1.
 fn sample<S: Sample>(value: impl Into<f64>, one: f64) -> S {
     S::from_f64(value.into() * one)
@@ -532,6 +585,10 @@ fn sample<S: Sample>(value: impl Into<f64>, one: f64) -> S {
 impl<P: Scheme<EncoderState: State + Clone, DecoderState: State> + 'static> Running for Channel<P> {
     fn latency(&self) -> usize {
         self.scheme.latency()
+    }
+
+    fn has_lanes(&self) -> bool {
+        self.lanes.is_some()
     }
 
     fn restart(&mut self, past: &[f64]) {

@@ -11,6 +11,7 @@ mod error;
 mod exact;
 mod example;
 mod filter;
+mod lanes;
 mod needs;
 mod piece;
 mod quantiles;

@@ -191,7 +191,7 @@ impl<const WORDS: usize> sealed::Averaging for Window<WORDS> {
         }
         state.oldest = (place as u16).wrapping_add(1)
             & (1_u16.wrapping_shl(self.power.into()).wrapping_sub(1));
-        weight.unit.times(state.sum).halved_to_nearest(self.power)
+        weight.unit.times(state.sum.cast_signed()).halved_to_nearest(self.power)
     }
 
     fn resync<T: Total>(&self, state: &mut Spikes<WORDS>, _: T, weight: &Weight<T>) {

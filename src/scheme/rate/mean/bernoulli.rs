@@ -8,8 +8,9 @@ use rand_core::Rng;
 use super::averaging::{Averaging, MeanState, decode_mean};
 use super::range::Range;
 use crate::error::{tri, unwrap};
-use crate::num::{Tally, Total};
-use crate::{ConfigError, Encoder, Fingerprint, Recovery, Sample, Scheme, Spike};
+use crate::num::{Tally, Total, groups, groups_mut};
+use crate::scheme::codec::encode_each;
+use crate::{ConfigError, Destination, Encoder, Fingerprint, Recovery, Sample, Scheme, Spike};
 
 /// Bernoulli spiking: a sample spikes with the probability `p / R`, its height in the range, drawn from the caller's
 /// random number generator. Sample by sample this is a Poisson spike train.
@@ -151,6 +152,9 @@ pub struct BernoulliState<G> {
     tally: Tally,
 }
 
+/// How many samples are drawn for at once, if the core has vectors.
+const GROUP: usize = 32;
+
 impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
     type Sample = S;
     type Code = Spike;
@@ -173,6 +177,40 @@ impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
         };
         let draw = state.generator.next_u32() >> 16;
         if above.is_drawn(self.range.width(), draw) { Spike::Up } else { Spike::None }
+    }
+
+    /// Draws for a group of samples within the range, and then compares them side by side.
+    #[inline]
+    fn encode_slice(
+        &self,
+        state: &mut BernoulliState<G>,
+        samples: &[S],
+        spikes: &mut [impl Destination<Spike>],
+    ) -> usize {
+        let length = samples.len().min(spikes.len());
+        // Sums of 64 bits take longer in groups.
+        let grouped = if size_of::<S::Total>() <= size_of::<f32>() { length } else { 0 };
+        let (groups, _) = groups::<_, GROUP>(samples.get(..grouped).unwrap_or_default());
+        let (written, _) = groups_mut::<_, GROUP>(spikes.get_mut(..grouped).unwrap_or_default());
+        let (Range { min, max }, width) = (self.range, self.range.width());
+        for (spikes, samples) in written.iter_mut().zip(groups) {
+            let is_within = |sample: &S| *sample >= min && *sample <= max;
+            if samples.iter().fold(true, |all, sample| all & is_within(sample)) {
+                let draws = [(); GROUP].map(|()| state.generator.next_u32() >> 16);
+                for ((spike, &sample), draw) in spikes.iter_mut().zip(samples).zip(draws) {
+                    let is_drawn = sample.offset_from(min).is_drawn(width, draw);
+                    spike.write(if is_drawn { Spike::Up } else { Spike::None });
+                }
+            } else {
+                encode_each(self, state, samples, spikes);
+            }
+        }
+        let done = groups.as_flattened().len();
+        let rest = samples.get(done..length).unwrap_or_default();
+        for (spike, &sample) in spikes.iter_mut().skip(done).zip(rest) {
+            spike.write(self.encode(state, sample));
+        }
+        length
     }
 
     fn rejected(state: &BernoulliState<G>) -> u32 {

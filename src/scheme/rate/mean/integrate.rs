@@ -110,6 +110,21 @@ impl<S: Sample, const K: usize> IntegrateAndFire<S, K> {
         self.threshold
     }
 
+    /// The reference, the value without spikes.
+    pub const fn reference(&self) -> S {
+        self.reference
+    }
+
+    /// The power `k` of the leak and of the decoder's mean, which is over about `2^k` samples.
+    pub const fn power(&self) -> u8 {
+        self.power
+    }
+
+    /// Whether the potential leaks.
+    pub const fn is_leaky(&self) -> bool {
+        self.is_leaky
+    }
+
     #[inline]
     fn unit(&self) -> S::Total {
         self.threshold.offset_from(S::ZERO)
@@ -251,11 +266,9 @@ impl<S: Sample, const K: usize> Scheme for IntegrateAndFire<S, K> {
 
     #[inline]
     fn decode(&self, state: &mut PotentialState<S>, steps: Steps<K>) -> S {
-        let mut potential = state.potential.leaked(self.power);
-        let step = self.unit().times(steps.count().unsigned_abs().into());
-        potential = if steps.count() < 0 { potential.minus(step) } else { potential.plus(step) };
-        state.potential = potential;
-        self.reference.raised(potential.halved_to_nearest(self.power))
+        let step = self.unit().times(steps.count().into());
+        state.potential = state.potential.leaked(self.power).plus(step);
+        self.reference.raised(state.potential.halved_to_nearest(self.power))
     }
 
     fn resync(&self, state: &mut PotentialState<S>, value: S) {

@@ -92,15 +92,9 @@ impl<S: Sample, A: Averaging> Scheme for SigmaDelta<S, A> {
             state.tally.reject();
             return Spike::None;
         };
-        let width = self.range.width();
-        let sum = state.sum.plus(above);
-        if sum >= width {
-            state.sum = sum.minus(width);
-            Spike::Up
-        } else {
-            state.sum = sum;
-            Spike::None
-        }
+        let (sum, is_spike) = state.sum.carried(above, self.range.width());
+        state.sum = sum;
+        if is_spike { Spike::Up } else { Spike::None }
     }
 
     fn rejected(state: &SigmaDeltaState<S>) -> u32 {
