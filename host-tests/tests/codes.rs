@@ -13,7 +13,6 @@ mod burst;
 mod calibration;
 mod closure;
 mod config_errors;
-mod defmt;
 mod dynamic;
 mod every_scheme;
 mod filter;

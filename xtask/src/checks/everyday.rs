@@ -68,7 +68,8 @@ pub fn each_feature() -> Result<()> {
             run(cargo(&check).args(["--features", &feature]))?;
         }
     }
-    Ok(())
+    // That all public data can be logged.
+    run(&mut cargo("check --package host-tests --features defmt --test defmt"))
 }
 
 /// Tests every pair of features of each crate that flies. If one feature enables the other, the pair equals that one

@@ -1,9 +1,12 @@
-//! The Python package, installed as a user installs it.
+//! The Python package: every day built from what the tests are built of, in the long checks installed as a user
+//! installs it.
 
 use crate::common::{cargo, command, output, paths, run};
 use crate::products::c_library;
 use crate::programs::host;
-use crate::programs::python::{environment_with, install, package, pip, with_path};
+use crate::programs::python::{
+    environment_with, install, package, package_of_tests, pip, with_path,
+};
 use anyhow::{Result, ensure};
 use std::{
     fs,
@@ -15,21 +18,22 @@ const VERSION: &str = "0.1.0";
 
 const REQUIREMENTS: &str = "bindings/python/requirements.txt";
 
-/// Installs the package in an environment of its own, and runs its tests, doctests, README and example.
-///
-/// It is compiled with the same options as the other tests, so that they share dependencies.
+/// Runs the package's tests, doctests, README and example.
 pub fn python() -> Result<()> {
     let python = environment_with("python", REQUIREMENTS)?;
-    package(&python, "dev")?;
+    let built = package_of_tests(&python)?;
 
     let flight = paths::target().join("flight-log.txt");
     fs::write(&flight, host::flight_log()?)?;
     let pytest = "-m pytest --quiet -rP --no-header --doctest-modules --doctest-ignore-import-errors bindings/python/tests --pyargs spikewire";
     let mut tests = command(&python);
     tests.args(pytest.split_whitespace()).env("FLIGHT_LOG", &flight);
+    tests.env("PYTHONPATH", built.path());
     tests.env("SPIKEWIRE", host::laptop()?);
     run(tests.env("FLIGHTS", c_library::write_flights()?))?;
-    run(command(&python).arg("bindings/python/examples/flight.py").env("FLIGHT_LOG", &flight))?;
+    let mut example = command(&python);
+    example.arg("bindings/python/examples/flight.py").env("FLIGHT_LOG", &flight);
+    run(example.env("PYTHONPATH", built.path()))?;
     source_package(&python).map(drop)
 }
 
@@ -48,8 +52,10 @@ pub fn fleet() -> Result<()> {
 /// Writes the type stub of the schemes' classes.
 pub fn write_stub() -> Result<()> {
     let python = environment_with("python", REQUIREMENTS)?;
-    package(&python, "dev")?;
-    let stub = output(command(&python).arg("bindings/python/tests/stubs.py"))?;
+    let built = package_of_tests(&python)?;
+    let mut stub = command(&python);
+    stub.arg("bindings/python/tests/stubs.py").env("PYTHONPATH", built.path());
+    let stub = output(&mut stub)?;
     fs::write(paths::root().join("bindings/python/spikewire/_schemes.pyi"), stub)?;
     Ok(())
 }

@@ -3,10 +3,12 @@
 use super::published::CRATES;
 use crate::common::{cargo, command, lint, output, paths, run};
 use anyhow::{Context, Result};
-use std::{path::PathBuf, process::Command};
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
-/// Prepares `cargo test` for the whole workspace, with every feature except the debug probe's driver; lints while
-/// compiling.
+/// Prepares `cargo test` for the whole workspace, with every feature except the debug probe's driver and `defmt`, whose
+/// symbols no linker takes into a shared library, as the Python package is; lints while compiling.
 pub fn tests(args: &str) -> Result<Command> {
     workspace("test", args)
 }
@@ -20,7 +22,8 @@ pub fn example_of_tests(name: &str) -> Result<PathBuf> {
 fn workspace(verb: &str, args: &str) -> Result<Command> {
     let mut features = vec!["host-tests/extract".to_owned()];
     for own in CRATES {
-        features.extend(own.features()?.into_iter().map(|name| format!("{}/{name}", own.name)));
+        let names = own.features()?.into_iter().filter(|name| name != "defmt");
+        features.extend(names.map(|name| format!("{}/{name}", own.name)));
     }
     let mut cargo = cargo(verb);
     cargo.args(["--workspace", "--features"]);
@@ -40,6 +43,16 @@ pub fn spikewire(args: &str) -> Result<Command> {
 pub fn laptop() -> Result<PathBuf> {
     run(&mut tests("--quiet --no-run --test pipes")?)?; // a test that runs the program, so that cargo builds that too
     Ok(paths::target().join("debug/spikewire"))
+}
+
+/// Builds the native half of the Python package for this interpreter, out of what the tests are built of; returns its
+/// path.
+pub fn python_module(python: &Path) -> Result<PathBuf> {
+    // With an example, whose features are those of the tests.
+    let mut build = workspace("build", "--quiet --lib --example mistaken")?;
+    // What maturin sets: the interpreter has the symbols.
+    run(build.env("PYO3_BUILD_EXTENSION_MODULE", "1").env("PYO3_PYTHON", python))?;
+    Ok(paths::target().join("debug").join(format!("{DLL_PREFIX}_native{DLL_SUFFIX}")))
 }
 
 /// Returns the host's target triple.

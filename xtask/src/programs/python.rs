@@ -1,12 +1,14 @@
 //! Python environments below the target directory, and the installation of this repository's package.
 
+use super::host;
 use crate::common::{command, lint, paths, run};
 use anyhow::Result;
 use std::{
-    env,
+    env, fs,
     path::{Path, PathBuf},
     process::Command,
 };
+use tempfile::TempDir;
 
 /// Returns the Python of an environment, which is created if it is missing.
 pub fn environment(name: &str) -> Result<PathBuf> {
@@ -57,4 +59,13 @@ pub fn package(python: &Path, profile: &str) -> Result<()> {
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall", "./bindings/python"]);
     pip.env("MATURIN_PEP517_ARGS", format!("--profile {profile}")).env("CARGO_INCREMENTAL", "0");
     run(if profile == "dev" { lint(&mut pip) } else { &mut pip })
+}
+
+/// Puts the package together without a wheel, which would compile its hundreds of dependencies once more; returns a
+/// directory for `PYTHONPATH`, which goes with its handle.
+pub fn package_of_tests(python: &Path) -> Result<TempDir> {
+    let place = tempfile::tempdir()?;
+    run(command("cp").args(["-r", "bindings/python/spikewire"]).arg(place.path()))?;
+    fs::copy(host::python_module(python)?, place.path().join("spikewire/_native.abi3.so"))?;
+    Ok(place)
 }
