@@ -46,8 +46,14 @@ def dataset(
     ``imap_unordered``, or an executor of :mod:`concurrent.futures`; without one, `jobs` threads of this process work. A
     task is a log, or with Dask up to 16 logs if there are many; the workers need the same files under the same paths.
     Dask gives the tasks of a worker that died to another one, and so does Ray, if the pool has
-    ``ray_remote_args={"max_restarts": -1, "max_task_retries": -1}``. Whoever encodes, the bytes of all files are the
-    same. A call that was ended is continued by the same call.
+    ``ray_remote_args={"max_restarts": -1, "max_task_retries": -1}``. A ``multiprocessing.Pool`` waits for ever for the
+    task of a worker that was killed; a ``ProcessPoolExecutor`` raises. After an error a pool goes on with its tasks: end it
+    before the call is repeated. Whoever encodes, the bytes of all files are the same. A call that was ended is continued
+    by the same call.
+
+    For many short logs, set before a Dask cluster starts
+    ``dask.config.set({"distributed.worker.multiprocessing-method": "forkserver",
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 27})``: otherwise each worker imports Dask anew.
     """
     flight = flight if isinstance(flight, Scheme) else Path(flight)
     if isinstance(flight, Path):

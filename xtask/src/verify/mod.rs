@@ -260,7 +260,7 @@ const LONG: &[Step] = &[
     ),
     step(
         "fleet",
-        "a thousand logs, by the program and by Dask, killed on the way",
+        "a thousand logs by the program and by Dask, and a few by Ray, killed on the way",
         python_package::fleet,
     ),
     step(

@@ -1,5 +1,5 @@
-//! Draws the panel of spiking efficiencies, with a bar for each panel before it. The efficiency is the share of samples without a
-//! spike.
+//! Draws the panel of spiking efficiencies, with a bar for each scheme. The efficiency is the share of samples without
+//! a spike.
 
 use super::FONT;
 use super::palette::{self, GRID, INK};

@@ -68,7 +68,7 @@ impl Picture {
     }
 }
 
-/// A picture of a file, and what there is to say of it.
+/// A picture of a file, and notes for the user.
 pub struct Read {
     /// The picture, with a panel for each scheme that can encode the recording.
     pub picture: Picture,
