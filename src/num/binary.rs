@@ -31,10 +31,14 @@ fn add_halves(one: f32, other: f32) -> f32 {
     one * 0.5 + other * 0.5
 }
 
-/// The first `count` binary digits of `rest / range`, exactly.
+/// The first `count` binary digits of `rest / range`, exactly, where those of the rounded quotient are `rounded`.
 #[cold]
 #[inline(never)]
-fn digit_by_digit(mut rest: f32, range: f32, count: u32) -> u32 {
+fn digit_by_digit(mut rest: f32, range: f32, count: u32, rounded: u32) -> u32 {
+    // Dividing by a power of two does not round, unless the distance itself has been rounded up to the range.
+    if is_power_of_two(range) && rounded >> (count & 31) == 0 {
+        return rounded;
+    }
     let mut digits = 0;
     for _ in 0..count {
         rest += rest;
@@ -69,13 +73,7 @@ impl Binary for f32 {
         let (rest, range) = (self - min, max - min);
         let place = rest / range * (1_u32 << (count & 31)) as f32;
         let digits = place as u32;
-        // Dividing by a power of two does not round, unless the distance itself has been rounded up to the range.
-        let is_exact = is_power_of_two(range) && digits >> (count & 31) == 0;
-        if digits as f32 == place && !is_exact {
-            digit_by_digit(rest, range, count)
-        } else {
-            digits
-        }
+        if digits as f32 == place { digit_by_digit(rest, range, count, digits) } else { digits }
     }
 
     /// `min + (max - min) (2 digits + 1) / 2^(count + 1)`: the quotient is exact, the rest rounded once each.

@@ -188,12 +188,16 @@ impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
         spikes: &mut [impl Destination<Spike>],
     ) -> usize {
         let length = samples.len().min(spikes.len());
+        let mut samples = samples.get(..length).unwrap_or_default();
+        let mut spikes = spikes.get_mut(..length).unwrap_or_default();
+        let (mut grouped, mut written) = (&[][..], &mut [][..]);
         // Sums of 64 bits take longer in groups.
-        let grouped = if size_of::<S::Total>() <= size_of::<f32>() { length } else { 0 };
-        let (groups, _) = groups::<_, GROUP>(samples.get(..grouped).unwrap_or_default());
-        let (written, _) = groups_mut::<_, GROUP>(spikes.get_mut(..grouped).unwrap_or_default());
+        if size_of::<S::Total>() <= size_of::<f32>() {
+            (grouped, samples) = groups::<_, GROUP>(samples);
+            (written, spikes) = groups_mut::<_, GROUP>(spikes);
+        }
         let (Range { min, max }, width) = (self.range, self.range.width());
-        for (spikes, samples) in written.iter_mut().zip(groups) {
+        for (spikes, samples) in written.iter_mut().zip(grouped) {
             let is_within = |sample: &S| *sample >= min && *sample <= max;
             if samples.iter().fold(true, |all, sample| all & is_within(sample)) {
                 let draws = [(); GROUP].map(|()| state.generator.next_u32() >> 16);
@@ -205,9 +209,7 @@ impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
                 encode_each(self, state, samples, spikes);
             }
         }
-        let done = groups.as_flattened().len();
-        let rest = samples.get(done..length).unwrap_or_default();
-        for (spike, &sample) in spikes.iter_mut().skip(done).zip(rest) {
+        for (spike, &sample) in spikes.iter_mut().zip(samples) {
             spike.write(self.encode(state, sample));
         }
         length
