@@ -113,8 +113,7 @@ fn networks_that_a_chip_can_hold_lose_nothing() {
 #[test]
 fn reckon_takes_whole_weights_as_they_are_only_if_the_file_says_so() {
     let layers = r#""layers":[{"weights":[[1,0,1],[0,1,1]],"keep":0.9375,"threshold":2}]"#;
-    let steps: String =
-        (0..400).map(|step| format!("{} {}\n", step % 3, step * step % 3)).collect();
+    let steps: String = (0..400).map(|step| format!("{}\n", step % 3)).collect();
     let (_steps, steps) = file("steps.txt", steps);
     let agreeing = |integers: &str| {
         let (_network, network) = file("whole.json", format!("{{{layers}{integers}}}"));
@@ -122,9 +121,9 @@ fn reckon_takes_whole_weights_as_they_are_only_if_the_file_says_so() {
         (figures(&ran.stderr, "outputs agree in ")[0], ran.output)
     };
     let (scaled, _) = agreeing("");
-    assert!(scaled > 99.0, "{scaled}");
+    assert_eq!(scaled, 100.0);
     let (taken, written) = agreeing(r#", "integers": true"#);
-    assert!(taken < 50.0 && written.contains("threshold: 3"), "{taken}: {written}");
+    assert!(taken < 70.0 && written.contains("threshold: 3"), "{taken}: {written}");
 }
 
 #[test]

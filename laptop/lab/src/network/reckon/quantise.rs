@@ -316,7 +316,7 @@ fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
 }
 
 /// Returns the scale at which the chip's integers are exactly the trained numbers, or `None` if there is no such scale.
-/// Of use only for networks that were trained in the chip's integers: elsewhere, whole numbers may be too small to leak
+/// Serves only networks that were trained in the chip's integers: in others, whole numbers may be too small to leak
 /// as trained, since the chip rounds potentials down. `shifts` has the same meaning as for [`scale`].
 fn exact_scale(pair: &[Source], shifts: [u8; 2]) -> Option<f64> {
     let scale = pair.first().map_or(1.0, |source| source.threshold);
