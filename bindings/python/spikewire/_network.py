@@ -86,8 +86,8 @@ class Network:
         """Writes a NIR graph, with times in steps. Returns the keywords with which :meth:`from_nir` gives the same network
         again. Needs the package ``nir``.
 
-        Raises `ValueError` if neurons with a constant input beside their current do not leak, if a spike subtracts another
-        amount than the threshold, or if layers differ in when they fire or which current they take: no graph has these.
+        Raises `ValueError` if neurons with a constant input beside their current do not leak, or if layers differ in when they
+        fire or which current they take: no graph has these.
         """
         import nir
 
@@ -108,10 +108,7 @@ class Network:
             leak = {"r": tau, "v_leak": own["inner"] * np.where(own["keep"] < 1, tau, 0)}
             fires = {}
             if "threshold" in layer:
-                subtracts = layer["reset"].startswith("subtract")
-                if subtracts and "reset_value" in layer:
-                    raise ValueError(f"{layer['name']}: a spike subtracts another amount than the threshold")
-                reset = zeros if subtracts else np.array(layer.get("reset_value", zeros))
+                reset = zeros if layer["reset"].startswith("subtract") else np.array(layer.get("reset_value", zeros))
                 fires = {"v_threshold": np.array(layer["threshold"]), "v_reset": reset}
             if "current" in layer:
                 kind = nir.CubaLIF if fires else nir.CubaLI
@@ -139,11 +136,8 @@ class Network:
         return self._native.layers()
 
     def run(self, spikes: ArrayLike | Sequence[Sequence[int]], *, numbers: Literal["f32", "i8"] = "f32") -> Ran:
-        """Runs the network from rest, in `numbers` as :meth:`to_rust` writes them out of the same spikes.
-
-        `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by rising input, or a list with a
-        list for each step: the numbers of the inputs that fire, in order.
-        """
+        """Runs the network from rest, in `numbers` as :meth:`to_rust` writes them out of the same spikes. `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by
+        rising input, or a list with a list for each step: the numbers of the inputs that fire, in order."""
         self.reset()
         steps = self._steps(spikes)
         if numbers == "f32":

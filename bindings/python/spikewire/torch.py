@@ -20,7 +20,7 @@ import json
 import weakref
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 import torch
@@ -178,15 +178,13 @@ def _backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None]:
 _encode.register_autograd(_backward, setup_context=_keep)
 
 
-#: A layer's law, in two functions. The first maps all inputs (time, batch, inputs) to the sums that reach the neurons. The second
-#: maps the sums of one step, and the state before it (None at rest), to potentials, spikes and the next state.
+#: A layer's law. The first function turns the layer's inputs in all steps into what drives its neurons. The second takes one
+#: step, from what drives the neurons and the state before (None at rest), to potentials, spikes and the state behind.
 _Law = tuple[Callable[[Tensor], Tensor], Callable[[Tensor, Any], tuple[Tensor, Tensor, Any]]]
 
 
 def _run(x: Tensor, laws: Iterable[_Law]) -> list[tuple[Tensor, Tensor]]:
     """The potentials of each layer, and its spikes: (time, batch, neurons)."""
-    if ((x < 0) | (x != x.trunc())).any():
-        raise ValueError("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
     layers = []
     for arriving, step in laws:
         steps, state = [], None
@@ -214,7 +212,7 @@ class _Chip(nn.Module):
     def __init__(self, inputs: int, sizes: tuple[int, ...], threshold: int, recurrent: bool = False):
         super().__init__()
         self.threshold = threshold
-        one = min(threshold / self._unit / 16, self._RANGE[1] / 7)
+        one = threshold / self._unit / 16
         shapes = zip((inputs, *sizes), sizes)
         self.weights: nn.ParameterList = nn.ParameterList(nn.Parameter(one * (1 + 4 * torch.randn(shape))) for shape in shapes)
         own = (nn.Parameter(one * 4 * torch.randn(size, size)) for size in sizes if recurrent)
@@ -250,7 +248,7 @@ class _Chip(nn.Module):
         raise NotImplementedError
 
     def save(self, path: str | Path) -> None:
-        """Writes the network as JSON for ``spikewire network``, which makes the chip's words from it."""
+        """Writes a network for ``spikewire network``, as above: the chip's words, constants in Rust, and its model."""
 
         def written(own: Tensor) -> list[list[int]]:
             return (self._unit * self._rounded(own)).detach().T.int().tolist()
@@ -282,13 +280,11 @@ class TinyOdin(_Chip):
     Args:
         inputs: Number of inputs.
         sizes: Number of neurons of each layer.
-        threshold: Potential from which a neuron fires, 1 to 2047.
+        threshold: Potential from which a neuron fires.
         leak: Amount by which a potential comes nearer to 0 in each step.
     """
 
     def __init__(self, inputs: int, *sizes: int, threshold: int = 16, leak: int = 1):
-        if not 1 <= threshold <= 2047:
-            raise ValueError(f"neurons fire from 1 to 2047, not {threshold}")
         super().__init__(inputs, sizes, threshold)
         self.leak = leak
 
@@ -318,8 +314,7 @@ class ReckOn(_Chip):
     Args:
         inputs: Number of inputs, 256 at most.
         sizes: Number of neurons of each layer: 256 in all, and 16 of the last.
-        threshold: Potential from which a neuron fires: 1 to 32767, and far below that, as potentials beyond it saturate in
-            another order than here.
+        threshold: Potential from which a neuron fires, 32767 at most.
         keep: Share of a potential that a step leaves.
         shift: Bits by which the chip shifts weights to the left, 0 to 7. The larger it is, the less rounding costs.
         recurrent: Whether the spikes of a layer act on itself a step later.
@@ -341,8 +336,6 @@ class ReckOn(_Chip):
         self._kept = round(keep * 32768)
         if not 28672 <= self._kept <= 32768:
             raise ValueError(f"a step leaves 0.875 to 1 of a potential, not {keep}")
-        if not (0 <= shift <= 7 and 1 <= threshold <= 32767):
-            raise ValueError(f"weights are shifted by 0 to 7, and neurons fire from 1 to 32767, not {shift} and {threshold}")
         self._unit = 1 << shift
         super().__init__(inputs, sizes, threshold, recurrent)
         self.subtract = subtract
@@ -370,8 +363,7 @@ class ReckOn(_Chip):
 
 
 class _Fire(torch.autograd.Function):
-    """Whether potentials fire, with a surrogate gradient: `slope` / (1 + 3 \|v - threshold\| / \|threshold\|)². `slope` is
-    1 / \|threshold\| unless given."""
+    """Whether potentials fire. `slope` is that of the gradient at the threshold, one over the threshold unless given."""
 
     @staticmethod
     def forward(ctx: Any, reached: Tensor, threshold: Tensor | float, at: bool, slope: float | None = None) -> Tensor:
@@ -457,10 +449,6 @@ class Controller(nn.Module):
         numbers: Literal["f32", "i8"] = "f32",
     ):
         super().__init__()
-        if reset not in get_args(Reset):
-            raise ValueError(f"reset is one of {', '.join(get_args(Reset))}, and not {reset!r}")
-        if not all(0 <= share <= 1 for share in (keep, current_keep or 0)):
-            raise ValueError(f"a step keeps 0 to 1 of a potential and a current, not {keep} and {current_keep}")
         layers = []
         for number, (before, count) in enumerate(zip((inputs, *sizes), sizes), 1):
             fires = not (readout and number == len(sizes))
@@ -484,13 +472,12 @@ class Controller(nn.Module):
 
     def network(self) -> Network:
         """The network as it is now, for the controller: its ``to_rust``, ``to_toml`` and ``to_nir`` write it."""
-        for name, own in self.named_parameters():
-            if not own.isfinite().all():
-                raise ValueError(f"{name} is not finite: training has diverged")
         return Network(_native.Network.from_json(json.dumps({"layers": [own.written() for own in self.neurons]})))
 
     def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
         """The potentials of each layer behind each step, and its spikes: (time, batch, neurons); of `i8` in the layer's integers."""
+        if ((x < 0) | (x != x.trunc())).any():
+            raise ValueError("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
         return _run(x, [own.law() for own in self.neurons])
 
     def forward(self, x: Tensor) -> Tensor:

@@ -15,11 +15,7 @@ use crate::error::value;
 /// The choice of this name.
 fn choice<T: DeserializeOwned>(keyword: &str, asked: &str) -> PyResult<T> {
     let choice = serde_json::from_value(asked.into());
-    choice.map_err(|error| {
-        let words = error.to_string();
-        let choices = words.split_once("expected ").map_or(words.as_str(), |(_, choices)| choices);
-        PyValueError::new_err(format!("{keyword} {asked:?} must be {}", choices.replace('`', "")))
-    })
+    choice.map_err(|error| PyValueError::new_err(format!("{keyword}: {error}")))
 }
 
 /// A network and its state.

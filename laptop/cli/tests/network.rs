@@ -365,24 +365,6 @@ fn reckon_fires_as_frameworks_do_with_several_ticks_a_step() {
     }
 }
 
-/// Small whole weights do not mean that a network was trained in the chip's integers, in which potentials this small
-/// would not outlast a leak.
-#[test]
-fn small_whole_weights_are_scaled_to_the_chip() {
-    let steps = ["0", "", "1 2", "", "0 1", "2"].map(|line| format!("{line}\n"));
-    let (_steps, steps) = file("steps.txt", steps.concat().repeat(40));
-    let weights = "[[1, 0, 1], [0, 1, 1]]";
-    let json =
-        format!(r#"{{"layers": [{{"weights": {weights}, "keep": 0.9375, "threshold": 2}}]}}"#);
-    let (_network, network) = file("net.json", json);
-    let ran = good(&format!("network {network} {steps} --chip reckon"), "");
-    let held_out = ran.stderr.split("held out:").nth(1).unwrap();
-    let [_, _, spikes, on_chip, _] = figures(held_out, "layer 1: ")[..] else {
-        panic!("{}", ran.stderr)
-    };
-    assert!(spikes > 10.0 && (on_chip / spikes - 1.0).abs() < 0.1, "{}", ran.stderr);
-}
-
 /// A reset without a delay takes three of the chip's neurons for each of the network's, and four in a recurrent layer.
 /// If they do not fit the chip, the chip's own reset replaces it, and the report says so.
 #[test]

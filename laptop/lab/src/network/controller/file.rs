@@ -37,20 +37,19 @@ struct WrittenLayer {
     /// Amount that a step adds to the current or, if there is none, to the potential.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     bias: Vec<f64>,
-    /// Amount that a step adds to the potential beside the current; needs `current_keep`.
+    /// Amount that a step adds to the potential beside the current.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     inner: Vec<f64>,
     /// Left out if the neurons never fire.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     threshold: Vec<f64>,
     /// The potential after a spike, or the amount that a spike subtracts; the threshold if a spike subtracts and this
-    /// is left out. Needs `threshold`.
+    /// is left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     reset_value: Vec<f64>,
     /// One weight for each input.
     weights: Vec<Vec<f64>>,
     /// One weight for each neuron of the layer, through which its spike acts one step later; left out if there are none.
-    /// Needs `threshold`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     recurrent: Vec<Vec<f64>>,
 }
@@ -99,12 +98,9 @@ impl Model {
     }
 
     fn of_written(written: Written) -> Result<Self> {
-        let count = written.layers.len();
-        let layers = written.layers.into_iter().enumerate().map(|(at, layer)| {
-            let (name, fires) = (layer.name.clone(), !layer.threshold.is_empty());
-            let silent = || Err(FitKind::SilentInside.into());
-            let read = if fires || at + 1 == count { layer.read() } else { silent() };
-            read.context(name)
+        let layers = written.layers.into_iter().map(|layer| {
+            let name = layer.name.clone();
+            layer.read().context(name)
         });
         Self::new(Net { layers: layers.collect::<Result<_>>()? }, Vec::new())
     }
@@ -184,9 +180,7 @@ impl WrittenLayer {
         ensure!(
             self.reset.is_some() == fires
                 && self.fires.is_some() == fires
-                && self.current.is_some() != self.current_keep.is_empty()
-                && (fires || self.reset_value.is_empty() && self.recurrent.is_empty())
-                && (self.inner.is_empty() || !self.current_keep.is_empty()),
+                && self.current.is_some() != self.current_keep.is_empty(),
             FitKind::HalfRule
         );
         let rule = Rule {

@@ -330,10 +330,7 @@ fn exact_scale(pair: &[Source], shifts: [u8; 2]) -> Option<f64> {
             && source.inputs.iter().all(|weight| is_whole(*weight, inputs))
             && source.recurrent.iter().all(|(_, weight)| is_whole(*weight, recurrent))
     });
-    // Networks that were trained in whole numbers have a whole threshold less a half. In others a leak, which rounds
-    // down, would eat small potentials.
-    let is_trained_whole = f64::from(keep) == KEEP || scale.fract() == 0.5;
-    (are_whole && is_trained_whole && scale <= 32_767.0).then_some(scale)
+    (are_whole && scale <= 32_767.0).then_some(scale)
 }
 
 /// The scale and the leak of a pair, and its neurons' weights in the chip's integers.
