@@ -91,7 +91,7 @@ def time_last(x: NDArray[Any], axis: int) -> NDArray[Any]:
 def time_axis(axis: int, axes: int) -> int:
     """The number of the axis of time, of so many."""
     if not isinstance(axis, (int, np.integer)):
-        raise ValueError(f"axis is that of time, a number below {axes}, and not {axis!r}")
+        raise ValueError(f"axis is that of time, a whole number from {-axes} to {axes - 1}, and not {axis!r}")
     if not -axes <= axis < axes:
-        raise ValueError(f"axis {axis}: the array has {axes} axes")
+        raise ValueError(f"axis {axis}: there are {axes} axes, without those of a sample's neurons and sub-timesteps")
     return int(axis) % axes

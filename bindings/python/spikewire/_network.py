@@ -86,8 +86,8 @@ class Network:
         """Writes a NIR graph, with times in steps. Returns the keywords with which :meth:`from_nir` gives the same network
         again. Needs the package ``nir``.
 
-        Raises `ValueError` if neurons with a constant input beside their current do not leak, or if layers differ in when they
-        fire or which current they take: no graph has these.
+        Raises `ValueError` if neurons with a constant input beside their current do not leak, if a spike subtracts another
+        amount than the threshold, or if layers differ in when they fire or which current they take: no graph has these.
         """
         import nir
 
@@ -108,7 +108,11 @@ class Network:
             leak = {"r": tau, "v_leak": own["inner"] * np.where(own["keep"] < 1, tau, 0)}
             fires = {}
             if "threshold" in layer:
-                reset = zeros if layer["reset"].startswith("subtract") else np.array(layer.get("reset_value", zeros))
+                subtracts = layer["reset"].startswith("subtract")
+                # A file leaves out what a spike subtracts if it is the threshold.
+                if subtracts and layer.get("reset_value", layer["threshold"]) != layer["threshold"]:
+                    raise ValueError(f"{layer['name']}: a spike subtracts the threshold in a graph, and no other amount")
+                reset = zeros if subtracts else np.array(layer.get("reset_value", zeros))
                 fires = {"v_threshold": np.array(layer["threshold"]), "v_reset": reset}
             if "current" in layer:
                 kind = nir.CubaLIF if fires else nir.CubaLI

@@ -191,7 +191,7 @@ class Scheme:
         codes = np.asarray(spikes)
         inner = row(self._coder.shape())
         axes = codes.ndim - len(inner)
-        if axes > 1:
+        if axes > 0:
             axis = time_axis(axis, axes)
             codes = np.moveaxis(codes, axis, axes - 1)
         outer = codes.shape[:axes]

@@ -20,7 +20,7 @@ import json
 import weakref
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 import torch
@@ -178,13 +178,15 @@ def _backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None]:
 _encode.register_autograd(_backward, setup_context=_keep)
 
 
-#: A layer's law. The first function turns the layer's inputs in all steps into what drives its neurons. The second takes one
-#: step, from what drives the neurons and the state before (None at rest), to potentials, spikes and the state behind.
+#: A layer's law, in two functions. The first maps all inputs (time, batch, inputs) to the sums that reach the neurons. The second
+#: maps the sums of one step, and the state before it (None at rest), to potentials, spikes and the next state.
 _Law = tuple[Callable[[Tensor], Tensor], Callable[[Tensor, Any], tuple[Tensor, Tensor, Any]]]
 
 
 def _run(x: Tensor, laws: Iterable[_Law]) -> list[tuple[Tensor, Tensor]]:
     """The potentials of each layer, and its spikes: (time, batch, neurons)."""
+    if (x < 0).any() or (x.is_floating_point() and (x != x.trunc()).any()):
+        raise ValueError("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
     layers = []
     for arriving, step in laws:
         steps, state = [], None
@@ -208,11 +210,16 @@ class _Chip(nn.Module):
     _RANGE = (-8, 7)
     #: What a weight of 1 adds to a potential.
     _unit = 1
+    #: The largest potential.
+    _MOST = 2047
 
     def __init__(self, inputs: int, sizes: tuple[int, ...], threshold: int, recurrent: bool = False):
         super().__init__()
+        if not 0 < threshold <= self._MOST:
+            raise ValueError(f"a threshold is a potential from 1 to {self._MOST}, not {threshold}")
         self.threshold = threshold
-        one = threshold / self._unit / 16
+        # Most weights lie in the chip's range, however large the threshold is.
+        one = min(threshold / self._unit / 16, self._RANGE[1] / 8)
         shapes = zip((inputs, *sizes), sizes)
         self.weights: nn.ParameterList = nn.ParameterList(nn.Parameter(one * (1 + 4 * torch.randn(shape))) for shape in shapes)
         own = (nn.Parameter(one * 4 * torch.randn(size, size)) for size in sizes if recurrent)
@@ -232,7 +239,9 @@ class _Chip(nn.Module):
             back = None if own is None else self._unit * self._rounded(own)
             return lambda x: self._counted(x).to(weights.dtype) @ (self._unit * weights), lambda *state: self._step(back, *state)
 
-        return _run(x, itertools.starmap(law, itertools.zip_longest(self.whole(), self.recurrent)))
+        # Types of 16 bits would round potentials.
+        with torch.autocast(x.device.type, enabled=False):
+            return _run(x, itertools.starmap(law, itertools.zip_longest(self.whole(), self.recurrent)))
 
     def _counted(self, x: Tensor) -> Tensor:
         return x
@@ -248,7 +257,7 @@ class _Chip(nn.Module):
         raise NotImplementedError
 
     def save(self, path: str | Path) -> None:
-        """Writes a network for ``spikewire network``, as above: the chip's words, constants in Rust, and its model."""
+        """Writes the network as JSON for ``spikewire network``, which makes the chip's words from it."""
 
         def written(own: Tensor) -> list[list[int]]:
             return (self._unit * self._rounded(own)).detach().T.int().tolist()
@@ -258,7 +267,7 @@ class _Chip(nn.Module):
         layers = [{"weights": written(own), **rule} for own in self.weights]
         for layer, own in zip(layers, self.recurrent):
             layer["recurrent"] = written(own)
-        Path(path).write_text(json.dumps({"layers": layers}))
+        Path(path).write_text(json.dumps({"layers": layers, "integers": True}))
 
 
 class TinyOdin(_Chip):
@@ -280,7 +289,7 @@ class TinyOdin(_Chip):
     Args:
         inputs: Number of inputs.
         sizes: Number of neurons of each layer.
-        threshold: Potential from which a neuron fires.
+        threshold: Potential from which a neuron fires, 1 to 2047.
         leak: Amount by which a potential comes nearer to 0 in each step.
     """
 
@@ -314,7 +323,8 @@ class ReckOn(_Chip):
     Args:
         inputs: Number of inputs, 256 at most.
         sizes: Number of neurons of each layer: 256 in all, and 16 of the last.
-        threshold: Potential from which a neuron fires, 32767 at most.
+        threshold: Potential from which a neuron fires: far below 32767, as potentials beyond that saturate in another order
+            than here.
         keep: Share of a potential that a step leaves.
         shift: Bits by which the chip shifts weights to the left, 0 to 7. The larger it is, the less rounding costs.
         recurrent: Whether the spikes of a layer act on itself a step later.
@@ -322,6 +332,7 @@ class ReckOn(_Chip):
     """
 
     _RANGE = (-128, 127)
+    _MOST = 32767
 
     def __init__(
         self,
@@ -336,6 +347,8 @@ class ReckOn(_Chip):
         self._kept = round(keep * 32768)
         if not 28672 <= self._kept <= 32768:
             raise ValueError(f"a step leaves 0.875 to 1 of a potential, not {keep}")
+        if not 0 <= shift <= 7:
+            raise ValueError(f"the chip shifts weights by 0 to 7 bits, not {shift}")
         self._unit = 1 << shift
         super().__init__(inputs, sizes, threshold, recurrent)
         self.subtract = subtract
@@ -363,7 +376,8 @@ class ReckOn(_Chip):
 
 
 class _Fire(torch.autograd.Function):
-    """Whether potentials fire. `slope` is that of the gradient at the threshold, one over the threshold unless given."""
+    """Whether potentials fire, with a surrogate gradient: `slope` / (1 + 3 |v - threshold| / |threshold|)²; `slope` is
+    1 / |threshold| unless given."""
 
     @staticmethod
     def forward(ctx: Any, reached: Tensor, threshold: Tensor | float, at: bool, slope: float | None = None) -> Tensor:
@@ -449,6 +463,11 @@ class Controller(nn.Module):
         numbers: Literal["f32", "i8"] = "f32",
     ):
         super().__init__()
+        if reset not in get_args(Reset):
+            raise ValueError(f"reset is one of {', '.join(get_args(Reset))}, not {reset!r}")
+        for name, share in (("keep", keep), ("current_keep", current_keep)):
+            if share is not None and not 0 <= share <= 1:
+                raise ValueError(f"{name} is a share from 0 to 1, not {share}")
         layers = []
         for number, (before, count) in enumerate(zip((inputs, *sizes), sizes), 1):
             fires = not (readout and number == len(sizes))
@@ -471,13 +490,17 @@ class Controller(nn.Module):
         return own
 
     def network(self) -> Network:
-        """The network as it is now, for the controller: its ``to_rust``, ``to_toml`` and ``to_nir`` write it."""
+        """The network as it is now, for the controller: its ``to_rust``, ``to_toml`` and ``to_nir`` write it.
+
+        Raises `ValueError` if a parameter is not finite.
+        """
+        for name, own in self.named_parameters():
+            if not own.isfinite().all():
+                raise ValueError(f"{name} is not finite: training has diverged")
         return Network(_native.Network.from_json(json.dumps({"layers": [own.written() for own in self.neurons]})))
 
     def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
         """The potentials of each layer behind each step, and its spikes: (time, batch, neurons); of `i8` in the layer's integers."""
-        if ((x < 0) | (x != x.trunc())).any():
-            raise ValueError("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
         return _run(x, [own.law() for own in self.neurons])
 
     def forward(self, x: Tensor) -> Tensor:

@@ -15,7 +15,11 @@ use crate::error::value;
 /// The choice of this name.
 fn choice<T: DeserializeOwned>(keyword: &str, asked: &str) -> PyResult<T> {
     let choice = serde_json::from_value(asked.into());
-    choice.map_err(|error| PyValueError::new_err(format!("{keyword}: {error}")))
+    choice.map_err(|error: serde_json::Error| {
+        let words = error.to_string();
+        let choices = words.split_once("expected ").map_or(&*words, |(_, choices)| choices);
+        PyValueError::new_err(format!("{keyword} {asked:?} must be {choices}"))
+    })
 }
 
 /// A network and its state.
@@ -149,6 +153,9 @@ impl Network {
         numbers: &str,
         asked: impl FnOnce(&dyn OnChip) -> lab::Result<T> + Send,
     ) -> PyResult<T> {
+        if steps.is_empty() {
+            return Err(PyValueError::new_err("no steps"));
+        }
         for step in steps {
             self.check(step)?;
         }

@@ -50,7 +50,7 @@ def test_what_a_file_leaves_open_is_asked_for():
     path = PEERS / "braille_subtract.nir"
     with pytest.raises(ValueError, match="subtract-late"):
         sw.Network.from_nir(path, "snntorch")
-    with pytest.raises(ValueError, match="framework: unknown variant `torch`, expected one of `snntorch`"):
+    with pytest.raises(ValueError, match="framework \"torch\" must be one of `snntorch`"):
         sw.Network.from_nir(path, "torch")
     network = sw.Network.from_nir(path, "snntorch", reset="subtract-late")
     with pytest.raises(ValueError, match="input 12: the network has inputs 0 to 11"):
@@ -89,18 +89,7 @@ def test_files_bring_the_network_back(name, framework, rule, tmp_path):
     assert "pub fn is_intact() -> bool" in network.to_rust(counts, numbers="i8", source="own.toml")
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (("keep = [", "keep = [2.0, "), "3 values of `keep` for 2 neurons"),
-        (("threshold = [1.0, 1.0]", ""), "neurons with a threshold have `reset` and `fires`"),
-        (("keep = [0.9", "keep = [1.5"), "neuron 0 keeps 1.5"),
-        (("[[layers]]", "[[layer]]"), "no network in TOML"),
-        (("[0.5, 0.25]", "[0.5]"), "neuron 1 has 1 weights where the first has 2"),
-    ],
-)
-def test_a_wrong_file_is_told(change, words):
-    layers = """[[layers]]
+LAYERS = """[[layers]]
 name = "one"
 reset = "to-value"
 fires = "at"
@@ -108,6 +97,45 @@ keep = [0.9, 0.9]
 threshold = [1.0, 1.0]
 weights = [[0.5, 1.0], [0.5, 0.25]]
 """
-    assert sw.Network.from_toml(layers).to_toml() == layers
+#: What says how the neurons fire, and what they keep.
+FIRING = LAYERS[LAYERS.index("reset") : LAYERS.index("weights")]
+#: A layer that never fires, before another.
+SILENT = """[[layers]]
+name = "silent"
+keep = [0.9, 0.9]
+weights = [[0.5, 1.0], [0.5, 0.25]]
+
+[[layers]]"""
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("keep = [", "keep = [2.0, "), "3 values of `keep` for 2 neurons"),
+        (("threshold = [1.0, 1.0]", ""), "`threshold`, `reset` and `fires` go together"),
+        (("keep = [0.9", "keep = [1.5"), "neuron 0 keeps 1.5"),
+        (("[[layers]]", "[[layer]]"), "no network in TOML"),
+        (("[0.5, 0.25]", "[0.5]"), "neuron 1 has 1 weights where the first has 2"),
+        (("weights", "inner = [0.1, 0.1]\nweights"), "`inner` the second"),
+        ((FIRING, "keep = [0.9, 0.9]\nreset_value = [0.1, 0.1]\n"), "`reset_value` and `recurrent` need the first"),
+        ((FIRING, "keep = [0.9, 0.9]\nrecurrent = [[0.0, 0.1], [0.1, 0.0]]\n"), "`reset_value` and `recurrent` need the first"),
+        (("[[layers]]", SILENT), "neurons that never fire must be the last"),
+    ],
+)
+def test_a_wrong_file_is_told(change, words):
+    assert sw.Network.from_toml(LAYERS).to_toml() == LAYERS
     with pytest.raises(sw.Error, match=re.escape(words)):
-        sw.Network.from_toml(layers.replace(*change))
+        sw.Network.from_toml(LAYERS.replace(*change))
+
+
+def test_a_graph_cannot_subtract_another_amount_than_the_threshold(tmp_path):
+    pytest.importorskip("nir")
+    network = sw.Network.from_toml(LAYERS.replace("to-value", "subtract") + "reset_value = [1.0, 0.5]\n")
+    with pytest.raises(ValueError, match="one: a spike subtracts the threshold in a graph"):
+        network.to_nir(tmp_path / "own.nir")
+
+
+@pytest.mark.parametrize("numbers", ["f32", "i8"])
+def test_a_recording_without_steps_is_refused(numbers):
+    with pytest.raises(ValueError, match="no steps"):
+        sw.Network.from_toml(LAYERS).to_rust([], numbers=numbers)

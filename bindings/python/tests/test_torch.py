@@ -203,8 +203,33 @@ def test_reckon_learns():
         optimizer.step()
         losses.append(loss.item())
     assert losses[-1] < losses[0] / 2
-    with pytest.raises(ValueError, match="0.875 to 1"):
-        ReckOn(2, 2, keep=0.8)
+    with pytest.raises(ValueError, match="counts of spikes"):
+        network(-spikes)
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (lambda: ReckOn(2, 2, keep=0.8), "0.875 to 1"),
+        (lambda: ReckOn(2, 2, shift=9), "0 to 7 bits, not 9"),
+        (lambda: ReckOn(2, 2, threshold=50000), "1 to 32767, not 50000"),
+        (lambda: TinyOdin(2, 2, threshold=2048), "1 to 2047, not 2048"),
+        (lambda: Controller(2, 2, reset="subtracts"), "to-value, .*, none, not 'subtracts'"),
+        (lambda: Controller(2, 2, keep=1.5), "keep is a share from 0 to 1, not 1.5"),
+        (lambda: Controller(2, 2, keep=float("nan")), "keep is a share from 0 to 1, not nan"),
+    ],
+)
+def test_wrong_arguments_are_named(made, words):
+    with pytest.raises(ValueError, match=words):
+        made()
+
+
+def test_a_diverged_network_is_named():
+    network = Controller(2, 2)
+    with torch.no_grad():
+        network.neurons[0].bias[1] = float("nan")
+    with pytest.raises(ValueError, match="neurons.0.bias is not finite: training has diverged"):
+        network.network()
 
 
 RESETS = ["to-value", "to-value-late", "to-value-held", "subtract", "subtract-late", "subtract-no-delay", "none"]
@@ -283,7 +308,8 @@ def test_controller_takes_networks_of_frameworks(name, framework, rule):
     place = Path(__file__).parents[3] / "laptop/cli/tests/peers/nir" / f"{name}.nir"
     network = sw.Network.from_nir(place, framework, **rule)
     counts = np.random.default_rng(1).poisson(0.3, (200, 2, network.inputs)).astype(np.float32)
-    are_the_same(Controller.from_network(network), network, counts)
+    controller = Controller.from_network(network)
+    assert are_the_same(controller, network, counts) == ("reset" in controller.neurons[-1].rule)
 
 
 def test_controller_learns():

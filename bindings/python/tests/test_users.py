@@ -123,7 +123,7 @@ def test_a_transform_takes_tensors_without_a_copy(x):
         (lambda: sw.StepForward(threshold=1).encode(np.ma.array([[1.0, 2.0]], mask=[[0, 1]])), "sample at 0, 1 is masked"),
         (lambda: sw.score(np.ma.array([1.0, 2.0], mask=[0, 1]), sw.StepForward(threshold=1)), "sample at 1 is masked"),
         (lambda: sw.Position(neurons=9).encode([[0.0, 1.0], [2.0, 2.0]]), "channel 1: "),
-        (lambda: sw.StepForward(threshold=1).encode(np.zeros((2, 3)), axis=2), "axis 2: the array has 2 axes"),
+        (lambda: sw.StepForward(threshold=1).encode(np.zeros((2, 3)), axis=2), "axis 2: there are 2 axes"),
     ],
 )
 def test_what_is_bad_is_named(call, words):
@@ -400,8 +400,10 @@ def test_words_for_a_wrong_scheme_or_axis(x):
     step = sw.StepForward(threshold=0.1)
     spikes = step.encode(x).array
     for call in (step.encode, lambda x, axis: step.decode(spikes, 0, axis), lambda x, axis: step.decode_weighted(spikes, 0, axis)):
-        with pytest.raises(ValueError, match="axis is that of time, a number below 2, and not None"):
+        with pytest.raises(ValueError, match="axis is that of time, a whole number from -2 to 1, and not None"):
             call(x, axis=None)
-        with pytest.raises(ValueError, match="axis 2: the array has 2 axes"):
+        with pytest.raises(ValueError, match="axis 2: there are 2 axes"):
             call(x, axis=2)
+    with pytest.raises(ValueError, match="axis 7: there are 1 axes"):
+        step.decode(step.encode(x[0]).array, 0, 7)
     assert "x" not in sw.schemes and sw.schemes.get("x") is None

@@ -108,6 +108,25 @@ fn networks_that_a_chip_can_hold_lose_nothing() {
     }
 }
 
+/// Whole weights alone do not mean that a network was trained in `ReckOn`'s integers: taken as they are, such small
+/// weights would hardly leak as trained, because the chip rounds potentials down.
+#[test]
+fn reckon_takes_whole_weights_as_they_are_only_if_the_file_says_so() {
+    let layers = r#""layers":[{"weights":[[1,0,1],[0,1,1]],"keep":0.9375,"threshold":2}]"#;
+    let steps: String =
+        (0..400).map(|step| format!("{} {}\n", step % 3, step * step % 3)).collect();
+    let (_steps, steps) = file("steps.txt", steps);
+    let agreeing = |integers: &str| {
+        let (_network, network) = file("whole.json", format!("{{{layers}{integers}}}"));
+        let ran = good(&format!("network {network} {steps} --on reckon --no-held-out"), "");
+        (figures(&ran.stderr, "outputs agree in ")[0], ran.output)
+    };
+    let (scaled, _) = agreeing("");
+    assert!(scaled > 99.0, "{scaled}");
+    let (taken, written) = agreeing(r#", "integers": true"#);
+    assert!(taken < 50.0 && written.contains("threshold: 3"), "{taken}: {written}");
+}
+
 #[test]
 fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
     let ones = |rows: usize, columns: usize| {
@@ -146,7 +165,7 @@ fn what_is_no_network_or_does_not_fit_is_refused_by_name() {
         refused(&command, "", words);
     }
     let (hexarotor, roll) = (flight("hexarotor.csv"), peers("roll.nir").display().to_string());
-    refused(&network(&hexarotor), "", &["hexarotor.csv: neither a NIR graph", "JSON"]);
+    refused(&network(&hexarotor), "", &["hexarotor.csv: no network", "NIR graph", "JSON"]);
     refused(&network("nowhere.nir"), "", &["nowhere.nir: cannot be opened"]);
     let dt = format!("{} --dt 0.1", network(&roll));
     refused(&dt, "", &["roll.nir: node `lif1`", "3e-2 s is shorter than a step of 0.1 s", "--dt"]);

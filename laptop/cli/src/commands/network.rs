@@ -43,7 +43,8 @@ use std::path::{Path, PathBuf};
 ///
 /// JSON is {"layers": [{"name": ..., "weights": [[...]], "recurrent": [[...]], "bias": [...], "keep": 0.9, "threshold":
 /// 1.0}], "readout": {"name": ..., "weights": [[...]], "keep": 0.95}}. Its weights are listed by neuron, then by input;
-/// `keep` is the factor by which a neuron's potential decays in a step.
+/// `keep` is the factor by which a neuron's potential decays in a step. "integers": true says that the network was
+/// trained in a chip's integers; `ReckOn` then takes its numbers as they are.
 ///
 /// TOML, in a file whose name ends in `.toml`, holds all numbers of the controller's form, and the order in which its
 /// neurons decay, fire and reset. The Python package writes it.

@@ -17,7 +17,9 @@ kinds! {
             "the file does not say by which rule its neurons step: {}",
             super::controller::words(spell, *framework, open)
         ),
-        NoNetwork => ("neither a NIR graph, which is an HDF5 file, nor a network in JSON or, with the name .toml, in TOML"),
+        NoNetwork => (
+            "no network: it is neither a NIR graph (HDF5) nor JSON, and its name does not end in .toml"
+        ),
         NotToml { error: toml::de::Error } => ("no network in TOML: {error}"),
         HasRule => (
             "a network in TOML holds the rule by which its neurons step: leave out {}, {} and the like",
@@ -155,7 +157,8 @@ kinds! {
              `tau_syn` of a step, or LIF"
         ),
         HalfRule => (
-            "neurons with a threshold have `reset` and `fires`, those with `current_keep` have `current`, and no others"
+            "`threshold`, `reset` and `fires` go together, as do `current_keep` and `current`; `reset_value` and `recurrent` \
+             need the first, `inner` the second"
         ),
         SilentInside => ("neurons that never fire must be the last"),
         NoReadout => ("tinyODIN has no outputs that never fire; ReckOn has"),

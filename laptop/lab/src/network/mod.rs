@@ -59,7 +59,7 @@ impl File {
         if bytes.trim_ascii_start().starts_with(b"{") {
             return Ok(Self::Plain(plain::read(&bytes).at(|| path)?));
         }
-        if path.extension().is_some_and(|extension| extension == "toml") {
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
             let text = String::from_utf8_lossy(&bytes);
             return Ok(Self::Toml(Model::from_toml(&text).at(|| path)?));
         }

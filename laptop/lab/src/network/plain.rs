@@ -11,6 +11,9 @@ use serde::Deserialize;
 struct Network {
     layers: Vec<Written>,
     readout: Option<WrittenReadout>,
+    /// Whether the network was trained in a chip's integers.
+    #[serde(default)]
+    integers: bool,
 }
 
 #[derive(Deserialize)]
@@ -80,7 +83,8 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Trained> {
         let keep = keep.with_context(|| name.clone())?;
         Ok(Readout { name, weights, keep })
     });
-    Trained::with_readout(layers.collect::<Result<_>>()?, readout.transpose()?)
+    let trained = Trained::with_readout(layers.collect::<Result<_>>()?, readout.transpose()?)?;
+    Ok(Trained { integers: network.integers, ..trained })
 }
 
 fn layer(name: &str, written: Written) -> Result<Layer> {

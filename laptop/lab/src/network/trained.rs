@@ -18,6 +18,9 @@ pub struct Trained {
     /// Output neurons that never fire and that follow the last of `layers`. `None` if the outputs are the spikes of the
     /// last layer.
     pub readout: Option<Readout>,
+    /// Whether the network was trained in a chip's integers. `ReckOn` then takes weights, thresholds and decay factors
+    /// as they are, if all of them are integers of the chip and a step takes one tick.
+    pub integers: bool,
 }
 
 /// Leaky neurons that never fire, and whose potentials are the network's outputs.
@@ -259,7 +262,7 @@ impl Trained {
             let (before, after) = (&pair[0], &pair[1]);
             fits(after.inputs(), &before.name, before.neurons.len()).context(&after.name)?;
         }
-        Ok(Self { layers, readout: None })
+        Ok(Self { layers, readout: None, integers: false })
     }
 
     /// Makes a network whose outputs are the potentials of `readout`, which follows the last of `layers`. If `readout`

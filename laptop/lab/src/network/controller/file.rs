@@ -102,7 +102,12 @@ impl Model {
             let name = layer.name.clone();
             layer.read().context(name)
         });
-        Self::new(Net { layers: layers.collect::<Result<_>>()? }, Vec::new())
+        let layers = layers.collect::<Result<Vec<_>>>()?;
+        for layer in layers.split_last().map_or(&[][..], |(_, before)| before) {
+            let fires = layer.neurons.iter().any(|neuron| neuron.spike.is_some());
+            ensure!(fires, FitKind::SilentInside);
+        }
+        Self::new(Net { layers }, Vec::new())
     }
 }
 
@@ -137,6 +142,8 @@ impl WrittenLayer {
             reset_value: if reset == by_default { vec![] } else { reset },
             weights: turned(weights),
             recurrent: match own {
+                // Spikes that there are not need no weights.
+                _ if !fires => vec![],
                 Recurrent::None => vec![],
                 Recurrent::Full(own) => turned(own),
                 Recurrent::OneToOne(own) => diagonal(own),
@@ -180,7 +187,9 @@ impl WrittenLayer {
         ensure!(
             self.reset.is_some() == fires
                 && self.fires.is_some() == fires
-                && self.current.is_some() != self.current_keep.is_empty(),
+                && self.current.is_some() != self.current_keep.is_empty()
+                && (fires || self.reset_value.is_empty() && self.recurrent.is_empty())
+                && (self.current.is_some() || self.inner.is_empty()),
             FitKind::HalfRule
         );
         let rule = Rule {

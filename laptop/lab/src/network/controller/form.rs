@@ -26,7 +26,7 @@ impl Model {
     /// # Errors
     /// Returns an error if a number is out of its range, or if the controller does not support the network.
     pub(in super::super) fn of_plain(trained: trained::Trained, asked: &Asked) -> Result<Self> {
-        let trained::Trained { layers, readout } = trained;
+        let trained::Trained { layers, readout, .. } = trained;
         let resets = asked.resets.len();
         ensure!(resets < 2, NetworkKind::JsonResets { resets });
         ensure!(

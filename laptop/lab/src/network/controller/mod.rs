@@ -205,7 +205,7 @@ fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
     /// Maximum number of sequences of [`CHECKED`] steps to compare by their number of spikes.
     const TRIED: usize = 200;
     let stride = inputs.len().div_ceil(TRIED).max(1);
-    let windows = inputs.windows(CHECKED.min(inputs.len())).step_by(stride);
+    let windows = inputs.windows(inputs.len().clamp(1, CHECKED)).step_by(stride);
     let lively = |window: &&[Vec<u16>]| {
         let spikes = |train: &Trains| train.iter().map(Vec::len).sum::<usize>();
         let counts = net.run(&window.to_vec()).fired.iter().map(spikes).collect::<Vec<_>>();

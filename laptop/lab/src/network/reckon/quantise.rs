@@ -230,10 +230,9 @@ pub(super) fn quantise(
         .map(|pair| pair.into_iter().map(|seat| original.source(seat)).collect())
         .collect();
     let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
-    let are_whole = |shifts: [u8; 2]| {
-        let mut pairs = pairs.iter();
-        ticks == 1 && pairs.all(|pair| exact_scale(pair, shifts).is_some())
-    };
+    let integers = trained.integers && ticks == 1;
+    let are_whole =
+        |shifts: [u8; 2]| integers && pairs.iter().all(|pair| exact_scale(pair, shifts).is_some());
     let change = |&shifts: &[u8; 2]| {
         let changes = pairs.iter().map(|pair| change(pair, shifts));
         if are_whole(shifts) { -1.0 } else { changes.sum::<f64>() }
@@ -244,7 +243,7 @@ pub(super) fn quantise(
 
     let done = AtomicUsize::new(0);
     let total: usize = places.neurons.iter().flatten().count();
-    let rule = Rule { ticks, resets_to_zero, fires: at };
+    let rule = Rule { ticks, integers, resets_to_zero, fires: at };
     let chosen = pairs.par_iter().map(|pair| {
         let chosen = Chosen::new(pair, &original, shifts, rule);
         progress(done.fetch_add(pair.len(), Ordering::Relaxed) + pair.len(), total);
@@ -316,8 +315,9 @@ fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
     (kept.sum::<f64>() / pair.len().max(1) as f64 * KEEP).round() as u16
 }
 
-/// Returns the scale at which the chip's integers are exactly the trained numbers, as in networks that were trained with
-/// them; `None` if there is none. `shifts` has the same meaning as for [`scale`].
+/// Returns the scale at which the chip's integers are exactly the trained numbers, or `None` if there is no such scale.
+/// Of use only for networks that were trained in the chip's integers: elsewhere, whole numbers may be too small to leak
+/// as trained, since the chip rounds potentials down. `shifts` has the same meaning as for [`scale`].
 fn exact_scale(pair: &[Source], shifts: [u8; 2]) -> Option<f64> {
     let scale = pair.first().map_or(1.0, |source| source.threshold);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
@@ -346,7 +346,7 @@ impl Chosen {
         let keep = mean_keep(pair, rule.ticks);
         let of = |source: &Source| Traces::new(source, keep, rule, original.group(source.seat));
         let traces: Vec<Traces> = pair.iter().map(of).collect();
-        if let Some(scale) = exact_scale(pair, shifts).filter(|_| rule.ticks == 1) {
+        if let Some(scale) = exact_scale(pair, shifts).filter(|_| rule.integers) {
             let of = |(source, traces): (&Source, &Traces)| {
                 Rounded::new(source, traces, keep, scale, shifts, 1)
             };
@@ -383,6 +383,8 @@ impl Chosen {
 pub(super) struct Rule {
     /// Number of ticks in a step.
     pub(super) ticks: usize,
+    /// Whether the network was trained in the chip's integers, and a step takes one tick.
+    pub(super) integers: bool,
     pub(super) resets_to_zero: bool,
     pub(super) fires: Fires,
 }
