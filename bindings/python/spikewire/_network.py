@@ -140,8 +140,11 @@ class Network:
         return self._native.layers()
 
     def run(self, spikes: ArrayLike | Sequence[Sequence[int]], *, numbers: Literal["f32", "i8"] = "f32") -> Ran:
-        """Runs the network from rest, in `numbers` as :meth:`to_rust` writes them out of the same spikes. `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by
-        rising input, or a list with a list for each step: the numbers of the inputs that fire, in order."""
+        """Runs the network from rest, in `numbers` as :meth:`to_rust` writes them out of the same spikes.
+
+        `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by rising input, or a list with a
+        list for each step: the numbers of the inputs that fire, in order.
+        """
         self.reset()
         steps = self._steps(spikes)
         if numbers == "f32":

@@ -117,6 +117,13 @@ impl<'a> Guided<'a> {
         {
             points.extend(self.unknown(point));
         }
+        // If no starting point can be scored, others are drawn.
+        for _ in 0..together {
+            if points.is_empty() && self.known.is_empty() {
+                let point = self.space.drawn(&mut self.chance);
+                points.extend(self.unknown(point));
+            }
+        }
         if points.is_empty() && !self.known.is_empty() {
             self.round += 1;
             self.good = self.best_points();
@@ -271,7 +278,7 @@ impl<'a> Guided<'a> {
     }
 
     /// Returns a function that rates a point by a logarithm: of the expected improvement over the known point `from`,
-    /// times the probability that the point meets the goal's limit. If `from` breaks a limit, of this probability alone.
+    /// times the probability that the point meets the goal's limit. If `from` breaks this limit, of this probability alone.
     fn gain<'b>(&self, models: &'b Models, from: usize) -> impl Fn(&[f64]) -> f64 + use<'b> {
         const LEAST: f64 = 1e-300;
         let (wanted, limited, limit) = self.outputs();
@@ -398,7 +405,8 @@ fn normal(z: f64) -> f64 {
 }
 
 impl Space {
-    /// Draws a point. The ends of whole numbers are drawn more often than what lies between, as many are best there.
+    /// Draws a point. The ends of whole numbers, words and shapes are drawn more often than what lies between, as many
+    /// numbers are best there.
     fn drawn(&self, chance: &mut Chance) -> Vec<f64> {
         let place = |axis: &Axis| match chance.part() {
             part if is_whole(axis.role) => (1.4 * part - 0.2).clamp(0.0, 1.0),
@@ -450,7 +458,7 @@ mod tests {
     use catalogue::run::{Asked, SampleType};
     use std::collections::HashSet;
 
-    /// Limits the latency such that half of drawn points keep to it. With all settings that a search proposes a codec can
+    /// Limits the latency such that at least half of drawn points keep to it. With all settings that a search proposes a codec can
     /// be built, none are proposed twice, and all keep to the limit.
     #[test]
     fn proposed_settings_are_new_and_keep_to_the_limit() {
@@ -486,6 +494,7 @@ mod tests {
                 let scored: Vec<_> = options.iter().map(|own| problem.score(own).ok()).collect();
                 guided.tell(points, &scored);
             }
+            assert!(!known.is_empty(), "{}", scheme.name());
         }
     }
 }
