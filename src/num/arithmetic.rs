@@ -249,7 +249,7 @@ macro_rules! integer_arithmetic {
 
             #[inline]
             fn plus(self, step: Self) -> Self {
-                Self::of_level(self.level().saturating_add(step.level()))
+                Self::of_level(Self::climb(self.level(), step.level()))
             }
 
             #[inline]

@@ -31,10 +31,10 @@ fn add_halves(one: f32, other: f32) -> f32 {
     one * 0.5 + other * 0.5
 }
 
-/// The first `count` binary digits of `rest / range`, exactly, where those of the rounded quotient are `rounded`.
+/// The first `count` binary digits of `rest / range`, of which the rounded quotient is the whole number `rounded`.
 #[cold]
 #[inline(never)]
-fn digit_by_digit(mut rest: f32, range: f32, count: u32, rounded: u32) -> u32 {
+fn digits_at_an_edge(mut rest: f32, range: f32, count: u32, rounded: u32) -> u32 {
     // Dividing by a power of two does not round, unless the distance itself has been rounded up to the range.
     if is_power_of_two(range) && rounded >> (count & 31) == 0 {
         return rounded;
@@ -73,7 +73,7 @@ impl Binary for f32 {
         let (rest, range) = (self - min, max - min);
         let place = rest / range * (1_u32 << (count & 31)) as f32;
         let digits = place as u32;
-        if digits as f32 == place { digit_by_digit(rest, range, count, digits) } else { digits }
+        if digits as f32 == place { digits_at_an_edge(rest, range, count, digits) } else { digits }
     }
 
     /// `min + (max - min) (2 digits + 1) / 2^(count + 1)`: the quotient is exact, the rest rounded once each.
@@ -121,9 +121,10 @@ fn without_room(rest: u32, range: u32, count: u32) -> u32 {
     by_doubling(rest, range, count)
 }
 
-/// Whether the core divides, and counts leading zeros, in an instruction: every one but a Cortex-M0, which has no
-/// compare-and-swap either.
-pub(crate) const HAS_DIVISION: bool = !cfg!(target_arch = "arm") || cfg!(target_has_atomic = "32");
+/// Whether the core is a Cortex-M0, which calls the runtime to divide and to count leading zeros. It is the only one
+/// without compare-and-swap. `cargo verify scalar` tests its forms on the host: `--cfg without_vectors`.
+pub(crate) const IS_CORTEX_M0: bool =
+    cfg!(any(without_vectors, all(target_arch = "arm", not(target_has_atomic = "32"))));
 
 macro_rules! integer {
     // 16 digits of a range of 16 bits fit 32.
@@ -143,7 +144,7 @@ macro_rules! integer {
                 let [value, min, max] = [self.max(min), min, max].map(|x| i32::from($to_bits(x)));
                 let range = max.wrapping_sub(min).cast_unsigned();
                 let rest = value.wrapping_sub(min).cast_unsigned();
-                if !HAS_DIVISION {
+                if IS_CORTEX_M0 {
                     by_doubling(rest, range, count)
                 } else if <$bits>::BITS == 16 || range.leading_zeros() >= count {
                     (rest << (count & 31)).checked_div(range).unwrap_or(0)

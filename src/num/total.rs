@@ -50,8 +50,8 @@ pub trait Total: Copy + PartialOrd + Debug + Send + Sync + Stored {
         }
     }
 
-    /// `self + above`, less `width` if the sum reaches that, and whether it does; `self` is less than `width`, `above` at most
-    /// that.
+    /// Returns `self + above`, less `width` if the sum reaches `width`, and whether it does. `self` is less than `width`,
+    /// and `above` at most `width`.
     #[inline]
     fn carried(self, above: Self, width: Self) -> (Self, bool) {
         let sum = self.plus(above);
@@ -183,17 +183,9 @@ macro_rules! integer_total {
                 self.$plus((1 as Self).wrapping_shl(times.into()) / 2).halved(times)
             }
 
-            // A width of 32-bit samples fits 32 bits, as does what the sum lacks of it.
+            // A width fits 32 bits without a sign, as does what the sum lacks of it.
             #[inline]
             fn carried(self, above: Self, width: Self) -> (Self, bool) {
-                if Self::BITS == 32 {
-                    let sum = self.wrapping_add(above);
-                    return if sum >= width {
-                        (sum.wrapping_sub(width), true)
-                    } else {
-                        (sum, false)
-                    };
-                }
                 let [sum, above, width] = [self, above, width].map(|part| part as u32);
                 let lacking = width.wrapping_sub(sum);
                 if above >= lacking {

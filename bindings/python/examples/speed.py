@@ -5,7 +5,7 @@
     python bindings/python/examples/speed.py --check    # fails if a scheme is not as many times faster as it should be
 
 Plain Python is the pseudo-code of the paper line by line, on NumPy arrays: what one writes first. NumPy is the same
-work on whole arrays, where a code has such a form. All run on one thread; RAYON_NUM_THREADS gives spikewire more.
+work on whole arrays, where a code has such a form. All run on one thread, as processor time adds up that of all threads.
 """
 
 import argparse
@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-os.environ.setdefault("RAYON_NUM_THREADS", "1")  # read at the first work
+os.environ["RAYON_NUM_THREADS"] = "1"  # read at the first work
 
 import spikewire as sw
 

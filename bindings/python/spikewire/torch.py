@@ -208,7 +208,7 @@ class _Chip(nn.Module):
 
     #: The least and the largest weight.
     _RANGE = (-8, 7)
-    #: What a weight of 1 adds to a potential.
+    #: The amount that a weight of 1 adds to a potential.
     _unit = 1
     #: The largest potential.
     _MOST = 2047
@@ -528,7 +528,8 @@ class _Layer(nn.Module):
             self.bias = nn.Parameter(torch.zeros(self.weights.shape[1]))
 
     def unit(self) -> tuple[Tensor, int]:
-        """How many integers a weight of 1 is, by neuron, and how many a potential has of each: as `spikewire network` chooses."""
+        """The scales that `spikewire network` chooses: the integer of a weight of 1, for each neuron, and the factor by which
+        potentials are finer than weights."""
         if self.numbers == "f32":
             return torch.ones_like(self.keep), 1
         own = {name: own.detach().double().abs() for name, own in self.named_parameters()}
@@ -554,7 +555,7 @@ class _Layer(nn.Module):
         return held
 
     def written(self) -> dict[str, Any]:
-        """What the layer's file holds."""
+        """The layer in the form of a network's file."""
         scale, finer = self.unit()
         numbers = {name: own.detach().double() for name, own in self.held().items()}
         for name, own in numbers.items():

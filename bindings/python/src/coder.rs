@@ -218,7 +218,7 @@ impl Coder {
         if length == 0 && count > 0 {
             return Err(value(anyhow!("channel 0 has no samples")));
         }
-        let is_wide = is_wide(count, count * length) && work::has_threads(py)?;
+        let is_wide = work::threads(py, count, count * length)? > 1;
         let fitted = || match samples.bad(self.sample) {
             Some((channel, bad)) => Err(told(channel, 0, &bad)),
             None => self.fitted(&samples, is_shared, is_wide),
@@ -337,7 +337,10 @@ impl Fitted {
     fn has_lanes(&self, count: usize, length: usize) -> bool {
         /// Copies of longer ones would take too much memory.
         const MOST: usize = 1 << 20;
-        count > 1 && length <= MOST && self.start(0).is_ok_and(|codec| codec.has_lanes())
+        /// Samples times taps; with more, Ctrl-C would wait.
+        const WORK: usize = 1 << 24;
+        let suits = |codec: Codec| codec.has_lanes() && length * (codec.latency() + 1) <= WORK;
+        count > 1 && length <= MOST && self.start(0).is_ok_and(suits)
     }
 
     /// How many cells a row has.
@@ -369,13 +372,6 @@ const PIECE: usize = 1 << 16;
 fn run_of(cells: usize) -> usize {
     const CACHED: usize = 1 << 13;
     (CACHED / cells.max(1)).clamp(1, CACHED).next_multiple_of(RUN)
-}
-
-/// Returns whether so many channels of so many numbers in all are worth more threads than one.
-pub(crate) fn is_wide(channels: usize, numbers: usize) -> bool {
-    /// About what one thread does while another wakes up.
-    const FEW: usize = 1 << 13;
-    channels > 1 && numbers > FEW
 }
 
 #[pymethods]
@@ -417,12 +413,15 @@ impl Fitted {
         let output = PyArray1::zeros(py, total * width, false);
         let mut access = output.readwrite();
         let cells = access.as_slice_mut()?;
-        let is_wide = is_wide(count, total * width) && work::has_threads(py)?;
+        let threads = work::threads(py, count, total * width)?;
+        let is_wide = threads > 1;
         let is_one = self.channels.len() == 1 && self.count == count;
         let goes_at_once = is_one && (length <= PIECE / RUN || self.has_lanes(count, length));
         let grid = samples.grid().filter(|_| goes_at_once);
         let lanes = if grid.is_some() { Vec::new() } else { samples.lanes() };
-        let run = if grid.is_some() { run_of(length * width) } else { 1 };
+        // Every thread has a share.
+        let most = count.div_ceil(threads).max(1);
+        let run = if grid.is_some() { run_of(length * width).min(most) } else { 1 };
         let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {
             let encode = |bench: &mut Bench, (place, room): (usize, &mut [i8])| {
                 let from = place * run;
@@ -465,7 +464,7 @@ impl Fitted {
                 let output = PyArray1::<$type>::zeros(py, total, false);
                 let mut access = output.readwrite();
                 let values = access.as_slice_mut()?;
-                let is_wide = is_wide(channels, total * width);
+                let is_wide = work::threads(py, channels, total * width)? > 1;
                 let done = work::run(py, is_wide, total, progress, |meter| {
                     let length = (total / channels.max(1)).max(1);
                     let decode = |(place, (rows, room)): (usize, (&[i8], &mut [$type]))| {

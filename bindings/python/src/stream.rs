@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::array::{Lane, Samples};
 use crate::channel;
-use crate::coder::{Coder, is_wide, told};
+use crate::coder::{Coder, told};
 use crate::error::value;
 use crate::work;
 
@@ -78,7 +78,7 @@ impl Encoding {
     }
 
     /// Starts on the samples that wait, and encodes them.
-    fn begin(&mut self) -> Result<Vec<Vec<i8>>> {
+    fn begin(&mut self, is_wide: bool) -> Result<Vec<Vec<i8>>> {
         let looks_back = self.coder.looks_back();
         let mut running = Vec::new();
         for (place, waiting) in self.waiting.iter().enumerate() {
@@ -91,7 +91,7 @@ impl Encoding {
         self.running = running;
         let waiting: Vec<Vec<f64>> = self.waiting.iter_mut().map(std::mem::take).collect();
         let lanes: Vec<Lane> = waiting.iter().map(|own| Lane::F64(own.as_slice().into())).collect();
-        self.push(&lanes)
+        self.push(&lanes, is_wide)
     }
 
     fn set(&mut self, pickled: &Pickled) -> Result<()> {
@@ -113,7 +113,7 @@ impl Encoding {
         Ok(())
     }
 
-    fn push(&mut self, lanes: &[Lane]) -> Result<Vec<Vec<i8>>> {
+    fn push(&mut self, lanes: &[Lane], is_wide: bool) -> Result<Vec<Vec<i8>>> {
         let (width, sample) = (self.width(), self.coder.sample);
         let code = |(place, (channel, lane)): (usize, (&mut Codec, &Lane))| {
             let mut cells = vec![0; lane.len() * width];
@@ -122,21 +122,21 @@ impl Encoding {
             cells.truncate(made * width);
             Ok(cells)
         };
-        if is_wide(lanes.len(), lanes.iter().map(Lane::len).sum::<usize>() * width) {
+        if is_wide {
             self.running.par_iter_mut().zip(lanes).enumerate().map(code).collect()
         } else {
             self.running.iter_mut().zip(lanes).enumerate().map(code).collect()
         }
     }
 
-    fn encode_all(&mut self, lanes: &[Lane]) -> Result<Vec<Vec<i8>>> {
+    fn encode_all(&mut self, lanes: &[Lane], is_wide: bool) -> Result<Vec<Vec<i8>>> {
         for (channel, lane) in lanes.iter().enumerate() {
             if let Some(bad) = lane.bad(self.coder.sample) {
                 return Err(told(channel, 0, &bad));
             }
         }
         if !self.running.is_empty() {
-            return self.push(lanes);
+            return self.push(lanes, is_wide);
         }
         for (waiting, lane) in self.waiting.iter_mut().zip(lanes) {
             waiting.extend(lane.to_vec());
@@ -144,14 +144,14 @@ impl Encoding {
         if self.waiting.iter().any(|waiting| waiting.len() < self.coder.looks_back().max(1)) {
             return Ok(vec![Vec::new(); lanes.len()]);
         }
-        self.begin()
+        self.begin(is_wide)
     }
 
-    fn finish_all(&mut self) -> Result<Vec<Vec<i8>>> {
+    fn finish_all(&mut self, is_wide: bool) -> Result<Vec<Vec<i8>>> {
         let width = self.width();
         let mut cells = vec![Vec::new(); self.waiting.len()];
         if self.running.is_empty() && self.waiting.iter().all(|waiting| !waiting.is_empty()) {
-            cells = self.begin()?;
+            cells = self.begin(is_wide)?;
         }
         for (cells, mut channel) in cells.iter_mut().zip(self.running.drain(..)) {
             let start = cells.len();
@@ -185,8 +185,8 @@ impl Encoder {
         }
         let held: usize = own.waiting.iter().map(Vec::len).sum();
         let count = held + lanes.iter().map(Lane::len).sum::<usize>();
-        let is_wide = is_wide(lanes.len(), count * own.width());
-        let cells = work::detached(py, is_wide, || own.encode_all(&lanes))?;
+        let is_wide = work::threads(py, lanes.len(), count * own.width())? > 1;
+        let cells = work::detached(py, is_wide, || own.encode_all(&lanes, is_wide))?;
         Ok(cells.map_err(value)?.concat().into_pyarray(py))
     }
 
@@ -206,8 +206,8 @@ impl Encoder {
         let mut own = self.taken()?;
         let own = &mut *own;
         let held: usize = own.waiting.iter().map(Vec::len).sum();
-        let is_wide = is_wide(own.waiting.len(), held * own.width());
-        let cells = work::detached(py, is_wide, || own.finish_all())?;
+        let is_wide = work::threads(py, own.waiting.len(), held * own.width())? > 1;
+        let cells = work::detached(py, is_wide, || own.finish_all(is_wide))?;
         Ok(cells.map_err(value)?.concat().into_pyarray(py))
     }
 }

@@ -69,13 +69,15 @@ fn pool(_: Python) -> PyResult<Arc<ThreadPool>> {
     Ok(threads)
 }
 
-/// Returns whether this process has several threads. A single one would work on another core than the caller, with
-/// nothing in its cache.
+/// Returns the number of threads that share work on so many channels of so many numbers in all. One works without the
+/// pool, whose single thread would be on another core than the caller, with nothing in its cache.
 ///
 /// # Errors
 /// The system has no more threads.
-pub(crate) fn has_threads(py: Python) -> PyResult<bool> {
-    Ok(pool(py)?.current_num_threads() > 1)
+pub(crate) fn threads(py: Python, channels: usize, numbers: usize) -> PyResult<usize> {
+    /// About what one thread does while another wakes up.
+    const FEW: usize = 1 << 13;
+    if channels > 1 && numbers > FEW { Ok(pool(py)?.current_num_threads()) } else { Ok(1) }
 }
 
 /// Works without the interpreter's lock: on all threads of the process if `is_wide`, where alone rayon may be used.

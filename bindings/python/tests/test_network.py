@@ -97,7 +97,7 @@ keep = [0.9, 0.9]
 threshold = [1.0, 1.0]
 weights = [[0.5, 1.0], [0.5, 0.25]]
 """
-#: What says how the neurons fire, and what they keep.
+#: The lines on how neurons fire and leak.
 FIRING = LAYERS[LAYERS.index("reset") : LAYERS.index("weights")]
 #: A layer that never fires, before another.
 SILENT = """[[layers]]

@@ -16,7 +16,7 @@ const CHANNELS: usize = 6;
 const STEP: f64 = 0.05;
 const ERROR: f64 = 0.1;
 
-/// What encodes one channel, for comparison.
+/// Another crate's encoder of one channel.
 type Peer = Box<dyn Fn(&[f64])>;
 
 /// A code, its name in the catalogue, its options, and ferromorphic's if it has that code.

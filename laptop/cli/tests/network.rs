@@ -348,16 +348,17 @@ fn a_network_that_was_trained_without_the_chip_in_mind_keeps_most_of_its_steps()
 /// one tick, and gates keep its neurons from firing in between.
 #[test]
 fn reckon_fires_as_frameworks_do_with_several_ticks_a_step() {
-    for (name, reset) in [
-        ("snntorch", "subtract-late"),
-        ("snntorch", "subtract-no-delay"),
-        ("snntorch", "to-value"),
-        ("snntorch_one_to_one", "to-value"),
-        ("snntorch_one_to_one", "subtract-late"),
-        ("spikingjelly", "subtract"),
-        ("spikingjelly", "to-value"),
-        ("spikingjelly_recurrent", "subtract"),
-        ("spikingjelly_recurrent", "to-value"),
+    for (name, reset, least) in [
+        ("snntorch", "subtract-late", 90.0),
+        ("snntorch", "subtract-no-delay", 90.0),
+        ("snntorch", "to-value", 90.0),
+        ("snntorch_one_to_one", "to-value", 90.0),
+        ("snntorch_one_to_one", "subtract-late", 90.0),
+        ("snntorch_one_to_one", "subtract-no-delay", 80.0),
+        ("spikingjelly", "subtract", 90.0),
+        ("spikingjelly", "to-value", 90.0),
+        ("spikingjelly_recurrent", "subtract", 90.0),
+        ("spikingjelly_recurrent", "to-value", 90.0),
     ] {
         let at = |end: &str| peers("nir").join(format!("{name}.{end}")).display().to_string();
         let recorded = fs::read_to_string(at(&format!("{reset}.txt"))).unwrap();
@@ -377,7 +378,7 @@ fn reckon_fires_as_frameworks_do_with_several_ticks_a_step() {
         );
         let held_out = ran.stderr.split("held out:").nth(1).unwrap();
         let share = figures(held_out, "outputs agree in ")[2];
-        assert!(share >= 90.0, "{name} {reset}: {}", ran.stderr);
+        assert!(share >= least, "{name} {reset}: {}", ran.stderr);
         assert_eq!(ran.output.matches("ReckOnTick {").count(), 4, "{}", ran.output);
     }
 }

@@ -1,6 +1,6 @@
 //! The steps of `cargo verify`, one function for each; `verify` lists them.
 
-use crate::common::{cargo, output, paths, run};
+use crate::common::{cargo, lint, output, paths, run};
 use crate::figures::{jumps, schemes};
 use crate::products::templates::{TEMPLATES, Template};
 use crate::programs::host::{spikewire, tests};
@@ -69,7 +69,7 @@ pub fn each_feature() -> Result<()> {
         }
     }
     // That all public data can be logged.
-    run(&mut cargo("check --package host-tests --features defmt --test defmt"))
+    run(lint(&mut cargo("check --package host-tests --features defmt --test defmt")))
 }
 
 /// Tests every pair of features of each crate that flies. If one feature enables the other, the pair equals that one

@@ -12,15 +12,20 @@ use std::{fs, path::PathBuf, thread};
 
 /// Runs the named programs, or all, on all boards, and fails if one prints another line than the host.
 pub fn firmware(names: &[String]) -> Result<()> {
-    compare_on(names, Board::all())
+    compare_on(names, Board::all(), "-")
 }
 
 /// Runs all programs on the boards of every day.
 pub fn every_day() -> Result<()> {
-    compare_on(&[], Board::every_day())
+    compare_on(&[], Board::every_day(), "=")
 }
 
-fn compare_on(names: &[String], boards: impl Iterator<Item = &'static Board>) -> Result<()> {
+/// Runs the named programs, or all, on these boards. On docs/bits.md, boards that do not run must have the mark `absent`.
+fn compare_on(
+    names: &[String],
+    boards: impl Iterator<Item = &'static Board>,
+    absent: &'static str,
+) -> Result<()> {
     needs::ensure_met()?;
     let all = programs()?;
     let chosen = if names.is_empty() { &all } else { names };
@@ -36,7 +41,7 @@ fn compare_on(names: &[String], boards: impl Iterator<Item = &'static Board>) ->
             differing.push(program.as_str());
         }
         if FLIGHT_LOG.contains(&program.as_str()) {
-            flown.extend(marked(&host, &outcomes));
+            flown.extend(marked(&host, &outcomes, absent));
         }
     }
     if FLIGHT_LOG.iter().all(|program| chosen.iter().any(|chosen| chosen == program)) {
@@ -56,7 +61,7 @@ pub fn write() -> Result<()> {
     let mut flown = Vec::new();
     for program in FLIGHT_LOG {
         let (host, outcomes) = run(program, &boards)?;
-        flown.extend(marked(&host, &outcomes));
+        flown.extend(marked(&host, &outcomes, "-"));
     }
     bits::write(&bits::table(&flown))
 }
@@ -155,10 +160,10 @@ fn compare(program: &str, host: &str, outcomes: &[Outcome]) -> Result<bool> {
     Ok(agree)
 }
 
-/// Returns the host's lines, each with its mark for every board. One that did not run is taken to agree, as on the page.
-fn marked(host: &str, outcomes: &[Outcome]) -> Vec<(String, String)> {
+/// Returns the host's lines, each with its mark for every board: `absent` for one that did not run.
+fn marked(host: &str, outcomes: &[Outcome], absent: &'static str) -> Vec<(String, String)> {
     let of = |board: &Board| outcomes.iter().find(|outcome| outcome.board.core == board.core);
-    let mark = |board, line| of(board).map_or("=", |outcome| outcome.mark(line));
+    let mark = |board, line| of(board).map_or(absent, |outcome| outcome.mark(line));
     let marks = |line| Board::all().map(|board| mark(board, line)).collect::<Vec<_>>();
     host.lines().map(|line| (line.to_owned(), marks(line).join(" "))).collect()
 }

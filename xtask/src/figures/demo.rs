@@ -38,7 +38,9 @@ pub fn fly() -> Result<PathBuf> {
     let path = paths::target().join("demo.svg");
     picture::draw(&path, &signal, &flown)?;
     println!("The signal, its spikes and its reconstruction: {}", path.display());
-    println!("Every sample type on every core, and all other checks: cargo verify");
+    println!(
+        "Every sample type on every core: cargo verify all-cores; the everyday checks: cargo verify"
+    );
 
     if flown != here {
         bail!("the board and this computer differ");

@@ -7,8 +7,8 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Prepares `cargo test` for the whole workspace, with every feature except the debug probe's driver and `defmt`, whose
-/// symbols no linker takes into a shared library, as the Python package is; lints while compiling.
+/// Prepares `cargo test` for the whole workspace, with every feature except two: the debug probe's driver, and `defmt`,
+/// whose symbols keep a shared library such as the Python package from linking. Lints while compiling.
 pub fn tests(args: &str) -> Result<Command> {
     workspace("test", args)
 }

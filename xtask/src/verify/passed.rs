@@ -60,11 +60,13 @@ impl Passed {
             let _ = fs::write(place().join(name), read(told, apart));
         }
     }
-}
 
-/// Records the processor time of a step. If that cannot be written, the list only lacks it.
-pub fn took(name: &str, seconds: f64) {
-    let _ = fs::write(times(name), format!("{seconds:.0}"));
+    /// Records the processor time of a step that has passed. If that cannot be written, the list only lacks it.
+    pub fn took(&self, name: &str, seconds: f64) {
+        if self.0.is_some() {
+            let _ = fs::write(times(name), format!("{seconds:.0}"));
+        }
+    }
 }
 
 /// Returns the seconds of processor time that a step took when it last ran here.

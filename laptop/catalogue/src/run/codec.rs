@@ -469,7 +469,7 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
         }
     }
 
-    /// Encodes recordings one after the other; see [`Codec::encode_channels`].
+    /// Encodes recordings, at once in lanes where that is faster; see [`Codec::encode_channels`].
     fn encode_each<T: Pod + Into<f64>>(
         &mut self,
         samples: &[T],
@@ -479,10 +479,12 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
     ) {
         let (shape, width) = (self.shape, length * self.seen.len());
         let count = samples.len() / length;
+        let (samples, cells) = (&samples[..count * length], &mut cells[..count * width]);
+        let least = self.lanes.as_ref().map_or(usize::MAX, Lanes::least);
         let mut uses_lanes = self.lanes.as_ref().is_some_and(|lanes| !lanes.is_slow_at_rest());
         for place in 0..count {
             let (rest, rows) = (&samples[place * length..], &mut cells[place * width..]);
-            if uses_lanes && place + 1 < count && self.encode_in_lanes(rest, length, rows) {
+            if uses_lanes && count - place >= least && self.encode_in_lanes(rest, length, rows) {
                 return;
             }
             let (own, rows) = (&rest[..length], &mut rows[..width]);

@@ -1,5 +1,6 @@
 //! Bernoulli, the random rate code: the higher the signal, the likelier a spike.
 
+use core::array;
 use core::marker::PhantomData;
 use core::ops::RangeInclusive;
 
@@ -200,7 +201,7 @@ impl<S: Sample, G: Rng, A: Averaging> Scheme for Bernoulli<S, G, A> {
         for (spikes, samples) in written.iter_mut().zip(grouped) {
             let is_within = |sample: &S| *sample >= min && *sample <= max;
             if samples.iter().fold(true, |all, sample| all & is_within(sample)) {
-                let draws = [(); GROUP].map(|()| state.generator.next_u32() >> 16);
+                let draws = array::from_fn::<_, GROUP, _>(|_| state.generator.next_u32() >> 16);
                 for ((spike, &sample), draw) in spikes.iter_mut().zip(samples).zip(draws) {
                     let is_drawn = sample.offset_from(min).is_drawn(width, draw);
                     spike.write(if is_drawn { Spike::Up } else { Spike::None });

@@ -47,7 +47,7 @@ impl<S: Simd, R: Fits> Code<S> for Filter<R> {
     }
 }
 
-/// Where a window lies.
+/// The place of a window in the recording.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     /// The number of its first sample, modulo the number of taps.
@@ -131,7 +131,8 @@ impl Fits for Short {
     }
 }
 
-/// What a residual lacks of its tap; the crate's scheme adds up the double, which rounds alike.
+/// Returns by how much a residual falls short of its tap. The crate's scheme adds up twice this amount, which rounds
+/// alike.
 #[inline(always)]
 fn lack<S: Simd>(simd: S, residual: S::f32s, tap: f32) -> S::f32s {
     simd.max_f32s(simd.sub_f32s(simd.splat_f32s(tap), residual), simd.splat_f32s(0.0))

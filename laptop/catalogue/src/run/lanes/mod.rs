@@ -81,6 +81,14 @@ impl Lanes {
         (arch.dispatch(Width) > 1).then_some(own)
     }
 
+    /// Returns how many channels take less time at once than one after the other.
+    pub(super) fn least(&self) -> usize {
+        match self.rule {
+            Rule::MovingWindow { .. } | Rule::Integrate(_) => 3,
+            _ => 2,
+        }
+    }
+
     /// Returns whether one channel after the other takes less time where there are few spikes: step forward, which
     /// compares several samples of a channel at once as long as none leaves the band.
     pub(super) fn is_slow_at_rest(&self) -> bool {
@@ -232,12 +240,13 @@ impl Call<'_> {
         simd: S,
         code: impl Fn(Vec<f32>, &Recordings) -> C,
     ) -> bool {
-        let Self { lanes, recordings, cells } = self;
-        let (length, group) = (recordings.length, recordings.length * S::F32_LANES);
-        let groups = recordings.samples.chunks(group).zip(cells.chunks_mut(group));
+        // Never called so: it spares compiling the rest without vectors.
         if S::F32_LANES == 1 {
             return false;
         }
+        let Self { lanes, recordings, cells } = self;
+        let (length, group) = (recordings.length, recordings.length * S::F32_LANES);
+        let groups = recordings.samples.chunks(group).zip(cells.chunks_mut(group));
         let mut are_sound = true;
         for (samples, cells) in groups {
             let own = Recordings { samples, ..recordings };
@@ -259,7 +268,7 @@ fn encode_group<S: Simd>(
     length: usize,
     cells: &mut [i8],
 ) {
-    /// How many samples of each channel are encoded in one go.
+    /// Number of samples of each channel that are encoded before the next ones are read.
     const BLOCK: usize = 512;
     let Lanes { shift, residuals, spikes, .. } = lanes;
     let (width, ahead) = (S::F32_LANES, code.look_ahead());

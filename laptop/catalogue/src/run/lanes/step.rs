@@ -135,7 +135,8 @@ pub(super) struct Integrate<S: Simd> {
 impl<S: Simd> Integrate<S> {
     #[inline(always)]
     pub(super) fn new(simd: S, scheme: &IntegrateAndFire<f32, 127>) -> Self {
-        let part = (-f32::from(scheme.power())).exp2();
+        // 2 to the power of `-power`, exactly.
+        let part = f32::from_bits((127 - u32::from(scheme.power())) << 23);
         Self {
             threshold: simd.splat_f32s(scheme.threshold()),
             leak: scheme.is_leaky().then(|| simd.splat_f32s(part)),

@@ -537,19 +537,26 @@ impl Quantised {
 
     fn put(&mut self, source: &Source, rounded: &Rounded, scale: f64, shifts: [u8; 2]) {
         let at = self.places.of(source.seat);
+        // Other parts have copies of the weights, or weights that were not trained.
+        let counts = source.seat.part == Part::Main;
         let change = &mut self.changes[source.seat.layer];
+        let mut tell = |weight, held, scale| {
+            if counts {
+                change.held(weight, held, scale);
+            }
+        };
         let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
         for ((row, &weight), &held) in
             self.inputs.iter_mut().zip(&source.inputs).zip(&rounded.inputs)
         {
             if weight != 0.0 {
-                change.held(weight, held, inputs);
+                tell(weight, held, inputs);
                 row[at] = held;
             }
         }
         for (&(from, held), &(_, weight)) in rounded.recurrent.iter().zip(&source.recurrent) {
             if weight != 0.0 {
-                change.held(weight, held, recurrent);
+                tell(weight, held, recurrent);
                 self.recurrent[from][at] = held;
             }
         }

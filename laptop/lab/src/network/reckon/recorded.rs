@@ -192,7 +192,9 @@ impl<'a> Recorded<'a> {
             own.push((number(Part::Over, neuron), -1.0));
             own.push((number(Part::Return, neuron), kept));
             source.bias = layer.bias[neuron] / threshold;
-            source.gate = (SPARE * self.group(seat).rests[neuron] * unit * kept - 1.0).max(0.5);
+            // A neuron may rest at up to twice its threshold without firing, also where the recording shows none.
+            let rest = self.group(seat).rests[neuron] * unit;
+            source.gate = (SPARE * rest * kept - 1.0).max(2.0 * kept - 0.9);
         } else {
             // The layer's own spikes, and a reset that subtracts, act at the tick after the layer has compared. Until
             // it compares again, less is left of them than in training, where they act when the neuron compares.
