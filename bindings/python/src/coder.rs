@@ -12,7 +12,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{Grid, Lane, RUN, Samples, Tile, View};
+use crate::array::{Grid, Lane, RUN, Samples, Tile, View, are_good};
 use crate::channel::{self, Bad};
 use crate::error::value;
 use crate::stream::{Decoder, Encoder};
@@ -147,20 +147,25 @@ impl Coder {
         }
         let lanes = &samples.lanes()[..];
         let settle = |(place, group): (usize, &[Lane])| {
-            let calibrated = needs_signal.then(|| {
-                let mut calibrated = Calibrated::of(self.sample, &self.asked);
-                for lane in group {
-                    lane.observe(&mut calibrated);
-                }
-                calibrated
-            });
             let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
-            let (first, calibrated) = (first(lane), calibrated.as_ref());
-            let channels = if is_shared { 1 } else { lanes.len() };
-            let settled = if is_one {
-                self.settle(&first, calibrated)
+            let (first, channels) = (first(lane), if is_shared { 1 } else { lanes.len() });
+            let one;
+            let own = if is_one {
+                self
             } else {
-                self.channel(place, channels)?.settle(&first, calibrated)
+                one = self.channel(place, channels)?;
+                &one
+            };
+            let settle = |mut calibrated: Calibrated| {
+                group.iter().for_each(|lane| lane.observe(&mut calibrated));
+                own.settle(&first, Some(&calibrated))
+            };
+            // The crate's sums say what is wrong, if anything is.
+            let settled = if needs_signal {
+                settle(Calibrated::unordered(sample, &self.asked))
+                    .or_else(|_| settle(Calibrated::of(sample, &self.asked)))
+            } else {
+                own.settle(&first, None)
             };
             if lanes.len() > 1 && !is_shared {
                 settled.with_context(|| format!("channel {place}"))
@@ -219,9 +224,14 @@ impl Coder {
             return Err(value(anyhow!("channel 0 has no samples")));
         }
         let is_wide = work::threads(py, count, count * length)? > 1;
-        let fitted = || match samples.bad(self.sample) {
-            Some((channel, bad)) => Err(told(channel, 0, &bad)),
-            None => self.fitted(&samples, is_shared, is_wide),
+        let needs_signal = self.scheme.needs_signal(&self.asked).is_some();
+        let fitted = || {
+            // Encoding looks at the samples that do not tell settings.
+            let bad = if needs_signal { samples.bad(self.sample) } else { None };
+            match bad {
+                Some((channel, bad)) => Err(told(channel, 0, &bad)),
+                None => self.fitted(&samples, is_shared, is_wide),
+            }
         };
         work::detached(py, is_wide, fitted)?.map_err(value)
     }
@@ -368,6 +378,9 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
 
+/// Ends the work; which sample it is, the first one, is then looked for.
+const BAD: &str = "a sample is not finite";
+
 /// Returns how many channels with this many cells each a thread encodes in one go, so that they stay in the cache.
 fn run_of(cells: usize) -> usize {
     const CACHED: usize = 1 << 13;
@@ -442,7 +455,11 @@ impl Fitted {
                 cells.chunks_mut(size).enumerate().try_for_each(|own| encode(&mut bench, own))
             }
         })?;
-        done.map_err(value)?;
+        // The first bad sample, whichever thread met one.
+        done.map_err(|error| {
+            let bad = samples.bad(self.sample);
+            value(bad.map_or(error, |(channel, bad)| told(channel, 0, &bad)))
+        })?;
         drop(access);
         Ok(output)
     }
@@ -533,7 +550,7 @@ impl Fitted {
 }
 
 impl Fitted {
-    /// Encodes neighbouring channels, which share their settings. The samples are good, as those that tell the settings are.
+    /// Encodes neighbouring channels, which share their settings.
     fn encode_grid(
         &self,
         bench: &mut Bench,
@@ -552,6 +569,9 @@ impl Fitted {
         };
         let (first, count) = (channels.start as u64, channels.len());
         let samples = grid.channels(channels, &mut bench.tile);
+        if !are_good(samples, self.sample) {
+            bail!(BAD);
+        }
         codec.encode_channels(samples, length, first, room);
         meter.add(count * length);
         Ok(())
@@ -576,6 +596,9 @@ impl Fitted {
                 return Ok(());
             }
             let part = lane.part(start..lane.len().min(start + PIECE));
+            if part.bad(self.sample).is_some() {
+                bail!(BAD);
+            }
             made += part.encode(codec, &mut room[made * width..]);
             meter.add(part.len());
         }
