@@ -157,7 +157,9 @@ impl Coder {
                 &one
             };
             let settle = |mut calibrated: Calibrated| {
-                group.iter().for_each(|lane| lane.observe(&mut calibrated));
+                for lane in group {
+                    lane.observe(&mut calibrated);
+                }
                 own.settle(&first, Some(&calibrated))
             };
             // The crate's sums say what is wrong, if anything is.

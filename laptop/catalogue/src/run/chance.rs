@@ -1,5 +1,8 @@
 //! Bernoulli in `f32`, with draws that do not wait for one another.
 
+// What is not inlined is compiled for a processor without wide vectors.
+#![allow(clippy::inline_always)]
+
 use std::any::Any;
 
 use bytemuck::{Pod, cast_slice};
@@ -50,4 +53,31 @@ fn draws(generator: &mut Pcg32) -> [u32; 32] {
     }
     *generator = later;
     draws
+}
+
+#[cfg(test)]
+mod tests {
+    use spikewire::Scheme;
+
+    use super::*;
+
+    #[test]
+    fn spikes_are_those_of_one_draw_after_the_other() {
+        let scheme = Bernoulli::<f32, Pcg32, Average>::new(-1.0..=1.0, Average::new(4));
+        let start = Bernoulli::<f32, Pcg32, Average>::state(Pcg32::new(1, 2));
+        let mut samples: Vec<f32> = (0..1000).map(|i| (i as f32).sin()).collect();
+        (samples[100], samples[500]) = (f32::NAN, 7.0);
+        for length in [0, 1, 31, 32, 33, 1000] {
+            let (mut state, mut expected_state) = (start.clone(), start.clone());
+            let mut spikes = vec![Spike::None; length];
+            let mut expected = spikes.clone();
+            for samples in [&samples[..length], &samples[..length]] {
+                encode_slice(&scheme, &mut state, samples, &mut spikes).unwrap();
+                for (spike, &sample) in expected.iter_mut().zip(samples) {
+                    *spike = scheme.encode(&mut expected_state, sample);
+                }
+                assert_eq!(spikes, expected);
+            }
+        }
+    }
 }

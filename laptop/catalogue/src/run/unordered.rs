@@ -1,5 +1,8 @@
 //! Extremes and sums of `f32` samples, several at a time.
 
+// What is not inlined is compiled for a processor without wide vectors.
+#![allow(clippy::inline_always)]
+
 use pulp::{Arch, Simd, WithSimd};
 use spikewire::temporal::TemporalContrast;
 
@@ -161,7 +164,9 @@ mod tests {
             unordered.observe(one);
             unordered.observe(other);
             let mut ordered = Calibration::<f32>::new();
-            samples.iter().for_each(|sample| ordered.observe(*sample));
+            for sample in &samples {
+                ordered.observe(*sample);
+            }
             let range = ordered.min().zip(ordered.max()).map(|(min, max)| (min.into(), max.into()));
             assert_eq!(unordered.range(), range);
             for factor in [0.5, 1.0, -0.7, 0.0] {
