@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 import weakref
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -212,6 +213,8 @@ class _Chip(nn.Module):
     _unit = 1
     #: The largest potential.
     _MOST = 2047
+    #: Share that a step leaves of the potentials of a last layer that never fires; ``None`` if it fires.
+    _readout: float | None = None
 
     def __init__(self, inputs: int, sizes: tuple[int, ...], threshold: int, recurrent: bool = False):
         super().__init__()
@@ -222,7 +225,8 @@ class _Chip(nn.Module):
         one = min(threshold / self._unit / 16, self._RANGE[1] / 8)
         shapes = zip((inputs, *sizes), sizes)
         self.weights: nn.ParameterList = nn.ParameterList(nn.Parameter(one * (1 + 4 * torch.randn(shape))) for shape in shapes)
-        own = (nn.Parameter(one * 4 * torch.randn(size, size)) for size in sizes if recurrent)
+        firing = sizes if self._readout is None else sizes[:-1]
+        own = (nn.Parameter(one * 4 * torch.randn(size, size)) for size in firing if recurrent)
         self.recurrent: nn.ParameterList = nn.ParameterList(own)
 
     def _rounded(self, own: Tensor) -> Tensor:
@@ -233,24 +237,27 @@ class _Chip(nn.Module):
         return [self._rounded(own) for own in self.weights]
 
     def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """The potentials of each layer before their reset, and its spikes: (time, batch, neurons)."""
+        """The potentials of each layer before their reset, and its spikes, or values if it never fires: (time, batch, neurons)."""
 
-        def law(weights: Tensor, own: Tensor | None) -> _Law:
+        def law(weights: Tensor, own: Tensor | None, step: Callable[..., tuple[Tensor, Tensor, Any]]) -> _Law:
             back = None if own is None else self._unit * self._rounded(own)
-            return lambda x: self._counted(x).to(weights.dtype) @ (self._unit * weights), lambda *state: self._step(back, *state)
+            return lambda x: self._counted(x).to(weights.dtype) @ (self._unit * weights), lambda *state: step(back, *state)
 
         # Types of 16 bits would round potentials.
         with torch.autocast(x.device.type, enabled=False):
-            return _run(x, itertools.starmap(law, itertools.zip_longest(self.whole(), self.recurrent)))
+            return _run(x, itertools.starmap(law, itertools.zip_longest(self.whole(), self.recurrent, self._steps())))
 
     def _counted(self, x: Tensor) -> Tensor:
         return x
+
+    def _steps(self) -> list[Callable[..., tuple[Tensor, Tensor, Any]]]:
+        return [self._step] * len(self.weights)
 
     def _step(self, back: Tensor | None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
         raise NotImplementedError
 
     def forward(self, x: Tensor) -> Tensor:
-        """The spikes of the last layer."""
+        """The spikes of the last layer, or its values if it never fires."""
         return self.layers(x)[-1][1]
 
     def _rule(self) -> dict[str, Any]:
@@ -267,7 +274,10 @@ class _Chip(nn.Module):
         layers = [{"weights": written(own), **rule} for own in self.weights]
         for layer, own in zip(layers, self.recurrent):
             layer["recurrent"] = written(own)
-        Path(path).write_text(json.dumps({"layers": layers, "integers": True}))
+        network: dict[str, Any] = {"layers": layers, "integers": True}
+        if self._readout is not None:
+            network["readout"] = {"weights": layers.pop()["weights"], "keep": self._readout}
+        Path(path).write_text(json.dumps(network))
 
 
 class TinyOdin(_Chip):
@@ -310,25 +320,32 @@ class TinyOdin(_Chip):
 class ReckOn(_Chip):
     """Layers of neurons in the chip ReckOn's arithmetic, to be trained as those of :class:`TinyOdin`.
 
-    The chip fires as they do, a tick a step, unless the spikes of one step take a potential out of its 16 bits: :meth:`save`,
-    then ``spikewire network --on reckon``, with ``--reset subtract-late`` if a spike subtracts.
+    The chip fires as they do, unless the spikes of one step take a potential out of its 16 bits: :meth:`save`, then
+    ``spikewire network --on reckon``, with ``--reset subtract-late`` if a spike subtracts.
 
-    Weights are whole numbers from -128 to 127, shifted; a step leaves a share of a potential, rounded down, in units of 1/32768
+    Weights are whole numbers from -128 to 127, shifted; a tick leaves a share of a potential, rounded down, in units of 1/32768
     from 0.875; a neuron that reaches its threshold fires, and starts the next step at 0. An input fires once a step at most.
+    A step takes as many ticks as `keep` needs. Where it takes several, spikes neither subtract nor act on their own layer: the
+    chip needs gates for that, which are not trained.
 
-    >>> network = ReckOn(12, 16, 3, recurrent=True)
+    With `readout` the last layer is the chip's outputs, and the result is what the driver's ``ReckOnSample::run`` returns, bit
+    for bit, in units of the weights after the shift. Each tick leaves a share of the outputs' potentials, rounded down.
+
+    >>> network = ReckOn(12, 16, 3, recurrent=True, readout=0.9)
     >>> network(torch.ones(5, 4, 12)).shape
     torch.Size([5, 4, 3])
 
     Args:
         inputs: Number of inputs, 256 at most.
-        sizes: Number of neurons of each layer: 256 in all, and 16 of the last.
+        sizes: Number of neurons of each layer: 256 in all, and 16 of the last. Three layers may fire.
         threshold: Potential from which a neuron fires: far below 32767, as potentials beyond that saturate in another order
             than here.
-        keep: Share of a potential that a step leaves.
+        keep: Share of a potential that a step leaves: 0.119 to 1, or from 0.875 if `recurrent` or `subtract`.
         shift: Bits by which the chip shifts weights to the left, 0 to 7. The larger it is, the less rounding costs.
         recurrent: Whether the spikes of a layer act on itself a step later.
         subtract: Whether a spike subtracts the threshold in the next step, instead of setting the potential to 0.
+        readout: Share of a potential that a step leaves in the last layer, which then never fires: the share of a tick is
+            rounded to 1/128. ``None`` for a last layer that fires.
     """
 
     _RANGE = (-128, 127)
@@ -343,10 +360,20 @@ class ReckOn(_Chip):
         shift: int = 4,
         recurrent: bool = False,
         subtract: bool = False,
+        readout: float | None = None,
     ):
-        self._kept = round(keep * 32768)
-        if not 28672 <= self._kept <= 32768:
-            raise ValueError(f"a step leaves 0.875 to 1 of a potential, not {keep}")
+        if not 0.875**16 <= keep <= 1:
+            raise ValueError(f"a step leaves 0.119 to 1 of a potential, not {keep}")
+        self._ticks = max(math.ceil(math.log(keep, 0.875) - 1e-9), 1)
+        if self._ticks > 1 and (recurrent or subtract):
+            raise ValueError(f"recurrent layers, and those that subtract, leave 0.875 to 1 of a potential, not {keep}")
+        # Rounded up, it might take a tick less.
+        self._kept = math.floor(keep ** (1 / self._ticks) * 32768 + 1e-6) / 32768
+        if readout is not None:
+            if not 0 < readout <= 1 or len(sizes) < 2:
+                raise ValueError(f"a last layer that never fires follows another, and leaves up to 1 of a potential, not {readout}")
+            self._read = max(round(readout ** (1 / self._ticks) * 128), 1) / 128
+            self._readout = self._read**self._ticks
         if not 0 <= shift <= 7:
             raise ValueError(f"the chip shifts weights by 0 to 7 bits, not {shift}")
         self._unit = 1 << shift
@@ -362,17 +389,34 @@ class ReckOn(_Chip):
             potentials, before = state
             if back is not None:
                 driven = driven + before @ back
-            share = potentials * (self._kept / 32768)
-            # Products have 31 bits, of which single precision would round some.
-            down = (potentials.double() * self._kept / 32768).floor().to(share.dtype)
-            kept, spiked = _passed(down, share), before.detach()
+            kept, spiked = _left(potentials, self._kept, self._ticks), before.detach()
             driven = driven + (kept - self.threshold * spiked if self.subtract else kept * (1 - spiked))
         reached = driven.clamp(-32768, 32767)
         fired = _Fire.apply(reached, self.threshold, True)
         return reached, fired, (reached, fired)
 
+    def _steps(self) -> list[Callable[..., tuple[Tensor, Tensor, Any]]]:
+        steps = super()._steps()
+        return steps if self._readout is None else [*steps[:-1], self._read_out]
+
+    def _read_out(self, back: None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
+        reached = (driven if state is None else state + driven).clamp(-32768, 32767)
+        # The chip answers after the first tick, and the driver multiplies in single precision.
+        answer = _left(reached, self._read, 1)
+        values = (answer * float(np.float32(1 / self._read))).float()
+        return reached, values, _left(answer, self._read, self._ticks - 1)
+
     def _rule(self) -> dict[str, Any]:
-        return {"keep": self._kept / 32768}
+        return {"keep": self._kept**self._ticks}
+
+
+def _left(potentials: Tensor, share: float, ticks: int) -> Tensor:
+    """What ticks leave of potentials on ReckOn, each rounded down."""
+    for _ in range(ticks):
+        # Products have 31 bits, of which single precision would round some.
+        down = (potentials.double() * share).floor().to(potentials.dtype)
+        potentials = _passed(down, potentials * share)
+    return potentials
 
 
 class _Fire(torch.autograd.Function):

@@ -113,16 +113,16 @@ impl Lane<'_> {
         match self {
             Self::F32(lane) => {
                 let place = match lane.as_slice() {
-                    Some(samples) => first_bad(samples, |value| value.is_finite()),
+                    Some(samples) => first_bad(samples, |value| *value),
                     None => lane.iter().position(|value| !value.is_finite()),
                 }?;
                 Some(Bad { sample: place, what: format!("{} is not finite", lane[place]) })
             }
             Self::F64(lane) => {
-                let is_good = is_good(sample);
+                let narrow = narrow(sample);
                 let place = match lane.as_slice() {
-                    Some(samples) => first_bad(samples, is_good),
-                    None => lane.iter().position(|value| !is_good(value)),
+                    Some(samples) => first_bad(samples, narrow),
+                    None => lane.iter().position(|value| !narrow(value).is_finite()),
                 }?;
                 let value = lane[place];
                 let what = if value.is_finite() { "beyond f32" } else { "not finite" };
@@ -256,6 +256,9 @@ fn grid<'a, T>(
     view: &ArrayViewD<'a, T>,
     kind: impl Fn(&'a [T]) -> run::Samples<'a>,
 ) -> Option<Grid<'a>> {
+    if view.is_empty() {
+        return None;
+    }
     let time = Axis(view.ndim().checked_sub(1)?);
     let length = view.len_of(time);
     let step = if length == 1 { 0 } else { usize::try_from(view.stride_of(time)).ok()? };
@@ -281,22 +284,29 @@ fn grid<'a, T>(
     Some(Grid { all: kind(all), width, block_step, step, length })
 }
 
-/// Returns the place of the first sample that is not good. Looks at blocks at first, without branches within.
-fn first_bad<T>(samples: &[T], is_good: impl Fn(&T) -> bool) -> Option<usize> {
-    const BLOCK: usize = 64;
-    let mut blocks = samples.chunks(BLOCK);
-    let block = blocks.position(|own| !own.iter().fold(true, |all, own| all & is_good(own)))?;
-    let start = block * BLOCK;
-    Some(start + samples[start..].iter().position(|own| !is_good(own))?)
+/// Returns the place of the first sample that `narrow` makes infinite, or no number. Looks at blocks at first, where
+/// infinite exponents carry into the sign.
+fn first_bad<T>(samples: &[T], narrow: impl Fn(&T) -> f32) -> Option<usize> {
+    const BLOCK: usize = 512;
+    let carry = |own: &T| (narrow(own).to_bits() & 0x7FFF_FFFF) + 0x0080_0000;
+    let is_bad = |own: &[T]| own.iter().fold(0, |all, own| all | carry(own)) >> 31 != 0;
+    let start = samples.chunks(BLOCK).position(is_bad)? * BLOCK;
+    Some(start + samples[start..].iter().position(|own| !narrow(own).is_finite())?)
 }
 
-/// Returns the test for doubles that an encoder of this type takes: they are finite, in `f32` after rounding too.
-fn is_good(sample: SampleType) -> fn(&f64) -> bool {
-    if sample == SampleType::F32 {
-        |value| (*value as f32).is_finite()
-    } else {
-        |value| value.is_finite()
+/// Returns whether an encoder of this type takes all of the samples.
+pub(crate) fn are_good(samples: run::Samples, sample: SampleType) -> bool {
+    match samples {
+        run::Samples::F32(all) => first_bad(all, |value| *value).is_none(),
+        run::Samples::F64(all) => first_bad(all, narrow(sample)).is_none(),
+        run::Samples::I16(_) => true,
     }
+}
+
+/// Returns a function whose result is finite exactly for the doubles that an encoder of this type takes: they are finite,
+/// in `f32` after rounding too.
+fn narrow(sample: SampleType) -> fn(&f64) -> f32 {
+    if sample == SampleType::F32 { |value| *value as f32 } else { |value| (value * 0.0) as f32 }
 }
 
 impl Samples<'_> {
@@ -313,13 +323,7 @@ impl Samples<'_> {
 impl<'a> View<'a> {
     /// The first sample that an encoder of this type does not take, and its channel.
     pub(crate) fn bad(&self, sample: SampleType) -> Option<(usize, Bad)> {
-        let are_good = match self.grid().map(|grid| grid.all) {
-            Some(run::Samples::F32(all)) => first_bad(all, |value| value.is_finite()).is_none(),
-            Some(run::Samples::F64(all)) => first_bad(all, is_good(sample)).is_none(),
-            Some(run::Samples::I16(_)) => true,
-            None => false,
-        };
-        if are_good {
+        if self.grid().is_some_and(|grid| are_good(grid.all, sample)) {
             return None;
         }
         let lanes = self.lanes();

@@ -12,7 +12,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{Grid, Lane, RUN, Samples, Tile, View};
+use crate::array::{Grid, Lane, RUN, Samples, Tile, View, are_good};
 use crate::channel::{self, Bad};
 use crate::error::value;
 use crate::stream::{Decoder, Encoder};
@@ -147,20 +147,29 @@ impl Coder {
         }
         let lanes = &samples.lanes()[..];
         let settle = |(place, group): (usize, &[Lane])| {
-            let calibrated = needs_signal.then(|| {
-                let mut calibrated = Calibrated::of(self.sample, &self.asked);
+            let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
+            let (first, channels) = (first(lane), if is_shared { 1 } else { lanes.len() });
+            let one;
+            let own = if is_one {
+                self
+            } else {
+                one = self.channel(place, channels)?;
+                &one
+            };
+            let settle = |mut calibrated: Calibrated| {
                 for lane in group {
                     lane.observe(&mut calibrated);
                 }
-                calibrated
-            });
-            let lane = group.first().ok_or_else(|| anyhow!("there is no channel"))?;
-            let (first, calibrated) = (first(lane), calibrated.as_ref());
-            let channels = if is_shared { 1 } else { lanes.len() };
-            let settled = if is_one {
-                self.settle(&first, calibrated)
-            } else {
-                self.channel(place, channels)?.settle(&first, calibrated)
+                own.settle(&first, Some(&calibrated))
+            };
+            let in_order = || settle(Calibrated::of(sample, &self.asked));
+            // The sums in order say what is wrong, if anything is.
+            let settled = match (needs_signal, sample) {
+                (false, _) => own.settle(&first, None),
+                (true, SampleType::F32) => {
+                    settle(Calibrated::unordered(&self.asked)).or_else(|_| in_order())
+                }
+                (true, _) => in_order(),
             };
             if lanes.len() > 1 && !is_shared {
                 settled.with_context(|| format!("channel {place}"))
@@ -211,15 +220,17 @@ impl Coder {
         self.scheme.needs_signal(&self.asked).map(|needs| needs.to_string())
     }
 
-    /// With what these samples tell: each channel by itself, or one scheme for all.
-    fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
+    /// With what these samples tell: each channel by itself, or one scheme for all. Samples that tell nothing are looked
+    /// at only if asked, as encoding looks at all.
+    fn fit(&self, py: Python, samples: Samples, is_shared: bool, all: bool) -> PyResult<Fitted> {
         let samples = samples.view();
         let (count, length) = (samples.count(), samples.length());
-        if length == 0 && count > 0 {
+        if length == 0 {
             return Err(value(anyhow!("channel 0 has no samples")));
         }
         let is_wide = work::threads(py, count, count * length)? > 1;
-        let fitted = || match samples.bad(self.sample) {
+        let looks = all || self.scheme.needs_signal(&self.asked).is_some();
+        let fitted = || match looks.then(|| samples.bad(self.sample)).flatten() {
             Some((channel, bad)) => Err(told(channel, 0, &bad)),
             None => self.fitted(&samples, is_shared, is_wide),
         };
@@ -368,6 +379,9 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
 
+/// The error that ends the work; the first bad sample is then searched and told.
+const BAD: &str = "a sample is not finite";
+
 /// Returns how many channels with this many cells each a thread encodes in one go, so that they stay in the cache.
 fn run_of(cells: usize) -> usize {
     const CACHED: usize = 1 << 13;
@@ -442,7 +456,11 @@ impl Fitted {
                 cells.chunks_mut(size).enumerate().try_for_each(|own| encode(&mut bench, own))
             }
         })?;
-        done.map_err(value)?;
+        // The first bad sample, whichever thread met one.
+        done.map_err(|error| {
+            let bad = samples.bad(self.sample);
+            value(bad.map_or(error, |(channel, bad)| told(channel, 0, &bad)))
+        })?;
         drop(access);
         Ok(output)
     }
@@ -533,7 +551,7 @@ impl Fitted {
 }
 
 impl Fitted {
-    /// Encodes neighbouring channels, which share their settings. The samples are good, as those that tell the settings are.
+    /// Encodes neighbouring channels, which share their settings.
     fn encode_grid(
         &self,
         bench: &mut Bench,
@@ -552,6 +570,9 @@ impl Fitted {
         };
         let (first, count) = (channels.start as u64, channels.len());
         let samples = grid.channels(channels, &mut bench.tile);
+        if !are_good(samples, self.sample) {
+            bail!(BAD);
+        }
         codec.encode_channels(samples, length, first, room);
         meter.add(count * length);
         Ok(())
@@ -576,6 +597,9 @@ impl Fitted {
                 return Ok(());
             }
             let part = lane.part(start..lane.len().min(start + PIECE));
+            if part.bad(self.sample).is_some() {
+                bail!(BAD);
+            }
             made += part.encode(codec, &mut room[made * width..]);
             meter.add(part.len());
         }

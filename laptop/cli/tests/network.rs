@@ -292,6 +292,36 @@ fn reset_modes_are_required_and_compared_with_the_frameworks_spikes() {
     refused(&short, "", &["1 steps", "200"]);
 }
 
+/// Outputs of `ReckOn` that never fire are compared with the potentials that they had in training. Sums of whole weights
+/// are exact on the chip.
+#[test]
+fn potentials_are_compared_with_those_of_training() {
+    let layers = r#"{"layers": [{"weights": [[1, 0], [0, 1]], "threshold": 0.5}]"#;
+    let readout = r#""readout": {"weights": [[2, 0], [0, -1]]}, "integers": true"#;
+    let (_network, network) = file("net.json", format!("{layers}, {readout}}}"));
+    let (_fires, fires) = file("fires.json", format!("{layers}}}"));
+    let (_steps, steps) = file("steps.txt", "0\n0 1\n\n");
+    let off = |potentials: &str| {
+        let (_potentials, potentials) = file("potentials.txt", potentials);
+        let network = format!("network {network} {steps} --on reckon --no-held-out");
+        let ran = good(&format!("{network} --trained-potentials {potentials}"), "");
+        figures(&ran.stderr, "readout: 2 outputs")[2]
+    };
+    assert_eq!(off("2 0\n4 -1\n4 -1\n"), 0.0);
+    assert_eq!(off("2 0\n4 -1\n4 5\n"), 2.4495);
+    for (network, option, outputs, words) in [
+        (&network, "potentials", "2 0\n", "outputs of 1 steps, where the recording has 3"),
+        (&network, "potentials", "2 0\n4 -1\n4\n", "potentials of 1 outputs, of which"),
+        (&network, "potentials", "2 0\nx\n", "line 2"),
+        (&network, "spikes", "0\n\n\n", "spikes of outputs that never fire"),
+        (&fires, "potentials", "2 0\n4 -1\n4 -1\n", "potentials of outputs that fire"),
+    ] {
+        let (_outputs, outputs) = file("outputs.txt", outputs);
+        let network = format!("network {network} {steps} --on reckon --reset zero --no-held-out");
+        refused(&format!("{network} --trained-{option} {outputs}"), "", &[words]);
+    }
+}
+
 /// In the trained network, neurons subtract the threshold before the leak. `ReckOn` subtracts the threshold after the
 /// leak. The converted network makes up for the difference by a weight from each neuron to itself.
 #[test]

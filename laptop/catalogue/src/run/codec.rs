@@ -17,6 +17,7 @@ use spikewire::{Code, NeuronSpike, Output, Polarity, Sample, Scheme, Spike, timi
 
 #[cfg(feature = "states")]
 use super::ErrorKind;
+use super::chance;
 use super::lanes::{Lanes, Recordings};
 use super::settings::generator;
 use super::{Result, Runs, Settings, Shape, Visit};
@@ -458,7 +459,9 @@ impl<P: Scheme<EncoderState: Clone> + 'static> Channel<P> {
                 let any = self.scheme.encode(&mut self.encoder.clone(), block[0]);
                 self.outputs.resize(block.len(), any);
             }
-            let count = self.scheme.encode_slice(&mut self.encoder, block, &mut self.outputs);
+            let Self { scheme, encoder, outputs, .. } = self;
+            let count = chance::encode_slice(scheme, encoder, block, outputs)
+                .unwrap_or_else(|| scheme.encode_slice(encoder, block, outputs));
             if !sink.put_spikes(&self.outputs, count) {
                 sink.put(self.outputs.iter().take(count).filter_map(|output| output.code()));
             }

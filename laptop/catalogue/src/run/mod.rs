@@ -6,6 +6,7 @@
 
 mod asked;
 mod calibrate;
+mod chance;
 mod codec;
 mod error;
 mod exact;
@@ -19,6 +20,7 @@ mod resolve;
 mod rust;
 mod sample_type;
 mod settings;
+mod unordered;
 mod value;
 mod words;
 

@@ -126,9 +126,9 @@ impl Build for Scheme {
                 let of_magnitudes = asked.user("magnitudes").is_some();
                 let wrong = |kind| Error::of(Given::new("factor", &factor), kind);
                 let calibrated = asked.known.calibrated;
-                let calibrated = calibrated.ok_or_else(|| wrong(ErrorKind::NotCalibrated))?;
-                let threshold = calibrated.threshold(asked.number("factor")?, of_magnitudes);
-                threshold.map_err(|error| {
+                let factor = asked.number("factor")?;
+                let threshold = calibrated.and_then(|own| own.threshold(factor, of_magnitudes));
+                threshold.ok_or_else(|| wrong(ErrorKind::NotCalibrated))?.map_err(|error| {
                     wrong(ErrorKind::NoThreshold { error, takes_magnitudes: of_magnitudes })
                 })?
             }

@@ -16,8 +16,8 @@ use lab::fit::rounding;
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
     Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model,
-    NetworkKind, Numbers, OnChip, Remarks, Request, Stepped, Trained, Trains, WINDOW, bring,
-    bring_to_controller,
+    NetworkKind, Numbers, OnChip, Outputs, Remarks, Request, Stepped, Trained, Trains, WINDOW,
+    bring, bring_to_controller,
 };
 use lab::output::Output;
 use lab::scheme::Scheme;
@@ -94,6 +94,10 @@ pub(crate) struct Network {
     /// report compares these spikes with the chip's, and with those of the network in double precision
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
+    /// The same for a network whose outputs never fire: file of the potentials that the outputs had in the training
+    /// framework, one line for each step of INPUT, with a number for each output
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["held_out", "trained_spikes"])]
+    trained_potentials: Option<PathBuf>,
     /// Point at which tinyODIN's neurons compare their potentials with their thresholds. `spike`: after each arriving
     /// spike, as the chip does by itself. `step`: once in each time step, as in training; the driver then sends extra
     /// events to the chip in each step. Default: the choice that keeps more accuracy
@@ -212,12 +216,11 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         held_out.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
-    let own =
-        options.trained_spikes.as_ref().map(|path| spiking(path)).transpose()?.map(|own| own.steps);
-    if let Some(own) = &own {
-        let (given, steps) = (own.len(), driven.steps.len());
-        ensure!(given == steps, "--trained-spikes has {given} steps, and the recording {steps}");
-    }
+    let framework = match (&options.trained_spikes, &options.trained_potentials) {
+        (Some(path), _) => Some(Outputs::Spikes(spiking(path)?.steps)),
+        (_, Some(path)) => Some(Outputs::Potentials(potentials(path)?)),
+        _ => None,
+    };
     // Without a second recording, the last third of the first is held out.
     let steps = driven.steps.len();
     // Nothing is tuned for the controller, whose arithmetic is exact or nearly so.
@@ -225,8 +228,6 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let holds_out = held_out.is_none() && !options.no_held_out && !on_controller;
     let part = if holds_out { steps - steps / 3 } else { steps };
     let tuned = driven.steps[..part].to_vec();
-    let own_tuned = own.as_ref().map(|own| own[..part].to_vec());
-    let own = own_tuned.as_ref().zip(own.as_ref());
     let held_out = match &held_out {
         Some(other) => Some(HeldOut { steps: &other.steps, from: 0 }),
         None => (part < steps).then_some(HeldOut { steps: &driven.steps, from: part }),
@@ -239,17 +240,17 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
-    let (tuned, compare) = (&tuned, options.compare);
+    let (tuned, framework, compare) = (&tuned, framework.as_ref(), options.compare);
     let (progress, numbers) = (&progress, options.rule.numbers);
     let brought = match &converted {
         Converted::Chip(chip, trained) => {
             let chip = *chip;
-            bring(&Request { chip, trained, tuned, held_out, framework: own, compare, progress })
+            bring(&Request { chip, trained, tuned, held_out, framework, compare, progress })
         }
         Converted::Controller(model) => {
             ensure!(
-                own.is_none(),
-                "--trained-spikes is for the chips: the controller's rule is exact"
+                framework.is_none(),
+                "--trained-spikes and --trained-potentials are for the chips: the controller's rule is exact"
             );
             bring_to_controller(&ControllerRequest { model, numbers, tuned, held_out, progress })
         }
@@ -435,6 +436,15 @@ fn spiking(path: &Path) -> Result<Driven> {
         settings: Vec::new(),
         notes: Vec::new(),
     })
+}
+
+/// Reads a file of the outputs' potentials: one line for each step, with a number for each output.
+fn potentials(path: &Path) -> Result<Vec<Vec<f64>>> {
+    let name = || path.display().to_string();
+    let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", name()))?;
+    let numbers = |line: &str| line.split_whitespace().map(str::parse).collect::<Result<_, _>>();
+    let step = |(at, line)| numbers(line).with_context(|| format!("{}: line {at}", name()));
+    (1..).zip(text.lines()).map(step).collect()
 }
 
 /// Least agreement between chip and trained network for which the report does not warn. The agreement of two runs is

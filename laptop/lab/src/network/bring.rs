@@ -22,15 +22,23 @@ pub struct Request<'a> {
     pub tuned: &'a Trains,
     /// A second recording, which only tests the quantised network. If `None`, the network is tested on `tuned`.
     pub held_out: Option<HeldOut<'a>>,
-    /// Output spikes that the training framework computed, by step. The first entry is for the recording `tuned`, the
-    /// second for `held_out`. `None` if the framework's spikes are not known.
-    pub framework: Option<(&'a Trains, &'a Trains)>,
+    /// Outputs that the training framework computed, in all steps of `held_out`, of which `tuned` is the beginning, or
+    /// of `tuned` if there is no `held_out`. `None` if they are not known.
+    pub framework: Option<&'a Outputs>,
     /// When neurons compare their potentials with their thresholds. `None` tries both possibilities and chooses the one
     /// whose spikes agree better with double precision. Has no effect on chips that offer no choice.
     pub compare: Option<Compare>,
     /// Called during the search for the chip's parameters, with the number of finished parts of the search and the
     /// total number of parts.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
+}
+
+/// The outputs of a network, by step.
+pub enum Outputs {
+    /// The outputs that fire.
+    Spikes(Trains),
+    /// The potential of each output, for networks whose outputs never fire.
+    Potentials(Vec<Vec<f64>>),
 }
 
 /// A recording on which a network is tested after its parameters were tuned on a different recording.
@@ -140,13 +148,20 @@ pub fn bring(request: &Request) -> Result<Brought> {
     let mut other = held_out.map(|held_out| Original::of(trained, held_out.steps));
     let from = held_out.map_or(0, |held_out| held_out.from);
     let mut reading = None;
-    if let Some((own, own_other)) = own {
-        let shown = other.as_ref().map_or((&original, own), |other| (other, own_other));
-        let read = shown.0.fired.last();
-        reading = read.and_then(|read| agreement(read.get(from..)?, shown.1.get(from..)?));
-        original.replace_spikes(own)?;
+    if let Some(own) = own {
+        let given = match own {
+            Outputs::Spikes(own) => {
+                let read = other.as_ref().unwrap_or(&original).fired.last();
+                reading = read.and_then(|read| agreement(read.get(from..)?, own.get(from..)?));
+                own.len()
+            }
+            Outputs::Potentials(own) => own.len(),
+        };
+        let steps = held_out.map_or(tuned, |all| all.steps).len();
+        ensure!(given == steps, NetworkKind::OutputSteps { given, steps });
+        original.replace_outputs(own)?;
         if let Some(other) = &mut other {
-            other.replace_spikes(own_other)?;
+            other.replace_outputs(own)?;
         }
     }
     let network = chip.quantise(trained, tuned, &original.fired, compare, progress)?;
@@ -200,21 +215,30 @@ impl Original {
         }
     }
 
-    /// Replaces the spikes of the last layer by `framework`, the spikes that the training framework computed.
+    /// Replaces the outputs by the first of `framework`, those that the training framework computed.
     ///
     /// # Errors
-    /// Returns an error if `framework` has a different number of steps, or an output that the network does not have.
-    fn replace_spikes(&mut self, framework: &Trains) -> Result<()> {
-        if let (None, Some(last)) = (&self.readout, self.fired.last_mut()) {
-            let (steps, given) = (last.len(), framework.len());
-            ensure!(steps == given, NetworkKind::SpikeSteps { given, steps });
-            let outputs = self.layers.last().map_or(0, |(_, neurons)| *neurons);
-            let highest = framework.iter().flatten().max().copied().unwrap_or(0);
-            ensure!(
-                usize::from(highest) < outputs,
-                NetworkKind::SpikeOutput { output: highest, outputs }
-            );
-            last.clone_from(framework);
+    /// Returns an error if `framework` has an output that the network does not have, or outputs of the other kind.
+    fn replace_outputs(&mut self, framework: &Outputs) -> Result<()> {
+        match (framework, &self.readout, self.fired.last_mut()) {
+            (Outputs::Spikes(framework), None, Some(last)) => {
+                let outputs = self.layers.last().map_or(0, |(_, neurons)| *neurons);
+                let highest = framework.iter().flatten().max().copied().unwrap_or(0);
+                ensure!(
+                    usize::from(highest) < outputs,
+                    NetworkKind::SpikeOutput { output: highest, outputs }
+                );
+                *last = framework.iter().take(last.len()).cloned().collect();
+            }
+            (Outputs::Potentials(framework), Some((_, outputs)), _) => {
+                let outputs = *outputs;
+                if let Some(odd) = framework.iter().find(|step| step.len() != outputs) {
+                    return Err(NetworkKind::Potentials { given: odd.len(), outputs }.into());
+                }
+                self.potentials = framework.iter().take(self.potentials.len()).cloned().collect();
+            }
+            (Outputs::Spikes(_), ..) => return Err(NetworkKind::OutputsNeverFire.into()),
+            (Outputs::Potentials(_), ..) => return Err(NetworkKind::OutputsFire.into()),
         }
         Ok(())
     }

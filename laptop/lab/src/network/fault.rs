@@ -47,10 +47,14 @@ kinds! {
             ("{resets} resets are asked for, and {layers} layers fire"),
         JsonResets { resets: usize } =>
             ("layers in JSON have one reset, and {resets} are asked for"),
-        SpikeSteps { given: usize, steps: usize } =>
-            ("spikes of {given} steps, where the recording has {steps}"),
+        OutputSteps { given: usize, steps: usize } =>
+            ("outputs of {given} steps, where the recording has {steps}"),
         SpikeOutput { output: u16, outputs: usize } =>
             ("spikes of output {output}, of {outputs} outputs"),
+        OutputsFire => ("potentials of outputs that fire"),
+        OutputsNeverFire => ("spikes of outputs that never fire"),
+        Potentials { given: usize, outputs: usize } =>
+            ("potentials of {given} outputs, of which the network has {outputs}"),
     }
 }
 room!(NetworkKind, Network);

@@ -13,7 +13,7 @@ mod tiny_odin;
 mod trained;
 
 pub use bring::{
-    Brought, Figures, HeldOut, LayerFigures, PotentialFigures, Request, WINDOW, bring,
+    Brought, Figures, HeldOut, LayerFigures, Outputs, PotentialFigures, Request, WINDOW, bring,
 };
 pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Remarks, Stepped};
 pub use controller::{

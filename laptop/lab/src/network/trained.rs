@@ -19,7 +19,7 @@ pub struct Trained {
     /// last layer.
     pub readout: Option<Readout>,
     /// Whether the network was trained in a chip's integers. `ReckOn` then takes weights, thresholds and decay factors
-    /// as they are, if all of them are integers of the chip and a step takes one tick.
+    /// as they are, if all of them are integers of the chip and no layer needs gates.
     pub integers: bool,
 }
 

@@ -230,9 +230,9 @@ pub(super) fn quantise(
         .map(|pair| pair.into_iter().map(|seat| original.source(seat)).collect())
         .collect();
     let all = (0..SHIFTS).flat_map(|input| (0..SHIFTS).map(move |own| [input, own]));
-    let integers = trained.integers && ticks == 1;
-    let are_whole =
-        |shifts: [u8; 2]| integers && pairs.iter().all(|pair| exact_scale(pair, shifts).is_some());
+    let integers = trained.integers;
+    let is_whole = |pair: &Vec<Source>, shifts| exact_scale(pair, shifts, ticks).is_some();
+    let are_whole = |shifts: [u8; 2]| integers && pairs.iter().all(|pair| is_whole(pair, shifts));
     let change = |&shifts: &[u8; 2]| {
         let changes = pairs.iter().map(|pair| change(pair, shifts));
         if are_whole(shifts) { -1.0 } else { changes.sum::<f64>() }
@@ -286,7 +286,7 @@ pub(super) fn quantise(
     match &trained.readout {
         Some(readout) => {
             let last = fired.last().map_or(&[][..], |last| last);
-            network.read_out(readout, &trained.potentials(fired), last);
+            network.read_out(readout, &trained.potentials(fired), last, integers);
         }
         None => network.follow(trained.layers.len() - 1),
     }
@@ -315,18 +315,24 @@ fn mean_keep(pair: &[Source], ticks: usize) -> u16 {
     (kept.sum::<f64>() / pair.len().max(1) as f64 * KEEP).round() as u16
 }
 
+/// Returns whether the chip holds `weight * scale` exactly.
+fn is_whole(weight: f64, scale: f64) -> bool {
+    (weight * scale - clipped(weight * scale)).abs() < 1e-9
+}
+
 /// Returns the scale at which the chip's integers are exactly the trained numbers, or `None` if there is no such scale.
 /// Serves only networks that were trained in the chip's integers: in others, whole numbers may be too small to leak
-/// as trained, since the chip rounds potentials down. `shifts` has the same meaning as for [`scale`].
-fn exact_scale(pair: &[Source], shifts: [u8; 2]) -> Option<f64> {
+/// as trained, since the chip rounds potentials down. `shifts` has the same meaning as for [`scale`], and `ticks` is the
+/// number of ticks in a step.
+fn exact_scale(pair: &[Source], shifts: [u8; 2], ticks: usize) -> Option<f64> {
     let scale = pair.first().map_or(1.0, |source| source.threshold);
     let [inputs, recurrent] = shifts.map(|shift| scale / f64::from(1 << shift));
-    let is_whole = |number: f64, of: f64| (number * of - clipped(number * of)).abs() < 1e-9;
-    let keep = mean_keep(pair, 1);
+    let kept = (f64::from(mean_keep(pair, ticks)) / KEEP).powi(ticks as i32);
     let are_whole = pair.iter().all(|source| {
         source.threshold == scale
             && source.bias == 0.0
-            && source.keep * KEEP == f64::from(keep)
+            && source.gate == 0.0
+            && (source.keep - kept).abs() < 1e-9
             && source.inputs.iter().all(|weight| is_whole(*weight, inputs))
             && source.recurrent.iter().all(|(_, weight)| is_whole(*weight, recurrent))
     });
@@ -346,9 +352,9 @@ impl Chosen {
         let keep = mean_keep(pair, rule.ticks);
         let of = |source: &Source| Traces::new(source, keep, rule, original.group(source.seat));
         let traces: Vec<Traces> = pair.iter().map(of).collect();
-        if let Some(scale) = exact_scale(pair, shifts).filter(|_| rule.integers) {
+        if let Some(scale) = exact_scale(pair, shifts, rule.ticks).filter(|_| rule.integers) {
             let of = |(source, traces): (&Source, &Traces)| {
-                Rounded::new(source, traces, keep, scale, shifts, 1)
+                Rounded::new(source, traces, keep, scale, shifts, rule.ticks)
             };
             return Self { keep, scale, rounded: pair.iter().zip(&traces).map(of).collect() };
         }
@@ -383,7 +389,7 @@ impl Chosen {
 pub(super) struct Rule {
     /// Number of ticks in a step.
     pub(super) ticks: usize,
-    /// Whether the network was trained in the chip's integers, and a step takes one tick.
+    /// Whether the network was trained in the chip's integers.
     pub(super) integers: bool,
     pub(super) resets_to_zero: bool,
     pub(super) fires: Fires,
@@ -571,8 +577,15 @@ impl Quantised {
 
     /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
     /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are
-    /// the spikes of the last layer.
-    fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>], fired: &[Vec<u16>]) {
+    /// the spikes of the last layer. `integers` says whether the network was trained in the chip's integers: their
+    /// weights stay as they are if the chip holds them and leaks.
+    fn read_out(
+        &mut self,
+        readout: &Readout,
+        potentials: &[Vec<f64>],
+        fired: &[Vec<u16>],
+        integers: bool,
+    ) {
         let Readout { name, weights, keep } = readout;
         let ticks = self.ticks.len();
         let kept = keep.iter().map(|keep| keep.powf(1.0 / ticks as f64));
@@ -597,8 +610,13 @@ impl Quantised {
             (first, room) = (1, ROOM / 2.0 / largest(sums).max(most));
         }
         let fits = |shift: &u8| LARGEST * f64::from(1 << shift) / most <= room;
-        let shift = (first..SHIFTS).rev().find(fits).unwrap_or(first);
-        let scale = (LARGEST * f64::from(1 << shift) / most).min(room);
+        let are_whole = |shift: &u8| {
+            weights.iter().flatten().all(|weight| is_whole(*weight, 1.0 / f64::from(1 << shift)))
+        };
+        let whole = (0..SHIFTS).find(|shift| integers && chip_leaks && are_whole(shift));
+        let shift = whole.or((first..SHIFTS).rev().find(fits)).unwrap_or(first);
+        let largest = (LARGEST * f64::from(1 << shift) / most).min(room);
+        let scale = if whole.is_some() { 1.0 } else { largest };
         let mut change = Change { name: name.clone(), ..Change::default() };
         let last = self.layers.len() - 1;
         self.outputs = vec![vec![0; weights.len()]; self.places.neurons.len()];
