@@ -121,9 +121,9 @@ fn without_room(rest: u32, range: u32, count: u32) -> u32 {
     by_doubling(rest, range, count)
 }
 
-/// Whether the core is a Cortex-M0, which calls the runtime to divide and to count leading zeros. It is the only one
-/// without compare-and-swap. `cargo verify scalar` tests its forms on the host: `--cfg without_vectors`.
-pub(crate) const IS_CORTEX_M0: bool =
+/// Whether the core calls the runtime to divide and to count leading zeros: an Arm core without compare-and-swap, of which
+/// the Cortex-M0 is the only Cortex-M. `cargo verify scalar` tests its forms on the host: `--cfg without_vectors`.
+pub(crate) const LACKS_DIVISION: bool =
     cfg!(any(without_vectors, all(target_arch = "arm", not(target_has_atomic = "32"))));
 
 macro_rules! integer {
@@ -144,7 +144,7 @@ macro_rules! integer {
                 let [value, min, max] = [self.max(min), min, max].map(|x| i32::from($to_bits(x)));
                 let range = max.wrapping_sub(min).cast_unsigned();
                 let rest = value.wrapping_sub(min).cast_unsigned();
-                if IS_CORTEX_M0 {
+                if LACKS_DIVISION {
                     by_doubling(rest, range, count)
                 } else if <$bits>::BITS == 16 || range.leading_zeros() >= count {
                     (rest << (count & 31)).checked_div(range).unwrap_or(0)

@@ -1,6 +1,6 @@
 //! Bins of equal width over a range of values: one multiplication finds the bin of a value.
 
-use super::IS_CORTEX_M0;
+use super::LACKS_DIVISION;
 
 /// Bins of equal width, numbered upwards from an origin; a value below the origin lies in bin 0.
 ///
@@ -78,7 +78,7 @@ impl EvenBins {
     /// is quicker there in most codes; slices of TTFS and of latency with phase take 3 and 4 % more by it.
     #[inline]
     pub(crate) const fn of_short(self, value: i16) -> usize {
-        if IS_CORTEX_M0 {
+        if LACKS_DIVISION {
             return self.of_integer(value as i32);
         }
         let above = (value as i32).wrapping_sub(self.origin as i32) >> (self.scale >> 16 & 31);

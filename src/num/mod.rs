@@ -26,7 +26,7 @@ mod vectors;
 mod window_sum;
 
 pub(crate) use arithmetic::Arithmetic;
-pub(crate) use binary::{Binary, IS_CORTEX_M0};
+pub(crate) use binary::{Binary, LACKS_DIVISION};
 pub(crate) use convert::{
     below_from_f64, floor_from_f64, from_f64, largest_step, one, to_f64, units, word,
 };

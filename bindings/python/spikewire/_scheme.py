@@ -106,7 +106,7 @@ class Scheme:
         [-2.0, 0.5]
         """
         x = time_last(samples(x, self._sample), axis)
-        fitted = self._coder.fit(x, not per_channel)
+        fitted = self._coder.fit(x, not per_channel, True)
         tell_cut(self._sample, x)
         options = dict(fitted.keywords(0))
         if per_channel:
@@ -170,7 +170,7 @@ class Scheme:
         if not x.size:
             inner = self._coder.shape()
             return Spikes(self, None, np.zeros(0, np.int8), x.shape, inner, axis)
-        fitted = self._seeded().fit(x, False)
+        fitted = self._seeded().fit(x, False, False)
         shape = fitted.shape()
         with _progress.bar(progress, "encode") as tell:
             flat = fitted.encode(x, tell)

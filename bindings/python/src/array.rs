@@ -256,6 +256,9 @@ fn grid<'a, T>(
     view: &ArrayViewD<'a, T>,
     kind: impl Fn(&'a [T]) -> run::Samples<'a>,
 ) -> Option<Grid<'a>> {
+    if view.is_empty() {
+        return None;
+    }
     let time = Axis(view.ndim().checked_sub(1)?);
     let length = view.len_of(time);
     let step = if length == 1 { 0 } else { usize::try_from(view.stride_of(time)).ok()? };
@@ -300,7 +303,8 @@ pub(crate) fn are_good(samples: run::Samples, sample: SampleType) -> bool {
     }
 }
 
-/// Returns what is finite for the doubles that an encoder of this type takes: these are finite, in `f32` after rounding too.
+/// Returns a function whose result is finite exactly for the doubles that an encoder of this type takes: they are finite,
+/// in `f32` after rounding too.
 fn narrow(sample: SampleType) -> fn(&f64) -> f32 {
     if sample == SampleType::F32 { |value| *value as f32 } else { |value| (value * 0.0) as f32 }
 }

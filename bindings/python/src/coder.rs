@@ -162,12 +162,14 @@ impl Coder {
                 }
                 own.settle(&first, Some(&calibrated))
             };
-            // The crate's sums say what is wrong, if anything is.
-            let settled = if needs_signal {
-                settle(Calibrated::unordered(sample, &self.asked))
-                    .or_else(|_| settle(Calibrated::of(sample, &self.asked)))
-            } else {
-                own.settle(&first, None)
+            let in_order = || settle(Calibrated::of(sample, &self.asked));
+            // The sums in order say what is wrong, if anything is.
+            let settled = match (needs_signal, sample) {
+                (false, _) => own.settle(&first, None),
+                (true, SampleType::F32) => {
+                    settle(Calibrated::unordered(&self.asked)).or_else(|_| in_order())
+                }
+                (true, _) => in_order(),
             };
             if lanes.len() > 1 && !is_shared {
                 settled.with_context(|| format!("channel {place}"))
@@ -218,22 +220,19 @@ impl Coder {
         self.scheme.needs_signal(&self.asked).map(|needs| needs.to_string())
     }
 
-    /// With what these samples tell: each channel by itself, or one scheme for all.
-    fn fit(&self, py: Python, samples: Samples, is_shared: bool) -> PyResult<Fitted> {
+    /// With what these samples tell: each channel by itself, or one scheme for all. Samples that tell nothing are looked
+    /// at only if asked, as encoding looks at all.
+    fn fit(&self, py: Python, samples: Samples, is_shared: bool, all: bool) -> PyResult<Fitted> {
         let samples = samples.view();
         let (count, length) = (samples.count(), samples.length());
-        if length == 0 && count > 0 {
+        if length == 0 {
             return Err(value(anyhow!("channel 0 has no samples")));
         }
         let is_wide = work::threads(py, count, count * length)? > 1;
-        let needs_signal = self.scheme.needs_signal(&self.asked).is_some();
-        let fitted = || {
-            // Encoding looks at the samples that do not tell settings.
-            let bad = if needs_signal { samples.bad(self.sample) } else { None };
-            match bad {
-                Some((channel, bad)) => Err(told(channel, 0, &bad)),
-                None => self.fitted(&samples, is_shared, is_wide),
-            }
+        let looks = all || self.scheme.needs_signal(&self.asked).is_some();
+        let fitted = || match looks.then(|| samples.bad(self.sample)).flatten() {
+            Some((channel, bad)) => Err(told(channel, 0, &bad)),
+            None => self.fitted(&samples, is_shared, is_wide),
         };
         work::detached(py, is_wide, fitted)?.map_err(value)
     }
@@ -380,7 +379,7 @@ fn named(name: &str) -> PyResult<&'static dyn RunTime> {
 /// So many samples are coded before anybody asks whether to stop.
 const PIECE: usize = 1 << 16;
 
-/// Ends the work; which sample it is, the first one, is then looked for.
+/// The error that ends the work; the first bad sample is then searched and told.
 const BAD: &str = "a sample is not finite";
 
 /// Returns how many channels with this many cells each a thread encodes in one go, so that they stay in the cache.

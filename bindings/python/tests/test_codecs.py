@@ -159,6 +159,40 @@ def test_what_is_bad_is_named_with_its_value_and_range(call, words):
         call()
 
 
+@pytest.mark.parametrize(
+    "scheme",
+    [
+        sw.StepForward(threshold=0.1),
+        sw.TemporalContrast(factor=1.0),
+        sw.Hough(filter="triang:3"),
+        sw.Bernoulli(min=0, max=1),
+    ],
+)
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_the_first_bad_sample_is_named_wherever_it_is(scheme, kind):
+    x = np.random.default_rng(1).random((4, 70_000)).astype(kind)
+    x[2, 69_000], x[3, 5] = np.inf if kind is np.float32 else 1e39, np.nan
+    words = "channel 2, sample 69000: (inf is not finite|1e39 is beyond f32)"
+    # Time last and first, with gaps, and channels so short that they are encoded side by side.
+    for array, axis in [(x, -1), (x.T.copy(), 0), (np.repeat(x, 2, 0)[::2], -1)]:
+        for call in (scheme.encode, scheme.fit, lambda x, axis: scheme.fit(x, per_channel=True, axis=axis)):
+            with pytest.raises(ValueError, match=words):
+                call(array, axis=axis)
+    short = x[:, -1100:].copy()
+    short[3, 5] = np.nan
+    with pytest.raises(ValueError, match="channel 2, sample 100: "):
+        scheme.encode(short)
+
+
+@pytest.mark.parametrize("shape", [(0,), (0, 0), (0, 5), (5, 0), (2, 0, 3)])
+def test_an_array_without_samples_has_no_spikes_and_tells_nothing(shape):
+    scheme = sw.Hough(filter="triang:3")
+    assert scheme.encode(np.zeros(shape)).array.size == 0
+    with pytest.raises(ValueError, match="no samples|no channel"):
+        scheme.fit(np.zeros(shape))
+
+
+
 def test_a_parameter_may_have_a_value_for_each_channel():
     x = np.sin(np.arange(400).reshape(2, 200) * 0.1)
     both = sw.StepForward(threshold=[0.1, 0.3])

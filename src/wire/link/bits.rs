@@ -1,6 +1,6 @@
 //! Strings of bits, high bit first, and exponential Golomb codes.
 
-use crate::num::IS_CORTEX_M0;
+use crate::num::LACKS_DIVISION;
 use crate::wire::bytes::Cursor;
 
 /// A sink of bits.
@@ -28,7 +28,7 @@ fn bits_of(number: u32) -> u32 {
         5, 5,
     ];
     match SMALL.get(number as usize) {
-        Some(&bits) if IS_CORTEX_M0 => bits.into(),
+        Some(&bits) if LACKS_DIVISION => bits.into(),
         _ => 32 - number.leading_zeros(),
     }
 }

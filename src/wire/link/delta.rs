@@ -6,7 +6,7 @@ use super::Coding;
 use super::bits::{PutBits, TakeBits};
 use crate::Polarity;
 use crate::event::{Event, Tick};
-use crate::num::IS_CORTEX_M0;
+use crate::num::LACKS_DIVISION;
 
 /// The longest time from the frame's tick to an event, in µs: 8.9 minutes.
 const MAX_SINCE_START: u32 = 1 << 29;
@@ -54,7 +54,7 @@ impl Place {
                 bits.put(1, 1);
                 bits.put_code(zigzag(steps.wrapping_sub(1)), 0);
                 let jitter_bits = u32::from(jitter_bits);
-                if IS_CORTEX_M0 && jitter == 0 {
+                if LACKS_DIVISION && jitter == 0 {
                     // The code of 0, as a timer has no jitter. Other cores code any number as quickly.
                     bits.put(1_u32.wrapping_shl(jitter_bits), jitter_bits + 1);
                 } else {

@@ -286,7 +286,10 @@ const LONG: &[Step] = &[
     step(
         "all-cores",
         "firmware, storm and network on all emulated cores, seven for the recorded flight",
-        || [firmware::firmware(&[]), storm::on_all(), network::on_all()].into_iter().collect(),
+        || {
+            let parts = [firmware::firmware(&[]), storm::on_all(), network::on_all()];
+            parts.map(|own| own.inspect_err(|error| println!("{error}"))).into_iter().collect()
+        },
     )
     .apart(&[LAST]),
     step("cores", "instruction counts on all five cores, and the log of the smallest", long::cores),

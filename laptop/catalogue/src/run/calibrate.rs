@@ -31,14 +31,11 @@ impl Calibrated {
         if needs_quantiles { Self::new(sample) } else { Self::without_quantiles(sample) }
     }
 
-    /// Starts the same with sums in another order, which take less time: of recordings in `f32`. Where that might lead
-    /// to another threshold, there is none.
-    pub fn unordered(sample: SampleType, asked: &Asked) -> Self {
-        let own = Self::of(sample, asked);
-        if sample != SampleType::F32 {
-            return own;
-        }
-        Self { calibration: Box::new(Unordered::new()), ..own }
+    /// Starts a calibration like that of [`of`](Self::of) for samples in `f32`, with several sums side by side, which
+    /// takes less time. [`range`](Self::range) and [`threshold`](Self::threshold) are `None` where the order of the
+    /// samples might change them.
+    pub fn unordered(asked: &Asked) -> Self {
+        Self { calibration: Box::new(Unordered::new()), ..Self::of(SampleType::F32, asked) }
     }
 
     fn without_quantiles(sample: SampleType) -> Self {
@@ -75,8 +72,8 @@ impl Calibrated {
         self.quantiles.as_ref()?.quantiles((0..count).map(part))
     }
 
-    /// Returns the threshold of temporal contrast, from the differences or from their magnitudes; `None` if sums are
-    /// [`unordered`](Self::unordered) and do not tell.
+    /// Returns the threshold of temporal contrast, from the differences or from their magnitudes; `None` if sums that
+    /// are [`unordered`](Self::unordered) do not tell.
     ///
     /// # Errors
     /// Returns an error if there are too few samples, or if the threshold is not above 0.
@@ -150,5 +147,29 @@ impl Calibrate for Unordered {
 
     fn threshold(&self, factor: f32, of_magnitudes: bool) -> Option<Result<f64, ConfigError>> {
         self.threshold(factor, of_magnitudes).map(|own| Ok(own.into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_side_by_side_tell_the_same_of_any_samples() {
+        let doubles: Vec<f64> = (0..2000).map(|i| (0.1 * f64::from(i)).sin() / 3.0).collect();
+        let integers: Vec<i16> = doubles.iter().map(|own| (3e4 * own) as i16).collect();
+        for samples in [Samples::F64(&doubles), Samples::I16(&integers)] {
+            let asked = Asked::default();
+            let mut unordered = Calibrated::unordered(&asked);
+            let mut ordered = Calibrated::of(SampleType::F32, &asked);
+            unordered.observe_samples(samples);
+            ordered.observe_samples(samples);
+            assert_eq!(unordered.range(), ordered.range());
+            for of_magnitudes in [false, true] {
+                let [one, other] =
+                    [&unordered, &ordered].map(|own| own.threshold(0.5, of_magnitudes).unwrap());
+                assert_eq!(one, other);
+            }
+        }
     }
 }

@@ -12,7 +12,7 @@ use rand_pcg::rand_core::Rng;
 use spikewire::Spike;
 use spikewire::rate::{Average, Bernoulli, BernoulliState};
 
-/// Encodes what a scheme's `encode_slice` would encode alike; `None` for other schemes.
+/// Encodes as the scheme's `encode_slice` does; `None` unless the scheme is Bernoulli in `f32` with [`Average`].
 pub(super) fn encode_slice<S: Pod>(
     scheme: &dyn Any,
     state: &mut dyn Any,

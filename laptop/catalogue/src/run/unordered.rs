@@ -6,10 +6,10 @@
 use pulp::{Arch, Simd, WithSimd};
 use spikewire::temporal::TemporalContrast;
 
-/// How many sums run side by side.
+/// Number of sums that run side by side.
 const LANES: usize = 8;
 
-/// How many samples are added in one go.
+/// Number of samples that are added in one go.
 const BLOCK: usize = 128;
 
 /// Extremes of samples, and sums over their differences that do not wait for one another. They are those of the crate's
@@ -62,6 +62,13 @@ fn gather<T: Copy>(gathered: &mut [T; LANES], more: &[T], join: impl Fn(T, T) ->
     *gathered = own;
 }
 
+/// Returns the extreme of the lanes; `None` if it is 0 of both signs, of which the crate takes the first.
+fn agreed(lanes: [f32; LANES], is_beyond: fn(f32, f32) -> bool) -> Option<f32> {
+    let extreme = lanes.into_iter().reduce(|own, x| if is_beyond(own, x) { x } else { own })?;
+    let is_same = |x: &f32| *x != extreme || x.to_bits() == extreme.to_bits();
+    lanes.iter().all(is_same).then_some(extreme)
+}
+
 /// Adds samples but for the first.
 struct Add<'a> {
     sums: &'a mut Sums,
@@ -109,18 +116,19 @@ impl Unordered {
         }
     }
 
-    /// Returns the smallest and the largest sample; `None` without samples.
+    /// Returns the smallest and the largest sample; `None` without samples, or if the crate's `Calibration` might have
+    /// another one.
     pub(super) fn range(&self) -> Option<(f64, f64)> {
-        self.ends?;
-        let min = self.sums.min.into_iter().fold(f32::INFINITY, f32::min);
-        let max = self.sums.max.into_iter().fold(f32::NEG_INFINITY, f32::max);
-        Some((min.into(), max.into()))
+        self.ends.filter(|_| u32::try_from(self.seen).is_ok())?;
+        let min = agreed(self.sums.min, |min, x| x < min)?;
+        Some((min.into(), agreed(self.sums.max, |max, x| x > max)?.into()))
     }
 
     /// Returns the threshold of temporal contrast; `None` if it might be another one after the additions in their own
     /// order.
     pub(super) fn threshold(&self, factor: f32, of_magnitudes: bool) -> Option<f32> {
-        let ((first, last), factor) = (self.ends?, f64::from(factor));
+        let (first, last) = self.ends.filter(|_| u32::try_from(self.seen).is_ok())?;
+        let factor = f64::from(factor);
         let n = (self.seen - 1) as f64;
         let [magnitudes, squares] =
             [self.sums.magnitudes, self.sums.squares].map(|all| all.iter().sum::<f64>());
@@ -147,40 +155,54 @@ mod tests {
 
     use super::*;
 
+    /// Signals of many kinds: short and long, of one or of all sizes, with slopes, with zeros of both signs.
+    fn drawn(random: &mut Pcg32, case: usize) -> Vec<f32> {
+        let length = random.next_u32() as usize % [5, 40, 3000][case % 3];
+        let (offset, scale) = ([0.0, 9.81, 1e6][case / 3 % 3], [1.0, 1e-3, 1e4][case / 9 % 3]);
+        let slope = [0.0, 1.0, -1.0][case / 27 % 3];
+        let sample = |i: usize| match (case / 81 % 4, random.next_u32()) {
+            (0, draw) => [0.0, -0.0, 1.0][draw as usize % 3],
+            (1, draw) if f32::from_bits(draw).is_finite() => f32::from_bits(draw),
+            (_, draw) => (draw as f32 / 4e9 + slope * i as f32) * scale + offset,
+        };
+        (0..length).map(sample).collect()
+    }
+
     /// Whatever is told is what the crate's own sums give, and most signals are told.
     #[test]
     fn thresholds_are_those_of_the_sums_in_order() {
         let mut random = Pcg32::seed_from_u64(1);
         let (mut told, mut all) = (0, 0);
         for case in 0..4000 {
-            let length = random.next_u32() as usize % [5, 40, 3000][case % 3];
-            let (offset, scale) = ([0.0, 9.81, 1e6][case / 3 % 3], [1.0, 1e-3, 1e4][case / 9 % 3]);
-            let slope = [0.0, 1.0, -1.0][case / 27 % 3];
-            let mut draw =
-                |i: usize| (random.next_u32() as f32 / 4e9 + slope * i as f32) * scale + offset;
-            let samples: Vec<f32> = (0..length).map(&mut draw).collect();
+            let samples = drawn(&mut random, case);
             let mut unordered = Unordered::new();
-            let (one, other) = samples.split_at(length / 3);
+            let (one, other) = samples.split_at(samples.len() / 3);
             unordered.observe(one);
             unordered.observe(other);
             let mut ordered = Calibration::<f32>::new();
             for sample in &samples {
                 ordered.observe(*sample);
             }
+            let bits = |(min, max): (f64, f64)| [min.to_bits(), max.to_bits()];
             let range = ordered.min().zip(ordered.max()).map(|(min, max)| (min.into(), max.into()));
-            assert_eq!(unordered.range(), range);
-            for factor in [0.5, 1.0, -0.7, 0.0] {
+            if let Some(own) = unordered.range() {
+                assert_eq!(bits(own), bits(range.unwrap()));
+            } else {
+                assert!(range.is_none_or(|(min, max)| min == 0.0 || max == 0.0));
+            }
+            // The second is next to a factor with a threshold of 0, where not all digits are left.
+            let least = ordered.differences().map_or(0.3, |own| -own.mean / own.deviation);
+            for factor in [0.5, least as f32, -0.7, 0.0, 1e38, f32::INFINITY] {
                 let expected = [
                     TemporalContrast::from_calibration(&ordered, factor),
                     TemporalContrast::from_magnitudes(&ordered, factor),
                 ];
                 for (expected, of_magnitudes) in expected.into_iter().zip([false, true]) {
-                    let Some(threshold) = unordered.threshold(factor, of_magnitudes) else {
-                        all += usize::from(expected.is_ok());
-                        continue;
-                    };
-                    (told, all) = (told + 1, all + 1);
-                    assert_eq!(Ok(threshold), expected.map(|scheme| scheme.threshold()), "{case}");
+                    all += usize::from(expected.is_ok());
+                    if let Some(threshold) = unordered.threshold(factor, of_magnitudes) {
+                        told += 1;
+                        assert_eq!(Ok(threshold), expected.map(|own| own.threshold()), "{case}");
+                    }
                 }
             }
         }

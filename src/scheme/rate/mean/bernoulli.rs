@@ -130,9 +130,9 @@ impl<S: Sample, G: Rng, A: Averaging> Bernoulli<S, G, A> {
         core::array::from_fn(|channel| Self::state(generator(channel)))
     }
 
-    /// Does what [`encode_slice`](Scheme::encode_slice) does, with a generator that draws 32 numbers in less time than
-    /// one after the other. `draw` returns what 32 calls of `next_u32` would return, and leaves the generator as they
-    /// would leave it.
+    // For the laptop's codecs: `encode_slice` with a generator that draws 32 numbers in less time than one after the
+    // other. `draw` returns what 32 calls of `next_u32` would return, and leaves the generator as they would leave it.
+    #[doc(hidden)]
     #[inline(always)]
     pub fn encode_slice_with(
         &self,

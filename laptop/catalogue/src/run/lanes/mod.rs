@@ -240,7 +240,7 @@ impl Call<'_> {
         simd: S,
         code: impl Fn(Vec<f32>, &Recordings) -> C,
     ) -> bool {
-        // Never called so: it spares compiling the rest without vectors.
+        // Never reached: it spares compiling the rest without vectors.
         if S::F32_LANES == 1 {
             return false;
         }
