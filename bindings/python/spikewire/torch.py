@@ -216,7 +216,7 @@ class _Chip(nn.Module):
     #: Share that a step leaves of the potentials of a last layer that never fires; ``None`` if it fires.
     readout: float | None = None
     #: The most layers that fire.
-    _LAYERS = 3
+    _DEPTH = 3
 
     def __init__(self, inputs: int, sizes: tuple[int, ...], threshold: int, recurrent: bool = False):
         super().__init__()
@@ -224,8 +224,8 @@ class _Chip(nn.Module):
             raise ValueError(f"a threshold is a potential from 1 to {self._MOST}, not {threshold}")
         self.threshold = threshold
         firing = sizes if self.readout is None else sizes[:-1]
-        if not 1 <= len(firing) <= self._LAYERS:
-            raise ValueError(f"1 to {self._LAYERS} layers fire, not {len(firing)}")
+        if not 1 <= len(firing) <= self._DEPTH:
+            raise ValueError(f"1 to {self._DEPTH} layers fire, not {len(firing)}")
         # Most weights lie in the chip's range, however large the threshold is.
         one = min(threshold / self._unit / 16, self._RANGE[1] / 8)
         shapes = zip((inputs, *sizes), sizes)
