@@ -222,20 +222,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         held_out.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
-    let framework = match (&options.trained_spikes, &options.trained_potentials) {
-        (Some(path), _) => Some((path, Outputs::Spikes(spiking(path)?.steps))),
-        (_, Some(path)) => Some((path, Outputs::Potentials(potentials(path)?))),
-        _ => None,
-    };
-    if let Some((path, outputs)) = &framework {
-        let Converted::Chip(_, trained) = &converted else {
-            bail!(
-                "--trained-spikes and --trained-potentials are for the chips: the controller's rule is exact"
-            )
-        };
-        let checked = outputs.check(trained, driven.steps.len());
-        checked.map_err(|error| error.at(path.display().to_string()))?;
-    }
+    let framework = framework(options, &converted, driven.steps.len())?;
     // Without a second recording, the last third of the first is held out.
     let steps = driven.steps.len();
     // Nothing is tuned for the controller, whose arithmetic is exact or nearly so.
@@ -255,8 +242,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
-    let (tuned, compare) = (&tuned, options.compare);
-    let framework = framework.as_ref().map(|(_, outputs)| outputs);
+    let (tuned, framework, compare) = (&tuned, framework.as_ref(), options.compare);
     let (progress, numbers) = (&progress, options.rule.numbers);
     let brought = match &converted {
         Converted::Chip(chip, trained) => {
@@ -449,6 +435,23 @@ fn spiking(path: &Path) -> Result<Driven> {
         settings: Vec::new(),
         notes: Vec::new(),
     })
+}
+
+/// Reads the outputs that the training framework computed, if a file of them is given, and checks that they are those
+/// of the network in `steps` steps.
+fn framework(options: &Network, converted: &Converted, steps: usize) -> Result<Option<Outputs>> {
+    let (path, outputs) = match (&options.trained_spikes, &options.trained_potentials) {
+        (Some(path), _) => (path, Outputs::Spikes(spiking(path)?.steps)),
+        (_, Some(path)) => (path, Outputs::Potentials(potentials(path)?)),
+        _ => return Ok(None),
+    };
+    let Converted::Chip(_, trained) = converted else {
+        bail!(
+            "--trained-spikes and --trained-potentials are for the chips: the controller's rule is exact"
+        )
+    };
+    outputs.check(trained, steps).map_err(|error| error.at(path.display().to_string()))?;
+    Ok(Some(outputs))
 }
 
 /// Reads a file of the outputs' potentials: one line for each step, with a number for each output.
