@@ -214,18 +214,22 @@ class _Chip(nn.Module):
     #: The largest potential.
     _MOST = 2047
     #: Share that a step leaves of the potentials of a last layer that never fires; ``None`` if it fires.
-    _readout: float | None = None
+    readout: float | None = None
+    #: The most layers that fire.
+    _DEPTH = 3
 
     def __init__(self, inputs: int, sizes: tuple[int, ...], threshold: int, recurrent: bool = False):
         super().__init__()
         if not 0 < threshold <= self._MOST:
             raise ValueError(f"a threshold is a potential from 1 to {self._MOST}, not {threshold}")
         self.threshold = threshold
+        firing = sizes if self.readout is None else sizes[:-1]
+        if not 1 <= len(firing) <= self._DEPTH:
+            raise ValueError(f"1 to {self._DEPTH} layers fire, not {len(firing)}")
         # Most weights lie in the chip's range, however large the threshold is.
         one = min(threshold / self._unit / 16, self._RANGE[1] / 8)
         shapes = zip((inputs, *sizes), sizes)
         self.weights: nn.ParameterList = nn.ParameterList(nn.Parameter(one * (1 + 4 * torch.randn(shape))) for shape in shapes)
-        firing = sizes if self._readout is None else sizes[:-1]
         own = (nn.Parameter(one * 4 * torch.randn(size, size)) for size in firing if recurrent)
         self.recurrent: nn.ParameterList = nn.ParameterList(own)
 
@@ -275,8 +279,8 @@ class _Chip(nn.Module):
         for layer, own in zip(layers, self.recurrent):
             layer["recurrent"] = written(own)
         network: dict[str, Any] = {"layers": layers, "integers": True}
-        if self._readout is not None:
-            network["readout"] = {"weights": layers.pop()["weights"], "keep": self._readout}
+        if self.readout is not None:
+            network["readout"] = {"weights": layers.pop()["weights"], "keep": self.readout}
         Path(path).write_text(json.dumps(network))
 
 
@@ -298,7 +302,7 @@ class TinyOdin(_Chip):
 
     Args:
         inputs: Number of inputs.
-        sizes: Number of neurons of each layer.
+        sizes: Number of neurons of each layer, three layers at most.
         threshold: Potential from which a neuron fires, 1 to 2047.
         leak: Amount by which a potential comes nearer to 0 in each step.
     """
@@ -329,23 +333,31 @@ class ReckOn(_Chip):
     chip needs gates for that, which are not trained.
 
     With `readout` the last layer is the chip's outputs, and the result is what the driver's ``ReckOnSample::run`` returns, bit
-    for bit, in units of the weights after the shift. Each tick leaves a share of the outputs' potentials, rounded down.
+    for bit as long as no output leaves its 16 bits within a step, in units of the weights after the shift: there the chip
+    saturates spike by spike, and a smaller `shift` gives room. Each tick leaves a share of the outputs' potentials, rounded
+    down.
+
+    The attributes ``keep`` and ``readout`` are the shares that a step leaves in fact.
 
     >>> network = ReckOn(12, 16, 3, recurrent=True, readout=0.9)
     >>> network(torch.ones(5, 4, 12)).shape
     torch.Size([5, 4, 3])
+    >>> network.keep, network.readout
+    (0.95001220703125, 0.8984375)
 
     Args:
         inputs: Number of inputs, 256 at most.
-        sizes: Number of neurons of each layer: 256 in all, and 16 of the last. Three layers may fire.
+        sizes: Number of neurons of each layer: 16 at most of the last, and 256 of all that fire, up to three; an odd number
+            counts as one more if another such layer follows.
         threshold: Potential from which a neuron fires: far below 32767, as potentials beyond that saturate in another order
             than here.
-        keep: Share of a potential that a step leaves: 0.119 to 1, or from 0.875 if `recurrent` or `subtract`.
+        keep: Share of a potential that a step leaves: 0.1181 to 1, or from 0.875 if `recurrent` or `subtract`.
         shift: Bits by which the chip shifts weights to the left, 0 to 7. The larger it is, the less rounding costs.
         recurrent: Whether the spikes of a layer act on itself a step later.
         subtract: Whether a spike subtracts the threshold in the next step, instead of setting the potential to 0.
-        readout: Share of a potential that a step leaves in the last layer, which then never fires: the share of a tick is
-            rounded to 1/128. ``None`` for a last layer that fires.
+        readout: Share of a potential that a step leaves in the last layer, which then never fires; ``None`` for one that fires.
+            A tick leaves a multiple of 1/128. If none comes within 2 % of what a step is to lose, the error names the two
+            nearest shares of a step.
     """
 
     _RANGE = (-128, 127)
@@ -363,22 +375,42 @@ class ReckOn(_Chip):
         readout: float | None = None,
     ):
         if not 0.875**16 <= keep <= 1:
-            raise ValueError(f"a step leaves 0.119 to 1 of a potential, not {keep}")
+            raise ValueError(f"a step leaves 0.1181 to 1 of a potential, not {keep}")
         self._ticks = max(math.ceil(math.log(keep, 0.875) - 1e-9), 1)
         if self._ticks > 1 and (recurrent or subtract):
             raise ValueError(f"recurrent layers, and those that subtract, leave 0.875 to 1 of a potential, not {keep}")
-        # Rounded up, it might take a tick less.
-        self._kept = math.floor(keep ** (1 / self._ticks) * 32768 + 1e-6) / 32768
+        units = keep ** (1 / self._ticks) * 32768
+        # Several are rounded down: rounded up, `spikewire network` might choose a tick less.
+        self._kept = (round(units) if self._ticks == 1 else math.floor(units + 1e-6)) / 32768
+        self.keep: float = self._kept**self._ticks
         if readout is not None:
-            if not 0 < readout <= 1 or len(sizes) < 2:
-                raise ValueError(f"a last layer that never fires follows another, and leaves up to 1 of a potential, not {readout}")
-            self._read = max(round(readout ** (1 / self._ticks) * 128), 1) / 128
-            self._readout = self._read**self._ticks
+            self._read = self._read_share(readout)
+            self.readout: float | None = self._read**self._ticks
+            if len(sizes) < 2:
+                raise ValueError("a last layer that never fires follows another")
         if not 0 <= shift <= 7:
             raise ValueError(f"the chip shifts weights by 0 to 7 bits, not {shift}")
         self._unit = 1 << shift
         super().__init__(inputs, sizes, threshold, recurrent)
+        # The two neurons of a pair are of the same layer.
+        *before, last = sizes if readout is None else sizes[:-1]
+        neurons = sum(size + size % 2 for size in before) + last
+        for name, given, most in (("inputs", inputs, 256), ("neurons that fire", neurons, 256), ("outputs", sizes[-1], 16)):
+            if not 1 <= given <= most:
+                raise ValueError(f"the chip has {most} {name}, not {given}")
         self.subtract = subtract
+
+    def _read_share(self, asked: float) -> float:
+        """The share of the outputs' potentials that a tick leaves."""
+        if isinstance(asked, bool) or not 0 < asked <= 1:
+            raise ValueError(f"readout is the share of a potential that a step leaves, above 0 up to 1, not {asked}")
+        units = asked ** (1 / self._ticks) * 128
+        share = max(round(units), 1) / 128
+        if abs(share**self._ticks - asked) > 0.02 * (1 - asked):
+            low = min(max(math.floor(units), 1), 127)
+            near = " or ".join(f"{(own / 128) ** self._ticks:.4g}" for own in (low, low + 1))
+            raise ValueError(f"with keep={self.keep:.4g} the chip leaves {near} of the outputs' potentials, not {asked}")
+        return share
 
     def _counted(self, x: Tensor) -> Tensor:
         # `clamp` would stop gradients of single spikes: they are at its end.
@@ -397,7 +429,7 @@ class ReckOn(_Chip):
 
     def _steps(self) -> list[Callable[..., tuple[Tensor, Tensor, Any]]]:
         steps = super()._steps()
-        return steps if self._readout is None else [*steps[:-1], self._read_out]
+        return steps if self.readout is None else [*steps[:-1], self._read_out]
 
     def _read_out(self, back: None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
         reached = (driven if state is None else state + driven).clamp(-32768, 32767)
@@ -407,7 +439,7 @@ class ReckOn(_Chip):
         return reached, values, _left(answer, self._read, self._ticks - 1)
 
     def _rule(self) -> dict[str, Any]:
-        return {"keep": self._kept**self._ticks}
+        return {"keep": self.keep}
 
 
 def _left(potentials: Tensor, share: float, ticks: int) -> Tensor:

@@ -161,30 +161,31 @@ def test_tiny_odin_is_saved(tmp_path):
         sw.Network.from_nir(tmp_path / "chip.json")
 
 
-# The weights of the networks that follow.
-torch.manual_seed(1)
-
-
 @pytest.mark.skipif("SPIKEWIRE" not in os.environ, reason="needs the laptop program")
 @pytest.mark.parametrize(
-    ("network", "words"),
+    ("made", "words"),
     [
-        (TinyOdin(12, 16, 5), "--on tinyodin --compare step"),
-        (ReckOn(12, 16, 5), "--on reckon"),
-        (ReckOn(12, 17, 9, 5, recurrent=True, keep=0.9), "--on reckon"),
-        (ReckOn(12, 16, 5, recurrent=True, subtract=True), "--on reckon --reset subtract-late"),
-        (ReckOn(12, 3, shift=0, threshold=100, keep=1.0), "--on reckon"),
-        (ReckOn(12, 16, 9, 5, keep=0.7), "--on reckon"),
-        (ReckOn(12, 17, 9, 5, recurrent=True, readout=0.95), "--on reckon"),
-        (ReckOn(12, 16, 5, recurrent=True, subtract=True, readout=0.5), "--on reckon --reset subtract-late"),
-        (ReckOn(12, 15, 9, 7, 5, keep=0.874999, readout=0.9), "--on reckon"),
-        (ReckOn(12, 15, 3, keep=0.12, readout=0.3), "--on reckon"),
+        (lambda: TinyOdin(12, 16, 5), "--on tinyodin --compare step"),
+        (lambda: ReckOn(12, 16, 5), "--on reckon"),
+        (lambda: ReckOn(12, 16, 5).double(), "--on reckon"),
+        (lambda: ReckOn(12, 17, 9, 5, recurrent=True, keep=0.9), "--on reckon"),
+        (lambda: ReckOn(12, 16, 5, recurrent=True, subtract=True), "--on reckon --reset subtract-late"),
+        (lambda: ReckOn(12, 3, shift=0, threshold=100, keep=1.0), "--on reckon"),
+        (lambda: ReckOn(12, 16, 9, 5, keep=0.7), "--on reckon"),
+        (lambda: ReckOn(12, 17, 9, 5, recurrent=True, readout=0.953), "--on reckon"),
+        (lambda: ReckOn(12, 16, 5, recurrent=True, subtract=True, readout=0.5), "--on reckon --reset subtract-late"),
+        (lambda: ReckOn(12, 15, 9, 7, 5, keep=0.874999, readout=0.8936), "--on reckon"),
+        (lambda: ReckOn(12, 15, 3, keep=0.12, readout=0.3).double(), "--on reckon"),
+        (lambda: ReckOn(12, 16, 3, threshold=64, shift=0, readout=1.0), "--on reckon"),
+        (lambda: ReckOn(12, 16, 3, threshold=4096, shift=7, readout=0.3), "--on reckon"),
     ],
 )
-def test_chips_are_what_the_networks_are(network, words, tmp_path):
+def test_chips_are_what_the_networks_are(made, words, tmp_path):
+    torch.manual_seed(5)
+    network = made()
     inputs = np.random.default_rng(1).integers(0, 2, (400, 12))
     outputs = network(torch.from_numpy(inputs)[:, None])[:, 0].detach().numpy()
-    fires = set(outputs.ravel()) <= {0, 1}
+    fires = network.readout is None
     trained = map(np.flatnonzero, outputs) if fires else outputs.tolist()
     for name, steps in (("inputs", map(np.flatnonzero, inputs)), ("outputs", trained)):
         (tmp_path / name).write_text("".join(" ".join(map(str, step)) + "\n" for step in steps))
@@ -220,10 +221,10 @@ def test_reckon_learns():
 
 def test_reckon_learns_by_its_outputs():
     torch.manual_seed(1)
-    network = ReckOn(6, 20, 2, keep=0.8, readout=0.8)
+    network = ReckOn(6, 20, 2, keep=0.8, readout=0.7932)
     spikes = Encode(sw.StepForward(threshold=0.02), time=1, split=True)(X[..., :3])
     wanted = torch.stack([X[..., 0].T, -X[..., 1].T], -1)
-    optimizer = torch.optim.Adam(network.parameters(), 0.3)
+    optimizer = torch.optim.Adam(network.parameters(), 0.5)
     losses = []
     for _ in range(60):
         loss = (network(spikes) / 1024 - wanted).square().mean()
@@ -239,9 +240,18 @@ def test_reckon_learns_by_its_outputs():
     ("made", "words"),
     [
         (lambda: ReckOn(2, 2, keep=0.8, recurrent=True), "0.875 to 1"),
-        (lambda: ReckOn(2, 2, keep=0.1), "0.119 to 1"),
+        (lambda: ReckOn(2, 2, keep=0.1), "0.1181 to 1"),
         (lambda: ReckOn(2, 2, readout=0.9), "follows another"),
-        (lambda: ReckOn(2, 2, 2, readout=0), "up to 1 of a potential, not 0"),
+        (lambda: ReckOn(2, 2, readout=0), "above 0 up to 1, not 0"),
+        (lambda: ReckOn(2, 2, 2, readout=True), "above 0 up to 1, not True"),
+        (lambda: ReckOn(2, 2, 2, keep=0.6, readout=0.99), "0.9691 or 1 of the outputs' potentials, not 0.99"),
+        (lambda: ReckOn(2, 2, 2, readout=0.95), "0.9453 or 0.9531 of the"),
+        (lambda: ReckOn(2, 2, 2, 2, 2), "1 to 3 layers fire, not 4"),
+        (lambda: TinyOdin(2), "1 to 3 layers fire, not 0"),
+        (lambda: ReckOn(2, 255, 1), "256 neurons that fire, not 257"),
+        (lambda: ReckOn(2, 257, 1, readout=0.5), "256 neurons that fire, not 257"),
+        (lambda: ReckOn(257, 2), "256 inputs, not 257"),
+        (lambda: ReckOn(2, 2, 17, readout=0.5), "16 outputs, not 17"),
         (lambda: ReckOn(2, 2, shift=9), "0 to 7 bits, not 9"),
         (lambda: ReckOn(2, 2, threshold=50000), "1 to 32767, not 50000"),
         (lambda: TinyOdin(2, 2, threshold=2048), "1 to 2047, not 2048"),
@@ -253,6 +263,26 @@ def test_reckon_learns_by_its_outputs():
 def test_wrong_arguments_are_named(made, words):
     with pytest.raises(ValueError, match=words):
         made()
+
+
+@pytest.mark.parametrize("keep", [1.0, 0.95, 0.875, 0.6, 0.1181])
+def test_shares_of_reckon_are_those_asked_for(keep):
+    network = ReckOn(2, 2, 2, keep=keep)
+    assert network.readout is None
+    assert abs(network.keep - keep) < 1e-4
+    taken = 0
+    for readout in np.linspace(0, 1, 500)[1:]:
+        try:
+            own = ReckOn(2, 2, 2, keep=keep, readout=readout).readout
+        except ValueError as error:
+            # Those that the error names are taken.
+            near = [float(word) for word in str(error).split() if word[0] in "01"]
+            assert near[0] < readout < near[1] or readout < near[0] < 0.01
+            assert all(ReckOn(2, 2, 2, keep=keep, readout=share).readout for share in near[:2])
+        else:
+            taken += 1
+            assert abs(own - readout) <= 0.02 * (1 - readout)
+    assert taken > 100
 
 
 def test_a_diverged_network_is_named():

@@ -297,28 +297,60 @@ fn reset_modes_are_required_and_compared_with_the_frameworks_spikes() {
 #[test]
 fn potentials_are_compared_with_those_of_training() {
     let layers = r#"{"layers": [{"weights": [[1, 0], [0, 1]], "threshold": 0.5}]"#;
-    let readout = r#""readout": {"weights": [[2, 0], [0, -1]]}, "integers": true"#;
-    let (_network, network) = file("net.json", format!("{layers}, {readout}}}"));
+    let readout = r#""readout": {"weights": [[2, 0], [0, -1]]}"#;
+    let (_real, real) = file("net.json", format!("{layers}, {readout}}}"));
+    let (_whole, network) = file("net.json", format!("{layers}, {readout}, \"integers\": true}}"));
     let (_fires, fires) = file("fires.json", format!("{layers}}}"));
     let (_steps, steps) = file("steps.txt", "0\n0 1\n\n");
-    let off = |potentials: &str| {
+    let compared = |network: &str, potentials: &str| {
         let (_potentials, potentials) = file("potentials.txt", potentials);
         let network = format!("network {network} {steps} --on reckon --no-held-out");
-        let ran = good(&format!("{network} --trained-potentials {potentials}"), "");
-        figures(&ran.stderr, "readout: 2 outputs")[2]
+        good(&format!("{network} --trained-potentials {potentials}"), "").stderr
+    };
+    let off = |potentials: &str| {
+        let report = compared(&network, potentials);
+        assert!(!report.contains("in double precision, as the file"), "{report}");
+        figures(&report, "readout: 2 outputs")[2]
     };
     assert_eq!(off("2 0\n4 -1\n4 -1\n"), 0.0);
+    // Of six potentials one is 6 off.
     assert_eq!(off("2 0\n4 -1\n4 5\n"), 2.4495);
+    for (potentials, off) in [("2 0\n4 -1\n4 -1\n", 0.0), ("2 0\n4 -1\n4 5\n", 76.2)] {
+        let report = compared(&real, potentials);
+        assert_eq!(figures(&report, "in double precision, as the file")[0], off, "{report}");
+        assert_eq!(report.contains("may be others"), off > 0.0, "{report}");
+    }
+    // Norse's potentials tell a wrong `--dt`.
+    let at = |name: &str| peers("nir").join(name).display().to_string();
+    let recorded = fs::read_to_string(at("norse.to-value.txt")).unwrap();
+    let column = |number: usize| -> String {
+        let lines = recorded.lines().map(|line| line.split(';').nth(number).unwrap());
+        lines.map(|line| line.to_owned() + "\n").collect()
+    };
+    let (_inputs, inputs) = file("inputs.txt", column(0));
+    let (_outputs, outputs) = file("outputs.txt", column(3));
+    for (dt, is_own) in [("1e-3", true), ("5e-4", false)] {
+        let norse =
+            format!("network {} {inputs} --on reckon --as norse --dt {dt}", at("norse.nir"));
+        let report = good(&format!("{norse} --trained-potentials {outputs}"), "").stderr;
+        let off = figures(&report, "in double precision, as the file")[0];
+        assert_eq!((off == 0.0, report.contains("may be others")), (is_own, !is_own), "{report}");
+    }
     for (network, option, outputs, words) in [
-        (&network, "potentials", "2 0\n", "outputs of 1 steps, where the recording has 3"),
-        (&network, "potentials", "2 0\n4 -1\n4\n", "potentials of 1 outputs, of which"),
-        (&network, "potentials", "2 0\nx\n", "line 2"),
-        (&network, "spikes", "0\n\n\n", "spikes of outputs that never fire"),
-        (&fires, "potentials", "2 0\n4 -1\n4 -1\n", "potentials of outputs that fire"),
+        (&network, "potentials", "2 0\n", "outputs of 1 steps, and the recording has 3"),
+        (&network, "potentials", "2 0\n4 -1\n4\n", "1 potentials in step 3, and the network has 2"),
+        (&network, "potentials", "2 0\n1 x\n", "line 2: `x` is not a finite number"),
+        (&network, "potentials", "2 0\n4 nan\n4 -1\n", "line 2: `nan` is not a finite number"),
+        (&network, "potentials", "2 0\n4 -1\n-inf 0\n", "line 3: `-inf` is not a finite number"),
+        (&network, "potentials", "1e400 0\n", "line 1: `1e400` is not a finite number"),
+        (&network, "spikes", "0\n\n\n", "spikes, but the network's outputs never fire"),
+        (&fires, "potentials", "2 0\n4 -1\n4 -1\n", "potentials, but the network's outputs fire"),
+        (&fires, "spikes", "0\n1\n\n\n", "outputs of 4 steps, and the recording has 3"),
+        (&fires, "spikes", "0\n1 2\n\n", "a spike of output 2 in step 2, and the network has 2"),
     ] {
         let (_outputs, outputs) = file("outputs.txt", outputs);
         let network = format!("network {network} {steps} --on reckon --reset zero --no-held-out");
-        refused(&format!("{network} --trained-{option} {outputs}"), "", &[words]);
+        refused(&format!("{network} --trained-{option} {outputs}"), "", &["outputs.txt: ", words]);
     }
 }
 

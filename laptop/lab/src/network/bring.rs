@@ -1,5 +1,5 @@
 //! Brings a trained network onto a chip: quantises the network, runs the quantised network on the chip's model, and
-//! compares the spikes with those of the original.
+//! compares the outputs with those of the original.
 
 use super::{Chip, Compare, Cost, Distance, OnChip, Trained, Trains};
 use crate::Result;
@@ -41,6 +41,42 @@ pub enum Outputs {
     Potentials(Vec<Vec<f64>>),
 }
 
+impl Outputs {
+    /// Checks that these are outputs of the network `trained`, in `steps` steps.
+    ///
+    /// # Errors
+    /// Returns an error if there are more or fewer steps, if spikes are given of outputs that never fire, or potentials
+    /// of outputs that fire, or if a step has outputs that the network does not have, or too few potentials.
+    pub fn check(&self, trained: &Trained, steps: usize) -> Result<()> {
+        let has_steps = |given| -> Result<()> {
+            ensure!(given == steps, NetworkKind::OutputSteps { given, steps });
+            Ok(())
+        };
+        match (self, &trained.readout) {
+            (Self::Spikes(given), None) => {
+                has_steps(given.len())?;
+                let outputs = trained.layers.last().map_or(0, |layer| layer.neurons.len());
+                for (step, &output) in
+                    (1..).zip(given).flat_map(|(at, fired)| fired.iter().map(move |one| (at, one)))
+                {
+                    let is_known = usize::from(output) < outputs;
+                    ensure!(is_known, NetworkKind::SpikeOutput { step, output, outputs });
+                }
+            }
+            (Self::Potentials(given), Some(readout)) => {
+                has_steps(given.len())?;
+                let outputs = readout.weights.len();
+                for (step, given) in (1..).zip(given.iter().map(Vec::len)) {
+                    ensure!(given == outputs, NetworkKind::Potentials { step, given, outputs });
+                }
+            }
+            (Self::Spikes(_), Some(_)) => return Err(NetworkKind::OutputsNeverFire.into()),
+            (Self::Potentials(_), None) => return Err(NetworkKind::OutputsFire.into()),
+        }
+        Ok(())
+    }
+}
+
 /// A recording on which a network is tested after its parameters were tuned on a different recording.
 #[derive(Clone, Copy)]
 pub struct HeldOut<'a> {
@@ -55,9 +91,9 @@ pub struct HeldOut<'a> {
 pub struct Brought {
     /// The quantised network.
     pub network: Box<dyn OnChip>,
-    /// Comparison with double precision, for the recording that was used to tune the parameters.
+    /// Comparison with the reference, for the recording that was used to tune the parameters.
     pub tuned: Figures,
-    /// Comparison with double precision on the held-out recording; `None` if there is no such recording.
+    /// Comparison with the reference on the held-out recording; `None` if there is no such recording.
     pub held_out: Option<Figures>,
     /// The parts of the chip's arithmetic, each with a measure of its effect on the spikes. For each part, two runs of
     /// the network are compared: one in double precision except for this part, and one entirely in double precision.
@@ -67,28 +103,36 @@ pub struct Brought {
     pub costs: Vec<(Cost, f64)>,
     /// Share of active steps in which the same outputs fire in double precision and in the training framework. A step
     /// is active if an output fires in either run. A low share suggests that the network's file, or the rule of its
-    /// neurons, was understood wrongly. `None` if the framework's spikes are not given, or if no output fires.
+    /// neurons, was understood wrongly. `None` if the framework's spikes are not given, or if no output fires, or if the
+    /// network was trained in a chip's integers, since double precision does not round as they do.
     pub reading: Option<f64>,
+    /// Root mean square of the difference between the outputs' potentials in double precision and in the training
+    /// framework, divided by that of the framework's potentials. A large number suggests the same as a low
+    /// [`reading`](Self::reading). `None` if the framework's potentials are not given, or if all are 0, or if the network
+    /// was trained in a chip's integers.
+    pub reading_error: Option<f64>,
 }
 
-/// Comparison of a network in double precision with the same network on the chip's model.
+/// Comparison of a network on the chip's model with a reference. The reference is the network in double precision;
+/// its outputs are those of the training framework, if they are given. If outputs never fire, the one with the highest
+/// potential counts as the one that fires, and a single one does not count.
 #[derive(Debug, Serialize)]
 pub struct Figures {
     /// The comparison of each layer.
     pub layers: Vec<LayerFigures>,
     /// Number of steps compared.
     pub steps: usize,
-    /// Number of steps in which the same outputs fire in double precision and on the chip, including steps in which no
+    /// Number of steps in which the same outputs fire in the reference and on the chip, including steps in which no
     /// output fires.
     pub agreeing: usize,
-    /// Number of active steps: those in which an output fires, in double precision or on the chip.
+    /// Number of active steps: those in which an output fires, in the reference or on the chip.
     pub active: usize,
-    /// Number of [`active`](Self::active) steps in which the same outputs fire in double precision and on the chip.
+    /// Number of [`active`](Self::active) steps in which the same outputs fire in the reference and on the chip.
     pub active_agreeing: usize,
-    /// Number of windows of [`WINDOW`] steps in which an output fires, in double precision or on the chip.
+    /// Number of windows of [`WINDOW`] steps in which an output fires, in the reference or on the chip.
     pub windows: usize,
-    /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in double precision
-    /// and on the chip.
+    /// Number of [`windows`](Self::windows) in which the outputs with the most spikes are the same in the reference and
+    /// on the chip.
     pub windows_agreeing: usize,
     /// Mean number of clock cycles that the chip takes for a step. On the flight controller: the mean number of weight
     /// additions in a step.
@@ -102,7 +146,8 @@ pub struct Figures {
     pub potentials: Option<PotentialFigures>,
 }
 
-/// Comparison of the outputs' potentials in double precision with those on the chip's model.
+/// Comparison of the outputs' potentials on the chip's model with those of the reference: those of the training
+/// framework, if they are given, otherwise those in double precision.
 #[derive(Debug, Serialize)]
 pub struct PotentialFigures {
     /// Name of the output layer in the network's file.
@@ -111,14 +156,14 @@ pub struct PotentialFigures {
     pub outputs: usize,
     /// Number of the outputs' weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
-    /// Root mean square of the potentials in double precision, in the units of the trained network.
+    /// Root mean square of the reference's potentials, in the units of the trained network.
     pub size: f64,
-    /// Root mean square of the difference between the chip's potentials and those in double precision, in the same
-    /// units.
+    /// Root mean square of the difference between the chip's potentials and the reference's, in the same units.
     pub error: f64,
 }
 
-/// Comparison of a layer in double precision with the same layer on the chip's model.
+/// Comparison of a layer on the chip's model with the same layer of the reference: double precision or, for the spikes
+/// of outputs, the training framework if they are given.
 #[derive(Debug, Serialize)]
 pub struct LayerFigures {
     /// Name of the layer in the network's file.
@@ -127,41 +172,47 @@ pub struct LayerFigures {
     pub neurons: usize,
     /// Number of weights that exceeded the chip's range and were clipped.
     pub clipped: usize,
-    /// Number of spikes of the layer in double precision, in all steps.
+    /// Number of spikes of the layer in the reference, in all steps.
     pub spikes: usize,
     /// Number of spikes of the layer on the chip, in all steps.
     pub on_chip: usize,
-    /// Squared van Rossum distance between the layer's spikes in double precision and on the chip, summed over all
+    /// Squared van Rossum distance between the layer's spikes in the reference and on the chip, summed over all
     /// neurons.
     pub distance: f64,
 }
 
-/// Quantises the network for the chip, runs the quantised network on the chip's model, and compares the spikes with
+/// Quantises the network for the chip, runs the quantised network on the chip's model, and compares the outputs with
 /// those of the original.
 ///
 /// # Errors
-/// Returns an error if the network does not fit the chip, if the framework's spikes do not fit the network, or if the
+/// Returns an error if the network does not fit the chip, if the framework's outputs do not fit the network, or if the
 /// chip's model refuses a call.
 pub fn bring(request: &Request) -> Result<Brought> {
     let Request { chip, trained, tuned, held_out, framework: own, compare, progress } = *request;
+    if let Some(own) = own {
+        own.check(trained, held_out.map_or(tuned, |all| all.steps).len())?;
+    }
     let mut original = Original::of(trained, tuned);
     let mut other = held_out.map(|held_out| Original::of(trained, held_out.steps));
     let from = held_out.map_or(0, |held_out| held_out.from);
-    let mut reading = None;
+    let (mut reading, mut reading_error) = (None, None);
     if let Some(own) = own {
-        let given = match own {
+        let read = other.as_ref().unwrap_or(&original);
+        match own {
+            _ if trained.integers => {}
             Outputs::Spikes(own) => {
-                let read = other.as_ref().unwrap_or(&original).fired.last();
+                let read = read.fired.last();
                 reading = read.and_then(|read| agreement(read.get(from..)?, own.get(from..)?));
-                own.len()
             }
-            Outputs::Potentials(own) => own.len(),
-        };
-        let steps = held_out.map_or(tuned, |all| all.steps).len();
-        ensure!(given == steps, NetworkKind::OutputSteps { given, steps });
-        original.replace_outputs(own)?;
+            Outputs::Potentials(own) => {
+                let size = root_mean_square(own.iter().skip(from).flatten().copied());
+                let error = difference(read.potentials.iter().skip(from), own.iter().skip(from));
+                reading_error = (size > 0.0).then(|| error / size);
+            }
+        }
+        original.replace_outputs(own);
         if let Some(other) = &mut other {
-            other.replace_outputs(own)?;
+            other.replace_outputs(own);
         }
     }
     let network = chip.quantise(trained, tuned, &original.fired, compare, progress)?;
@@ -178,7 +229,7 @@ pub fn bring(request: &Request) -> Result<Brought> {
         .zip(other)
         .map(|(all, original)| figures(&original, &*network, all.steps, all.from))
         .transpose()?;
-    Ok(Brought { network, tuned, held_out, costs, reading })
+    Ok(Brought { network, tuned, held_out, costs, reading, reading_error })
 }
 
 /// Compares two spike trains step by step. Among the steps in which at least one of them has a spike, returns the share
@@ -192,8 +243,8 @@ pub(super) fn agreement(one: &[Vec<u16>], other: &[Vec<u16>]) -> Option<f64> {
     (active > 0).then(|| f64::from(same as u32) / f64::from(active))
 }
 
-/// The reference for comparisons: the spikes and potentials of one run in double precision, and the sizes of the
-/// layers.
+/// The reference for comparisons: the spikes and potentials of one run in double precision, in which the training
+/// framework's outputs replace its own if they are given, and the sizes of the layers.
 pub(super) struct Original {
     /// For each layer whose neurons fire: the layer's name and its number of neurons.
     pub layers: Vec<(String, usize)>,
@@ -216,31 +267,17 @@ impl Original {
     }
 
     /// Replaces the outputs by the first of `framework`, those that the training framework computed.
-    ///
-    /// # Errors
-    /// Returns an error if `framework` has an output that the network does not have, or outputs of the other kind.
-    fn replace_outputs(&mut self, framework: &Outputs) -> Result<()> {
-        match (framework, &self.readout, self.fired.last_mut()) {
-            (Outputs::Spikes(framework), None, Some(last)) => {
-                let outputs = self.layers.last().map_or(0, |(_, neurons)| *neurons);
-                let highest = framework.iter().flatten().max().copied().unwrap_or(0);
-                ensure!(
-                    usize::from(highest) < outputs,
-                    NetworkKind::SpikeOutput { output: highest, outputs }
-                );
-                *last = framework.iter().take(last.len()).cloned().collect();
-            }
-            (Outputs::Potentials(framework), Some((_, outputs)), _) => {
-                let outputs = *outputs;
-                if let Some(odd) = framework.iter().find(|step| step.len() != outputs) {
-                    return Err(NetworkKind::Potentials { given: odd.len(), outputs }.into());
+    fn replace_outputs(&mut self, framework: &Outputs) {
+        match framework {
+            Outputs::Spikes(framework) => {
+                if let Some(last) = self.fired.last_mut() {
+                    *last = framework.iter().take(last.len()).cloned().collect();
                 }
+            }
+            Outputs::Potentials(framework) => {
                 self.potentials = framework.iter().take(self.potentials.len()).cloned().collect();
             }
-            (Outputs::Spikes(_), ..) => return Err(NetworkKind::OutputsNeverFire.into()),
-            (Outputs::Potentials(_), ..) => return Err(NetworkKind::OutputsFire.into()),
         }
-        Ok(())
     }
 
     pub(super) fn of(trained: &Trained, inputs: &Trains) -> Self {
@@ -304,13 +341,7 @@ pub(super) fn figures(
             outputs: *outputs,
             clipped: clipped.last().copied().unwrap_or(0),
             size: root_mean_square(potentials.iter().flatten().copied()),
-            error: root_mean_square(
-                potentials
-                    .iter()
-                    .flatten()
-                    .zip(ran.potentials.iter().flatten())
-                    .map(|(a, b)| a - b),
-            ),
+            error: difference(potentials.iter(), ran.potentials.iter()),
         });
         // With a single output, the highest output says nothing.
         if *outputs > 1 {
@@ -320,6 +351,14 @@ pub(super) fn figures(
         figures.compare(original, fired);
     }
     Ok(figures)
+}
+
+/// Returns the root mean square of the differences between two runs' potentials.
+fn difference<'a>(
+    one: impl Iterator<Item = &'a Vec<f64>>,
+    other: impl Iterator<Item = &'a Vec<f64>>,
+) -> f64 {
+    root_mean_square(one.flatten().zip(other.flatten()).map(|(one, other)| one - other))
 }
 
 fn root_mean_square(numbers: impl Iterator<Item = f64>) -> f64 {
@@ -383,8 +422,8 @@ impl Figures {
         }
     }
 
-    /// Returns the share of active steps in which the same outputs fire in double precision and on the chip; `None` if
-    /// no output ever fires.
+    /// Returns the share of active steps in which the same outputs fire in the reference and on the chip; `None` if no
+    /// output ever fires.
     pub fn agreement(&self) -> Option<f64> {
         (self.active > 0).then(|| self.active_agreeing as f64 / self.active as f64)
     }

@@ -48,13 +48,13 @@ kinds! {
         JsonResets { resets: usize } =>
             ("layers in JSON have one reset, and {resets} are asked for"),
         OutputSteps { given: usize, steps: usize } =>
-            ("outputs of {given} steps, where the recording has {steps}"),
-        SpikeOutput { output: u16, outputs: usize } =>
-            ("spikes of output {output}, of {outputs} outputs"),
-        OutputsFire => ("potentials of outputs that fire"),
-        OutputsNeverFire => ("spikes of outputs that never fire"),
-        Potentials { given: usize, outputs: usize } =>
-            ("potentials of {given} outputs, of which the network has {outputs}"),
+            ("outputs of {given} steps, and the recording has {steps}"),
+        SpikeOutput { step: usize, output: u16, outputs: usize } =>
+            ("a spike of output {output} in step {step}, and the network has {outputs} outputs"),
+        OutputsFire => ("potentials, but the network's outputs fire"),
+        OutputsNeverFire => ("spikes, but the network's outputs never fire"),
+        Potentials { step: usize, given: usize, outputs: usize } =>
+            ("{given} potentials in step {step}, and the network has {outputs} outputs"),
     }
 }
 room!(NetworkKind, Network);

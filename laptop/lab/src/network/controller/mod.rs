@@ -196,7 +196,7 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
         .map(|all| figures(&model.original(all.steps), &*network, all.steps, all.from))
         .transpose()?;
     let tuned = figures(&original, &*network, tuned, 0)?;
-    Ok(Brought { network, tuned, held_out, costs: vec![], reading: None })
+    Ok(Brought { network, tuned, held_out, costs: vec![], reading: None, reading_error: None })
 }
 
 /// Chooses [`CHECKED`] consecutive steps for the self-test, and returns their inputs. The network starts from rest, and

@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 /// Safety factor for gates. A gate is an input that lowers a neuron to keep it from firing. It lowers the neuron by
 /// this factor times the amount that suffices in the recording.
 const SPARE: f64 = 1.5;
+/// Share of its threshold by which a neuron stays below it after a gate has lowered it, at least: room for rounded
+/// weights and leaks.
+const MARGIN: f64 = 0.1;
 /// The weight, in units of the threshold, with which a spike makes a neuron fire that only repeats it. After the spike,
 /// less than a third of the threshold is left.
 const REPEATS: f64 = 1.2;
@@ -194,7 +197,7 @@ impl<'a> Recorded<'a> {
             source.bias = layer.bias[neuron] / threshold;
             // A neuron may rest at up to twice its threshold without firing, also where the recording shows none.
             let rest = self.group(seat).rests[neuron] * unit;
-            source.gate = (SPARE * rest * kept - 1.0).max(2.0 * kept - 0.9);
+            source.gate = (SPARE * rest * kept - 1.0).max(2.0 * kept - 1.0 + MARGIN);
         } else {
             // The layer's own spikes, and a reset that subtracts, act at the tick after the layer has compared. Until
             // it compares again, less is left of them than in training, where they act when the neuron compares.
