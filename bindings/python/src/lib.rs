@@ -119,7 +119,7 @@ mod info {
             Search::Words(words) => {
                 return ("words", 0.0, words.len() as f64 - 1.0, words.to_vec());
             }
-            Search::Log(low, high) => ("log", low, high),
+            Search::Log(low, high) | Search::Fields(low, high) => ("log", low, high),
             Search::Around(low, high) => ("around", low, high),
             Search::OfFilter(low, high) => ("of filter", low, high),
             Search::Thresholds(low, high) => ("times", low, high),

@@ -103,6 +103,9 @@ pub enum Search {
     /// A number between these, searched by its logarithm. For a parameter in the signal's unit they are fractions of
     /// the signal's range.
     Log(f64, f64),
+    /// The ratio `beta` between these, searched by the logarithm of the number of receptive fields that fire in a sample,
+    /// which slots and floor change, too.
+    Fields(f64, f64),
     /// An offset between these from a figure of the signal, as fractions of the signal's range.
     Around(f64, f64),
     /// A number between these, as fractions of the filter's sum.

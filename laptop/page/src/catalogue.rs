@@ -52,7 +52,7 @@ fn parameter(own: &Parameter) -> Value {
 /// Between which numbers a slider goes: `of` says what they are parts of.
 fn slider(search: Search) -> Option<Value> {
     let (of, low, high, is_log) = match search {
-        Search::Log(low, high) => ("unit", low, high, true),
+        Search::Log(low, high) | Search::Fields(low, high) => ("unit", low, high, true),
         Search::Around(low, high) => ("around", low, high, false),
         Search::Whole(low, high) | Search::Most(low, high) => {
             ("whole", low.into(), high.into(), false)

@@ -36,7 +36,8 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
             Parameter::SLOTS,
-            Parameter::BETA,
+            // Not so in `grf-slots`, where a search of beta itself finds smaller errors on the hexarotor's flight.
+            Parameter::BETA.searched(Search::Fields(0.3, 4.0)),
             Parameter::FLOOR,
         ],
         ..Info::BLANK

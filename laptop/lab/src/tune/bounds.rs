@@ -30,9 +30,10 @@ impl Bound {
 
 /// Returns the parameters whose values in the settings `best` lie at a bound of the search. Leaves out a parameter if
 /// the scheme allows no value beyond the bound.
-pub(super) fn bounds(problem: &Problem, space: &Space, best: &Asked) -> Vec<Bound> {
+pub(super) fn bounds(problem: &Problem, best: &Asked) -> Vec<Bound> {
     /// Largest distance from a bound at which a value counts as lying at the bound, as a share of the axis.
     const NEAR: f64 = 0.02;
+    let space = Space::plain(problem.scheme, &problem.fixed, problem.extent);
     let point = space.point(best);
     let Some(first) = problem.train.first() else { return Vec::new() };
     let is_built = |options: &Asked| {

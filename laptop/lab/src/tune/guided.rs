@@ -76,10 +76,7 @@ pub(super) struct Guided<'a> {
 
 impl<'a> Guided<'a> {
     pub(super) fn new(problem: &'a Problem<'a>, space: &'a Space, goal: Goal, seed: u64) -> Self {
-        let share = match goal {
-            Goal::LeastError(efficiency) => 1.0 - efficiency / 100.0,
-            Goal::MostEfficient(_) | Goal::Front => 0.5,
-        };
+        let share = most(problem, goal).map(|most| most / samples(problem) as f64);
         let hypers = || std::array::from_fn(|_| Hyper::new(space.len()));
         let mut chance = Chance::new(seed);
         let starts = space.starts(seed, 4 + 3 * space.len(), share);
@@ -305,17 +302,10 @@ impl<'a> Guided<'a> {
     /// Returns the index in [`Models`] of the quantity to minimise, the index of the quantity that is limited, and the
     /// logarithm of this limit. Spikes are limited by the goal and by a limit of the rate.
     fn outputs(&self) -> (usize, usize, f64) {
-        let train = self.problem.train;
-        let samples = train.iter().map(Stretch::samples).sum();
+        let most = most(self.problem, self.goal);
         match self.goal {
-            Goal::LeastError(efficiency) => {
-                let seconds = train.iter().map(Stretch::seconds).sum::<Option<f64>>();
-                let by_rate = self.problem.limits.rate.zip(seconds).map(|(rate, own)| rate * own);
-                let most = most_spikes(efficiency, samples) as f64;
-                (1, 0, (1.5 + most.min(by_rate.unwrap_or(f64::INFINITY).floor())).ln())
-            }
             Goal::MostEfficient(rmse) => (0, 1, 2.0 * rmse.ln()),
-            Goal::Front => (1, 0, f64::INFINITY),
+            _ => (1, 0, most.map_or(f64::INFINITY, |most| (1.5 + most).ln())),
         }
     }
 
@@ -358,6 +348,19 @@ impl<'a> Guided<'a> {
             Surrogate::fit(&points, &values, &mut hypers[output], is_fitted)
         })
     }
+}
+
+fn samples(problem: &Problem) -> usize {
+    problem.train.iter().map(Stretch::samples).sum()
+}
+
+/// Returns the largest number of spikes that the goal and a limit of the rate allow; `None` if the goal limits the error.
+fn most(problem: &Problem, goal: Goal) -> Option<f64> {
+    let Goal::LeastError(efficiency) = goal else { return None };
+    let seconds = problem.train.iter().map(Stretch::seconds).sum::<Option<f64>>();
+    let by_rate = problem.limits.rate.zip(seconds).map(|(rate, own)| rate * own);
+    let most = most_spikes(efficiency, samples(problem)) as f64;
+    Some(most.min(by_rate.unwrap_or(f64::INFINITY).floor()))
 }
 
 /// Lowers outliers to the upper quartile plus the distance between the quartiles, because they would hide how the other
@@ -430,16 +433,22 @@ impl Space {
         moved.collect()
     }
 
-    /// Moves whole numbers and words of a point to the exact value that they stand for.
+    /// Moves whole numbers and words of a point to the exact value that they stand for, and sums and fields beyond the
+    /// bounds of their parameter to these bounds.
     fn settled(&self, mut point: Vec<f64>) -> Vec<f64> {
+        let numbers = point.iter().enumerate().map(|(place, own)| self.number(place, *own));
+        let numbers: Vec<f64> = numbers.collect();
+        let rounded = self.axes().iter().zip(&numbers).map(|(axis, number)| match axis.role {
+            role if is_whole(role) => number.round(),
+            Role::Length => number.exp().round().ln(),
+            _ => *number,
+        });
+        let settled = self.clamped(rounded.collect());
         for (place, (axis, own)) in self.axes().iter().zip(&mut point).enumerate() {
-            let number = self.number(place, *own);
-            let number = match axis.role {
-                role if is_whole(role) => number.round(),
-                Role::Length => number.exp().round().ln(),
-                _ => continue,
-            };
-            *own = axis.place(number);
+            // The others keep every digit.
+            if (settled[place] - numbers[place]).abs() > 0.0 {
+                *own = axis.place(settled[place]);
+            }
         }
         point
     }

@@ -113,7 +113,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
     }
     run.tighten(&space);
     if let Some(best) = &run.found.best {
-        run.found.bounds = bounds(problem, &space, &best.options);
+        run.found.bounds = bounds(problem, &best.options);
     }
     run.found.front = problem.front(run.found.front);
     run.found

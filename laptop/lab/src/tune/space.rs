@@ -64,10 +64,17 @@ pub(super) enum Role {
     Sum(f64, f64),
     /// Number on the axis: a tap of the filter, divided by the given unit.
     Tap(f64),
+    /// Number on the axis: the natural logarithm of the number of receptive fields that fire in a sample, 2 R / beta. R
+    /// is how far a field reaches, which [`reach`] computes. Thus a step in the slots or the floor keeps the number of
+    /// spikes. For `Fields(low, high)`, beta is clamped to the range from `low` to `high`.
+    Fields(f64, f64),
 }
 
 /// The shapes of a filter that are searched. Only the last shape has a parameter alpha.
 const SHAPES: [&str; 3] = ["triang", "hann", "gauss"];
+
+/// Smallest and largest number of receptive fields that fire in a sample. The bounds of beta limit this number further.
+const FIRING: (f64, f64) = (0.4, 20.0);
 
 /// The space of a scheme's search: an axis for each number that is searched, and the parameters that are fixed.
 #[derive(Clone, Debug)]
@@ -81,12 +88,29 @@ impl Space {
     /// Makes the space of the scheme's searched parameters. A parameter with a value in `fixed` is not searched. `extent`
     /// holds the range and mean of the samples.
     pub(crate) fn new(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
+        Self::of(scheme, fixed, extent, |search| search)
+    }
+
+    /// Makes the same space, but with beta itself on an axis in place of the fields that fire.
+    pub(super) fn plain(scheme: Scheme, fixed: &Asked, extent: Extent) -> Self {
+        Self::of(scheme, fixed, extent, |search| match search {
+            Search::Fields(low, high) => Search::Log(low, high),
+            other => other,
+        })
+    }
+
+    fn of(
+        scheme: Scheme,
+        fixed: &Asked,
+        extent: Extent,
+        searched: impl Fn(Search) -> Search,
+    ) -> Self {
         let mut axes = Vec::new();
         for parameter in scheme.info().parameters {
             if let (None, Some(search)) =
                 (fixed.get(parameter.name), scheme.search(parameter, fixed))
             {
-                axes.extend(axes_of(parameter, search, extent));
+                axes.extend(axes_of(parameter, searched(search), extent));
             }
         }
         Self { axes, fixed: fixed.clone(), extent }
@@ -132,12 +156,13 @@ impl Space {
         low + place.clamp(0.0, 1.0) * (high - low)
     }
 
-    /// Returns `count` points from which a search starts, spread over each axis. `share` is the wanted number of spikes
-    /// for each sample, at most 1. For each point, the sum of the filter's taps is chosen such that a signal at its
-    /// mean gives about this number of spikes for each sample.
-    pub(crate) fn starts(&self, seed: u64, count: usize, share: f64) -> Vec<Vec<f64>> {
+    /// Returns `count` points from which a search starts, spread over each axis. `share` is the largest number of spikes
+    /// for each sample, if it is limited. For each point, the sum of the filter's taps is chosen such that a signal at
+    /// its mean gives about this number of spikes for each sample. Receptive fields give a quarter of it to a little more.
+    pub(crate) fn starts(&self, seed: u64, count: usize, share: Option<f64>) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
-        let apart = 1.0 / share.clamp(0.02, 1.0);
+        let apart = 1.0 / share.unwrap_or(0.5).clamp(0.02, 1.0);
+        let most = share.map_or(f64::INFINITY, f64::ln);
         let has_filter = self.axes.iter().any(|axis| axis.role == Role::Length);
         let mut points = vec![Vec::new(); count];
         for axis in &self.axes {
@@ -154,9 +179,13 @@ impl Space {
                     Role::Length => (1.5_f64 * 32_f64.powf(even)).ln(),
                     Role::Alpha => (0.8 + 2.0 * even).ln(),
                     Role::Sum(..) => (apart * (0.75 + 0.6 * even)).ln(),
-                    // The shift is the signal's minimum, or somewhat off it.
-                    Role::Around(..) if has_filter && stratum % 3 == 0 => 0.0,
-                    Role::Around(..) if has_filter => 0.4 * (even - 0.4),
+                    Role::Fields(..) if share.is_some() => {
+                        most.min(axis.high) + 0.1 - 1.5 * (1.0 - even)
+                    }
+                    // A shift is often best at its upper end, if the decoded value is never above the signal.
+                    Role::Around(..) if has_filter => {
+                        axis.low + (1.3 * even).min(1.0) * (axis.high - axis.low)
+                    }
                     // Many are best at an end of their range, and more often at the upper one.
                     Role::Whole => {
                         axis.low + (1.6 * even - 0.2).clamp(0.0, 1.0) * (axis.high - axis.low)
@@ -210,11 +239,7 @@ impl Space {
     pub(super) fn meant(&self, numbers: &[f64]) -> Asked {
         let mut options = self.fixed.clone();
         let (mut filter, mut free) = (Shaped::default(), Vec::new());
-        let shifts = self.axes.iter().zip(numbers).find_map(|(axis, value)| match axis.role {
-            Role::Around(base, unit) => Some(base + value * unit),
-            _ => None,
-        });
-        let shift = shifts.or_else(|| self.fixed.number("shift"));
+        let (height, reach) = self.coupled(numbers);
         for (axis, &value) in self.axes.iter().zip(numbers) {
             let whole = value.round();
             match axis.role {
@@ -229,7 +254,10 @@ impl Space {
                 Role::Shape => filter.shape = SHAPES[whole as usize],
                 Role::Alpha => filter.alpha = value.exp(),
                 Role::Sum(low, high) => {
-                    filter.sum = (value.exp() * self.height(shift)).clamp(low, high);
+                    filter.sum = (value.exp() * height).clamp(low, high);
+                }
+                Role::Fields(low, high) => {
+                    options.set(axis.name, (2.0 * reach / value.exp()).clamp(low, high));
                 }
                 Role::Tap(unit) => free.push(value * unit),
                 Role::OfFilter => {}
@@ -248,6 +276,38 @@ impl Space {
             }
         }
         options
+    }
+
+    /// Returns numbers, one for each axis, with those of a sum or of fields moved to where the bounds of the parameter
+    /// end. Beyond, a step on such an axis would change nothing.
+    pub(super) fn clamped(&self, mut numbers: Vec<f64>) -> Vec<f64> {
+        let (height, reach) = self.coupled(&numbers);
+        for (axis, number) in self.axes.iter().zip(&mut numbers) {
+            let (low, high) = match axis.role {
+                Role::Sum(low, high) => (low / height, high / height),
+                Role::Fields(low, high) => (2.0 * reach / high, 2.0 * reach / low),
+                _ => continue,
+            };
+            // Not `clamp`: without a range, both are NaN.
+            *number = number.max(low.ln()).min(high.ln());
+        }
+        numbers
+    }
+
+    /// Returns what numbers, one for each axis, say of other parameters than their own: the height that multiplies a
+    /// filter's sum, and the reach of a receptive field.
+    fn coupled(&self, numbers: &[f64]) -> (f64, f64) {
+        let axes = || self.axes.iter().zip(numbers);
+        let shifts = axes().find_map(|(axis, value)| match axis.role {
+            Role::Around(base, unit) => Some(base + value * unit),
+            _ => None,
+        });
+        let whole = |name: &str| {
+            let own = axes().find(|(axis, _)| axis.name == name).map(|(_, value)| value.round());
+            own.or_else(|| self.fixed.number(name))
+        };
+        let shift = shifts.or_else(|| self.fixed.number("shift"));
+        (self.height(shift), reach(whole("slots"), whole("floor")))
     }
 
     /// Returns the height of the signal's mean above `shift` or, if `shift` is `None`, above the signal's minimum. The
@@ -286,6 +346,10 @@ impl Space {
                 Role::Sum(..) => {
                     Some((taps.iter().sum::<f64>() / self.height(number("shift"))).ln())
                 }
+                Role::Fields(..) => {
+                    let reach = reach(number("slots"), number("floor"));
+                    number(axis.name).map(|beta| (2.0 * reach / beta).ln())
+                }
                 Role::Words(_) | Role::Shape | Role::Alpha => None,
             };
             let value = value.filter(|value| value.is_finite());
@@ -294,6 +358,13 @@ impl Space {
         };
         self.axes.iter().map(place).collect()
     }
+}
+
+/// Returns the distance at which a response falls below the floor, in widths of a receptive field.
+fn reach(slots: Option<f64>, floor: Option<f64>) -> f64 {
+    let least = slots.unwrap_or(2.0) / (floor.unwrap_or(1.0) - 0.5);
+    // No field reaches a floor above the slots.
+    (2.0 * least.max(1.01).ln()).sqrt()
 }
 
 /// A filter given by its shape, length and sum.
@@ -331,6 +402,9 @@ fn axes_of(parameter: &'static Parameter, search: Search, extent: Extent) -> Vec
     let axis = |role, low, high| Axis { name, role, low, high };
     match search {
         Search::Log(low, high) => vec![axis(Role::Log(unit), low.ln(), high.ln())],
+        Search::Fields(low, high) => {
+            vec![axis(Role::Fields(low, high), FIRING.0.ln(), FIRING.1.ln())]
+        }
         Search::Around(low, high) => {
             let base = match parameter.found {
                 Some(Found::Max) => extent.max,
@@ -354,9 +428,11 @@ fn axes_of(parameter: &'static Parameter, search: Search, extent: Extent) -> Vec
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Goal, Limits, Problem, Stretch};
     use super::{Extent, Space};
     use crate::scheme::Scheme;
-    use catalogue::run::Asked;
+    use crate::trial::Recording;
+    use catalogue::run::{Asked, SampleType};
 
     /// Takes three points of each scheme's search space: all axes at the lower bound, all in the middle, and all at the
     /// upper bound. The scheme accepts the options of each point.
@@ -369,6 +445,37 @@ mod tests {
                 let options = space.options(&vec![place; space.len()]);
                 options.check(scheme.info()).unwrap();
             }
+        }
+    }
+
+    /// Encodes a ramp with as many slots and floors as are searched. Three fields fire in a sample, fewer at the ends. A
+    /// number of fields out of beta's reach moves to where beta ends, which means the same.
+    #[test]
+    fn slots_and_floor_leave_the_number_of_fields() {
+        let ramp: Vec<f64> = (0..1000).map(|place| f64::from(place) * 0.01).collect();
+        let train = Stretch::whole(&Recording::of("x".to_owned(), ramp, None));
+        let (asked, limits) = (Asked::default(), Limits::default());
+        let scheme = Scheme::named("grf-nonlinear-slots").unwrap();
+        let known = (Goal::Front, &limits, "M4F");
+        let problem = Problem::new(scheme, SampleType::F32, &asked, &train, known);
+        let space = Space::new(scheme, &asked, problem.extent);
+        for (slots, floor) in [(2.0, 1.0), (2.0, 2.0), (7.0, 2.0), (32.0, 1.0)] {
+            let numbers = |fields: f64| -> Vec<f64> {
+                let number = |name| match name {
+                    "slots" => slots,
+                    "floor" => floor,
+                    "neurons" => 24.0,
+                    "beta" => fields.ln(),
+                    _ => 0.0,
+                };
+                space.axes().iter().map(|axis| number(axis.name)).collect()
+            };
+            let spikes = problem.score(&space.meant(&numbers(3.0))).unwrap().tally.spikes;
+            assert!((2800..3100).contains(&spikes), "{slots} {floor}: {spikes}");
+            let beta = |numbers: &[f64]| space.meant(numbers).number("beta").unwrap();
+            let clamped = space.clamped(numbers(0.3));
+            assert!((beta(&clamped) - beta(&numbers(0.3))).abs() < 1e-9);
+            assert!(clamped != numbers(0.3), "{slots} {floor}");
         }
     }
 
