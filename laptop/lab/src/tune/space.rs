@@ -350,7 +350,11 @@ impl Space {
                     let reach = reach(number("slots"), number("floor"));
                     number(axis.name).map(|beta| (2.0 * reach / beta).ln())
                 }
-                Role::Words(_) | Role::Shape | Role::Alpha => None,
+                Role::Words(words) => options
+                    .word(axis.name)
+                    .and_then(|own| words.iter().position(|word| *word == own))
+                    .map(|place| place as f64),
+                Role::Shape | Role::Alpha => None,
             };
             let value = value.filter(|value| value.is_finite());
             let value = value.unwrap_or(f64::midpoint(axis.low, axis.high));
