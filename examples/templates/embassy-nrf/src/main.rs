@@ -16,7 +16,7 @@ use embassy_nrf::{
     uarte::{self, Baudrate, UarteTx},
     wdt::{self, HaltConfig, Watchdog},
 };
-use embassy_time::{Duration, Ticker, with_timeout};
+use embassy_time::{Duration, Instant, Ticker, Timer, with_timeout};
 use icm42688p::{Polled, TIMING};
 use imu::{Channels, Device, Registers, Rounds, Sender, Spin, Station};
 use panic_probe as _;
@@ -44,9 +44,11 @@ static ROUNDS: Rounds = Rounds::new();
 async fn sample(sensor: Sensor) {
     let (bank, every) = (flight::BANK, flight::KEYFRAME_EVERY);
     let mut station = Station::new(sensor, CHANNELS, bank, flight::PERIOD, every);
-    let mut period = Ticker::every(Duration::from_micros(flight::PERIOD.into()));
+    // Not a `Ticker`: the clock has 32768 ticks a second, and a period in whole ticks would be up to 30 µs too long.
+    let mut next = Instant::now().as_micros();
     loop {
-        period.next().await;
+        next += u64::from(flight::PERIOD);
+        Timer::at(Instant::from_micros(next)).await;
         if let Some(news) = station.tick(&EVENTS).await {
             defmt::info!("{}; {}; {} lost", news, station.counters(), EVENTS.lost());
         }
