@@ -121,8 +121,8 @@ fn without_room(rest: u32, range: u32, count: u32) -> u32 {
     by_doubling(rest, range, count)
 }
 
-/// Whether the core calls the runtime to divide and to count leading zeros: an Arm core without compare-and-swap, of which
-/// the Cortex-M0 is the only Cortex-M. `cargo verify scalar` tests its forms on the host: `--cfg without_vectors`.
+/// Whether the core calls the runtime to divide and to count leading zeros: an Arm core without compare-and-swap, as are
+/// the Cortex-M0, M0+ and M1. `cargo verify scalar` tests its forms on the host: `--cfg without_vectors`.
 pub(crate) const LACKS_DIVISION: bool =
     cfg!(any(without_vectors, all(target_arch = "arm", not(target_has_atomic = "32"))));
 

@@ -143,6 +143,15 @@ def others(x, long, ends):
     except ImportError:
         pass
     try:
+        from spikes.encoder import TBR
+
+        # Its recordings are (flights, samples, channels).
+        yield "pyspikes `TBR`", (
+            lambda: TBR(long[None, :, None], 1.0).get_spikes()
+        ), len(long), sw.TemporalContrast(factor=1.0, magnitudes=True)
+    except ImportError:
+        pass
+    try:
         import torch
 
         torch.set_num_threads(1)
@@ -158,6 +167,13 @@ def others(x, long, ends):
         yield "snnTorch `spikegen.delta`", (
             lambda: spikegen.delta(data, threshold=0.3, off_spike=True)
         ), len(long), delta
+    except ImportError:
+        pass
+    try:
+        from norse.torch.functional.encode import poisson_encode
+
+        chance = sw.Bernoulli(**ends)
+        yield "Norse `poisson_encode`", lambda: poisson_encode(unit, 1, f_max=1000), len(long), chance
     except ImportError:
         pass
     try:

@@ -213,8 +213,6 @@ class _Chip(nn.Module):
     _unit = 1
     #: The largest potential.
     _MOST = 2047
-    #: Share that a step leaves of the potentials of a last layer that never fires; ``None`` if it fires.
-    readout: float | None = None
     #: The most layers that fire.
     _DEPTH = 3
 
@@ -222,6 +220,8 @@ class _Chip(nn.Module):
         super().__init__()
         if not 0 < threshold <= self._MOST:
             raise ValueError(f"a threshold is a potential from 1 to {self._MOST}, not {threshold}")
+        if min(inputs, *sizes, 1) < 1:
+            raise ValueError(f"a layer has 1 neuron or more, not {min(inputs, *sizes)}")
         self.threshold = threshold
         firing = sizes if self.readout is None else sizes[:-1]
         if not 1 <= len(firing) <= self._DEPTH:
@@ -232,6 +232,11 @@ class _Chip(nn.Module):
         self.weights: nn.ParameterList = nn.ParameterList(nn.Parameter(one * (1 + 4 * torch.randn(shape))) for shape in shapes)
         own = (nn.Parameter(one * 4 * torch.randn(size, size)) for size in firing if recurrent)
         self.recurrent: nn.ParameterList = nn.ParameterList(own)
+
+    @property
+    def readout(self) -> float | None:
+        """Share that a step leaves of the potentials of a last layer that never fires; ``None`` if it fires."""
+        return None
 
     def _rounded(self, own: Tensor) -> Tensor:
         return _passed(own.round().clamp(*self._RANGE), own)
@@ -333,11 +338,8 @@ class ReckOn(_Chip):
     chip needs gates for that, which are not trained.
 
     With `readout` the last layer is the chip's outputs, and the result is what the driver's ``ReckOnSample::run`` returns, bit
-    for bit as long as no output leaves its 16 bits within a step, in units of the weights after the shift: there the chip
-    saturates spike by spike, and a smaller `shift` gives room. Each tick leaves a share of the outputs' potentials, rounded
-    down.
-
-    The attributes ``keep`` and ``readout`` are the shares that a step leaves in fact.
+    for bit, in units of the weights after the shift. If an output leaves its 16 bits within a step, the chip saturates after each
+    spike, and results differ; a smaller `shift` avoids that. Each tick leaves a share of the outputs' potentials, rounded down.
 
     >>> network = ReckOn(12, 16, 3, recurrent=True, readout=0.9)
     >>> network(torch.ones(5, 4, 12)).shape
@@ -347,8 +349,8 @@ class ReckOn(_Chip):
 
     Args:
         inputs: Number of inputs, 256 at most.
-        sizes: Number of neurons of each layer: 16 at most of the last, and 256 of all that fire, up to three; an odd number
-            counts as one more if another such layer follows.
+        sizes: Number of neurons of each layer: 16 at most of the last. At most three layers fire, with 256 neurons together; a
+            layer of odd size takes one more, except the last of them.
         threshold: Potential from which a neuron fires: far below 32767, as potentials beyond that saturate in another order
             than here.
         keep: Share of a potential that a step leaves: 0.1181 to 1, or from 0.875 if `recurrent` or `subtract`.
@@ -382,12 +384,9 @@ class ReckOn(_Chip):
         units = keep ** (1 / self._ticks) * 32768
         # Several are rounded down: rounded up, `spikewire network` might choose a tick less.
         self._kept = (round(units) if self._ticks == 1 else math.floor(units + 1e-6)) / 32768
-        self.keep: float = self._kept**self._ticks
-        if readout is not None:
-            self._read = self._read_share(readout)
-            self.readout: float | None = self._read**self._ticks
-            if len(sizes) < 2:
-                raise ValueError("a last layer that never fires follows another")
+        self._read = None if readout is None else self._read_share(readout)
+        if readout is not None and len(sizes) < 2:
+            raise ValueError("a last layer that never fires follows another")
         if not 0 <= shift <= 7:
             raise ValueError(f"the chip shifts weights by 0 to 7 bits, not {shift}")
         self._unit = 1 << shift
@@ -399,6 +398,16 @@ class ReckOn(_Chip):
             if not 1 <= given <= most:
                 raise ValueError(f"the chip has {most} {name}, not {given}")
         self.subtract = subtract
+
+    @property
+    def keep(self) -> float:
+        """Share of a potential that a step leaves, as the chip has it."""
+        return self._kept**self._ticks
+
+    @property
+    def readout(self) -> float | None:
+        """Share of the outputs' potentials that a step leaves, as the chip has it; ``None`` if the last layer fires."""
+        return None if self._read is None else self._read**self._ticks
 
     def _read_share(self, asked: float) -> float:
         """The share of the outputs' potentials that a tick leaves."""
@@ -434,9 +443,10 @@ class ReckOn(_Chip):
     def _read_out(self, back: None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
         reached = (driven if state is None else state + driven).clamp(-32768, 32767)
         # The chip answers after the first tick, and the driver multiplies in single precision.
-        answer = _left(reached, self._read, 1)
-        values = (answer * float(np.float32(1 / self._read))).float()
-        return reached, values, _left(answer, self._read, self._ticks - 1)
+        share = self._read or 1.0
+        answer = _left(reached, share, 1)
+        values = (answer * float(np.float32(1 / share))).float()
+        return reached, values, _left(answer, share, self._ticks - 1)
 
     def _rule(self) -> dict[str, Any]:
         return {"keep": self.keep}

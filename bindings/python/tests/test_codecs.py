@@ -188,9 +188,9 @@ def test_the_first_bad_sample_is_named_wherever_it_is(scheme, kind):
 def test_an_array_without_samples_has_no_spikes_and_tells_nothing(shape):
     scheme = sw.Hough(filter="triang:3")
     assert scheme.encode(np.zeros(shape)).array.size == 0
-    with pytest.raises(ValueError, match="no samples|no channel"):
-        scheme.fit(np.zeros(shape))
-
+    for per_channel in (False, True):
+        with pytest.raises(ValueError, match="no samples|no channel"):
+            scheme.fit(np.zeros(shape), per_channel)
 
 
 def test_a_parameter_may_have_a_value_for_each_channel():

@@ -285,6 +285,16 @@ def test_shares_of_reckon_are_those_asked_for(keep):
     assert taken > 100
 
 
+def test_what_the_chip_leaves_is_only_read_and_layers_have_neurons():
+    network = ReckOn(2, 2, 2, readout=0.9)
+    for name in ("keep", "readout"):
+        with pytest.raises(AttributeError):
+            setattr(network, name, 0.5)
+    for made in (lambda: ReckOn(2, 0, 3), lambda: ReckOn(2, 3, -1), lambda: TinyOdin(0, 3)):
+        with pytest.raises(ValueError, match="1 neuron or more"):
+            made()
+
+
 def test_a_diverged_network_is_named():
     network = Controller(2, 2)
     with torch.no_grad():

@@ -288,7 +288,16 @@ const LONG: &[Step] = &[
         "firmware, storm and network on all emulated cores, seven for the recorded flight",
         || {
             let parts = [firmware::firmware(&[]), storm::on_all(), network::on_all()];
-            parts.map(|own| own.inspect_err(|error| println!("{error}"))).into_iter().collect()
+            // The first error is told at the end.
+            let [first, others @ ..] = parts;
+            others.into_iter().fold(first, |first, own| {
+                let Err(error) = own else { return first };
+                if first.is_ok() {
+                    return Err(error);
+                }
+                eprintln!("{error:#}");
+                first
+            })
         },
     )
     .apart(&[LAST]),

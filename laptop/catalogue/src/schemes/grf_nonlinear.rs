@@ -162,6 +162,21 @@ pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<Needs> {
     }
 }
 
+/// Returns the range in which a parameter is searched; none where given centres or widths determine it.
+#[cfg(feature = "run")]
+pub(super) fn search(parameter: &Parameter, asked: &Asked) -> Option<Search> {
+    let has = |name: &str, preset: &str| {
+        asked.get(name).is_none_or(|given| given.word() == Some(preset))
+    };
+    let is_searched = match parameter.name {
+        "companding" | "min" | "max" => has("centres", "companded"),
+        "neurons" => has("centres", "companded") || has("centres", "quantiles"),
+        "beta" => has("widths", "spacing"),
+        _ => true,
+    };
+    parameter.search.filter(|_| is_searched)
+}
+
 /// Returns the number of neurons, which is that of the centres.
 #[cfg(feature = "run")]
 pub(super) fn neurons(settings: &Settings) -> Result<usize> {
@@ -230,6 +245,10 @@ impl Build for Scheme {
 
     fn needs_signal(asked: &Asked) -> Option<Needs> {
         needs_signal(asked, &Self::INFO)
+    }
+
+    fn search(parameter: &Parameter, asked: &Asked) -> Option<Search> {
+        search(parameter, asked)
     }
 
     /// Returns whether a parameter is rounded to the sample type; widths are not.

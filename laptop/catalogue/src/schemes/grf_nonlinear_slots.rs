@@ -36,7 +36,7 @@ impl Entry for Scheme {
             Parameter::MIN,
             Parameter::MAX,
             Parameter::SLOTS,
-            // Not so in `grf-slots`, where a search of beta itself finds smaller errors on the hexarotor's flight.
+            // Not so in `grf-slots`: docs/tuning.md says why.
             Parameter::BETA.searched(Search::Fields(0.3, 4.0)),
             Parameter::FLOOR,
         ],
@@ -108,6 +108,10 @@ impl Build for Scheme {
 
     fn needs_signal(asked: &Asked) -> Option<Needs> {
         grf_nonlinear::needs_signal(asked, &Self::INFO)
+    }
+
+    fn search(parameter: &Parameter, asked: &Asked) -> Option<Search> {
+        grf_nonlinear::search(parameter, asked)
     }
 
     /// Returns whether a parameter is rounded to the sample type; widths are not.

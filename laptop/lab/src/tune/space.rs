@@ -73,9 +73,6 @@ pub(super) enum Role {
 /// The shapes of a filter that are searched. Only the last shape has a parameter alpha.
 const SHAPES: [&str; 3] = ["triang", "hann", "gauss"];
 
-/// Smallest and largest number of receptive fields that fire in a sample. The bounds of beta limit this number further.
-const FIRING: (f64, f64) = (0.4, 20.0);
-
 /// The space of a scheme's search: an axis for each number that is searched, and the parameters that are fixed.
 #[derive(Clone, Debug)]
 pub(crate) struct Space {
@@ -111,6 +108,21 @@ impl Space {
                 (fixed.get(parameter.name), scheme.search(parameter, fixed))
             {
                 axes.extend(axes_of(parameter, searched(search), extent));
+            }
+        }
+        let ends = |name: &str| {
+            let searched = axes.iter().find(|axis| axis.name == name);
+            let given = fixed.number(name).map(|own| [own, own]);
+            given.or_else(|| searched.map(|axis| [axis.low, axis.high]))
+        };
+        let (slots, floor) = (ends("slots"), ends("floor"));
+        let reach = |at: usize| reach(slots.map(|own| own[at]), floor.map(|own| own[1 - at]));
+        let reaches = [reach(0), reach(1)];
+        for axis in &mut axes {
+            if let Role::Fields(low, high) = axis.role {
+                // All of beta, with any slots and floor.
+                axis.low = (2.0 * reaches[0] / high).ln();
+                axis.high = (2.0 * reaches[1] / low).ln();
             }
         }
         Self { axes, fixed: fixed.clone(), extent }
@@ -157,7 +169,7 @@ impl Space {
     }
 
     /// Returns `count` points from which a search starts, spread over each axis. `share` is the largest number of spikes
-    /// for each sample, if it is limited. For each point, the sum of the filter's taps is chosen such that a signal at
+    /// for each sample, if it is limited; without a limit sums start as for 0.5. For each point, the sum of the filter's taps is chosen such that a signal at
     /// its mean gives about this number of spikes for each sample. Receptive fields give a quarter of it to a little more.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: Option<f64>) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
@@ -182,7 +194,7 @@ impl Space {
                     Role::Fields(..) if share.is_some() => {
                         most.min(axis.high) + 0.1 - 1.5 * (1.0 - even)
                     }
-                    // A shift is often best at its upper end, if the decoded value is never above the signal.
+                    // HSA's value is never above the signal, so that a high shift is often best.
                     Role::Around(..) if has_filter => {
                         axis.low + (1.3 * even).min(1.0) * (axis.high - axis.low)
                     }
@@ -368,7 +380,7 @@ impl Space {
 fn reach(slots: Option<f64>, floor: Option<f64>) -> f64 {
     let least = slots.unwrap_or(2.0) / (floor.unwrap_or(1.0) - 0.5);
     // No field reaches a floor above the slots.
-    (2.0 * least.max(1.01).ln()).sqrt()
+    (2.0 * least.max(1.0 + 1e-6).ln()).sqrt()
 }
 
 /// A filter given by its shape, length and sum.
@@ -406,9 +418,8 @@ fn axes_of(parameter: &'static Parameter, search: Search, extent: Extent) -> Vec
     let axis = |role, low, high| Axis { name, role, low, high };
     match search {
         Search::Log(low, high) => vec![axis(Role::Log(unit), low.ln(), high.ln())],
-        Search::Fields(low, high) => {
-            vec![axis(Role::Fields(low, high), FIRING.0.ln(), FIRING.1.ln())]
-        }
+        // `Space::of` sets the ends.
+        Search::Fields(low, high) => vec![axis(Role::Fields(low, high), 0.0, 0.0)],
         Search::Around(low, high) => {
             let base = match parameter.found {
                 Some(Found::Max) => extent.max,
@@ -480,6 +491,25 @@ mod tests {
             let clamped = space.clamped(numbers(0.3));
             assert!((beta(&clamped) - beta(&numbers(0.3))).abs() < 1e-9);
             assert!(clamped != numbers(0.3), "{slots} {floor}");
+        }
+    }
+
+    /// Given slots and floors leave all of beta's range within reach.
+    #[test]
+    fn beta_reaches_its_bounds_with_any_slots_and_floor() {
+        let scheme = Scheme::named("grf-nonlinear-slots").unwrap();
+        for (slots, floor) in [(10, 10), (4, 4), (256, 1), (2, 1)] {
+            let mut fixed = Asked::default();
+            fixed.set("slots", slots as u64);
+            fixed.set("floor", floor as u64);
+            let space = Space::new(scheme, &fixed, Extent { min: 0.0, max: 1.0, mean: 0.5 });
+            for (place, bound) in [(0.0, 4.0), (1.0, 0.3)] {
+                let numbers: Vec<f64> =
+                    (0..space.len()).map(|axis| space.number(axis, place)).collect();
+                let point = space.meant(&numbers);
+                let beta = point.number("beta").unwrap();
+                assert!((beta - bound).abs() < 1e-9, "{slots} {floor}: {beta}");
+            }
         }
     }
 

@@ -83,8 +83,9 @@ fn of_layer(layer: Layer<f64>) -> Result<trained::Layer> {
         check_current(&neuron)?;
         let Neuron { decay: keep, bias, inner, spike, .. } = neuron;
         let Spike { threshold, reset } = spike.ok_or(FitKind::SilentInside)?;
-        // On the chips a spike resets neurons to 0, so potentials are counted from the reset value. Or it subtracts the
-        // threshold, so they are counted from where both are alike, and a neuron that starts at rest leaks to it at first.
+        // On the chips a spike resets neurons to 0, so potentials are counted from the reset value. If a spike subtracts
+        // an amount other than the threshold, they are counted from `threshold - reset`, so that the two are equal. A
+        // neuron then starts at this potential instead of at rest; the difference leaks away.
         let zero = if rule.reset.subtracts() { threshold - reset } else { reset };
         let bias = bias + inner - (1.0 - keep) * zero;
         // If the neuron rests at its reset value, only a rounding error remains of the bias.

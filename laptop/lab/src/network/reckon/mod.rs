@@ -66,10 +66,9 @@ impl OnChip for Quantised {
     }
 
     fn notes(&self) -> Vec<String> {
-        let (inputs, neurons, outputs) = (self.inputs(), self.neurons(), self.outputs());
-        let words = u32::from(inputs + 256) * u32::from(neurons.div_ceil(4))
-            + 256 * u32::from(outputs.div_ceil(4))
-            + 512;
+        let [inputs, neurons, outputs] =
+            [self.inputs(), self.neurons(), self.outputs()].map(u32::from);
+        let words = (inputs + 256) * neurons.div_ceil(4) + 256 * outputs.div_ceil(4) + 512;
         let mut notes = vec![format!(
             "{neurons} of the chip's 256 neurons, {inputs} of its 256 inputs, {outputs} of its 16 outputs; {} bytes \
              of weights; {words} words, written and read back in {:.2} s at 1 MHz",
