@@ -178,6 +178,7 @@ def test_tiny_odin_is_saved(tmp_path):
         (lambda: ReckOn(12, 15, 3, keep=0.12, readout=0.3).double(), "--on reckon"),
         (lambda: ReckOn(12, 16, 3, threshold=64, shift=0, readout=1.0), "--on reckon"),
         (lambda: ReckOn(12, 16, 3, threshold=4096, shift=7, readout=0.3), "--on reckon"),
+        (lambda: ReckOn(12, 240, 16, threshold=4096), "--on reckon"),
     ],
 )
 def test_chips_are_what_the_networks_are(made, words, tmp_path):
