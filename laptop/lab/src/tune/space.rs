@@ -116,11 +116,15 @@ impl Space {
             given.or_else(|| searched.map(|axis| [axis.low, axis.high]))
         };
         let (slots, floor) = (ends("slots"), ends("floor"));
-        let reach = |at: usize| reach(slots.map(|own| own[at]), floor.map(|own| own[1 - at]));
+        let reach = |at: usize| {
+            let floor = floor.map(|own| own[1 - at]);
+            // With fewer slots than the floor no field fires.
+            reach(slots.map(|own| own[at].max(floor.unwrap_or(1.0))), floor)
+        };
         let reaches = [reach(0), reach(1)];
         for axis in &mut axes {
             if let Role::Fields(low, high) = axis.role {
-                // All of beta, with any slots and floor.
+                // All of beta, with any slots and floor with which fields fire.
                 axis.low = (2.0 * reaches[0] / high).ln();
                 axis.high = (2.0 * reaches[1] / low).ln();
             }
