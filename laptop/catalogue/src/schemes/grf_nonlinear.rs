@@ -165,9 +165,8 @@ pub(super) fn needs_signal(asked: &Asked, info: &Info) -> Option<Needs> {
 /// Returns the range in which a parameter is searched; none where given centres or widths determine it.
 #[cfg(feature = "run")]
 pub(super) fn search(parameter: &Parameter, asked: &Asked) -> Option<Search> {
-    let has = |name: &str, preset: &str| {
-        asked.get(name).is_none_or(|given| given.word() == Some(preset))
-    };
+    let has =
+        |name: &str, preset: &str| asked.get(name).is_none_or(|given| given.word() == Some(preset));
     let is_searched = match parameter.name {
         "companding" | "min" | "max" => has("centres", "companded"),
         "neurons" => has("centres", "companded") || has("centres", "quantiles"),
