@@ -15,6 +15,7 @@ torch.Size([8, 32, 6])
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import math
@@ -438,12 +439,11 @@ class ReckOn(_Chip):
 
     def _steps(self) -> list[Callable[..., tuple[Tensor, Tensor, Any]]]:
         steps = super()._steps()
-        return steps if self.readout is None else [*steps[:-1], self._read_out]
+        return steps if self._read is None else [*steps[:-1], functools.partial(self._read_out, self._read)]
 
-    def _read_out(self, back: None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
+    def _read_out(self, share: float, back: None, driven: Tensor, state: Any) -> tuple[Tensor, Tensor, Any]:
         reached = (driven if state is None else state + driven).clamp(-32768, 32767)
         # The chip answers after the first tick, and the driver multiplies in single precision.
-        share = self._read or 1.0
         answer = _left(reached, share, 1)
         values = (answer * float(np.float32(1 / share))).float()
         return reached, values, _left(answer, share, self._ticks - 1)
@@ -453,7 +453,7 @@ class ReckOn(_Chip):
 
 
 def _left(potentials: Tensor, share: float, ticks: int) -> Tensor:
-    """What ticks leave of potentials on ReckOn, each rounded down."""
+    """Potentials after so many ticks on ReckOn: a tick multiplies by `share`, and rounds down."""
     for _ in range(ticks):
         # Products have 31 bits, of which single precision would round some.
         down = (potentials.double() * share).floor().to(potentials.dtype)

@@ -119,10 +119,9 @@ impl Lane<'_> {
                 Some(Bad { sample: place, what: format!("{} is not finite", lane[place]) })
             }
             Self::F64(lane) => {
-                let narrow = narrow(sample);
                 let place = match lane.as_slice() {
-                    Some(samples) => first_bad(samples, narrow),
-                    None => lane.iter().position(|value| !narrow(value).is_finite()),
+                    Some(samples) => first_bad_double(samples, sample),
+                    None => first_bad_double(&lane.to_vec(), sample),
                 }?;
                 let value = lane[place];
                 let what = if value.is_finite() { "beyond f32" } else { "not finite" };
@@ -298,15 +297,19 @@ fn first_bad<T>(samples: &[T], narrow: impl Fn(&T) -> f32) -> Option<usize> {
 pub(crate) fn are_good(samples: run::Samples, sample: SampleType) -> bool {
     match samples {
         run::Samples::F32(all) => first_bad(all, |value| *value).is_none(),
-        run::Samples::F64(all) => first_bad(all, narrow(sample)).is_none(),
+        run::Samples::F64(all) => first_bad_double(all, sample).is_none(),
         run::Samples::I16(_) => true,
     }
 }
 
-/// Returns a function whose result is finite exactly for the doubles that an encoder of this type takes: they are finite,
-/// in `f32` after rounding too.
-fn narrow(sample: SampleType) -> fn(&f64) -> f32 {
-    if sample == SampleType::F32 { |value| *value as f32 } else { |value| (value * 0.0) as f32 }
+/// Returns the place of the first double that an encoder of this type does not take: it is not finite, or not so in `f32`
+/// after rounding.
+fn first_bad_double(samples: &[f64], sample: SampleType) -> Option<usize> {
+    if sample == SampleType::F32 {
+        first_bad(samples, |value| *value as f32)
+    } else {
+        first_bad(samples, |value| (value * 0.0) as f32)
+    }
 }
 
 impl Samples<'_> {

@@ -262,12 +262,7 @@ fn neurons_compare_once_a_step_if_that_agrees_better() {
 fn reset_modes_are_required_and_compared_with_the_frameworks_spikes() {
     let at = |name: &str| peers("nir").join(name).display().to_string();
     let recorded = fs::read_to_string(at("snntorch.to-value.txt")).unwrap();
-    let column = |number: usize| -> String {
-        recorded
-            .lines()
-            .map(|line| line.split(';').nth(number).unwrap().to_owned() + "\n")
-            .collect()
-    };
+    let column = |number: usize| column(&recorded, number);
     let (_inputs, inputs) = file("inputs.txt", column(0));
     let (_outputs, outputs) = file("outputs.txt", column(2));
     let net = at("snntorch.nir");
@@ -290,6 +285,12 @@ fn reset_modes_are_required_and_compared_with_the_frameworks_spikes() {
     let short =
         format!("network {net} {inputs} --as snntorch --reset zero --trained-spikes {short}");
     refused(&short, "", &["1 steps", "200"]);
+}
+
+/// Returns a column of what a framework recorded, a line for each step.
+fn column(recorded: &str, number: usize) -> String {
+    let lines = recorded.lines().map(|line| line.split(';').nth(number).unwrap());
+    lines.map(|line| line.to_owned() + "\n").collect()
 }
 
 /// Outputs of `ReckOn` that never fire are compared with the potentials that they had in training. Sums of whole weights
@@ -329,10 +330,7 @@ fn potentials_are_compared_with_those_of_training() {
         ("subtract", "1.2e-3", 2.0, 20.0),
     ] {
         let recorded = fs::read_to_string(at(&format!("norse.{reset}.txt"))).unwrap();
-        let column = |number: usize| -> String {
-            let lines = recorded.lines().map(|line| line.split(';').nth(number).unwrap());
-            lines.map(|line| line.to_owned() + "\n").collect()
-        };
+        let column = |number: usize| column(&recorded, number);
         let (_inputs, inputs) = file("inputs.txt", column(0));
         let (_outputs, outputs) = file("outputs.txt", column(3));
         let norse = format!("network {} {inputs} --on reckon --as norse", at("norse.nir"));
@@ -430,10 +428,7 @@ fn reckon_fires_as_frameworks_do_with_several_ticks_a_step() {
     ] {
         let at = |end: &str| peers("nir").join(format!("{name}.{end}")).display().to_string();
         let recorded = fs::read_to_string(at(&format!("{reset}.txt"))).unwrap();
-        let column = |number: usize| -> String {
-            let lines = recorded.lines().map(|line| line.split(';').nth(number).unwrap());
-            lines.map(|line| line.to_owned() + "\n").collect()
-        };
+        let column = |number: usize| column(&recorded, number);
         let (_inputs, inputs) = file("inputs.txt", column(0));
         let (_outputs, outputs) = file("outputs.txt", column(2));
         let framework = name.split('_').next().unwrap();

@@ -14,7 +14,7 @@ use crate::mutants;
 use crate::products::{c_library, new_scheme, page, python_package};
 use crate::release;
 use crate::setup::{needs, setup};
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use passed::Passed;
 use std::time::Instant;
 
@@ -288,16 +288,10 @@ const LONG: &[Step] = &[
         "firmware, storm and network on all emulated cores, seven for the recorded flight",
         || {
             let parts = [firmware::firmware(&[]), storm::on_all(), network::on_all()];
-            // The first error is told at the end.
-            let [first, others @ ..] = parts;
-            others.into_iter().fold(first, |first, own| {
-                let Err(error) = own else { return first };
-                if first.is_ok() {
-                    return Err(error);
-                }
-                eprintln!("{error:#}");
-                first
-            })
+            let failed = parts.into_iter().filter_map(Result::err);
+            let failed: Vec<_> = failed.map(|error| format!("{error:#}")).collect();
+            ensure!(failed.is_empty(), "{}", failed.join("\n"));
+            Ok(())
         },
     )
     .apart(&[LAST]),

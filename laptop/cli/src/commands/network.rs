@@ -421,11 +421,8 @@ fn driven(
 
 /// Reads a file of input spikes: one line for each step, with the numbers of the inputs that fire.
 fn spiking(path: &Path) -> Result<Driven> {
-    let name = || path.display().to_string();
-    let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", name()))?;
-    let step = |(at, line)| spikes(line).with_context(|| format!("{}: line {at}", name()));
-    let steps: Trains = (1..).zip(text.lines()).map(step).collect::<Result<_>>()?;
-    ensure!(!steps.is_empty(), "{}: no steps", name());
+    let steps: Trains = steps(path, |line| Ok(spikes(line)?))?;
+    ensure!(!steps.is_empty(), "{}: no steps", path.display());
     let highest = steps.iter().flatten().max().copied().unwrap_or(0);
     Ok(Driven {
         steps,
@@ -456,14 +453,18 @@ fn framework(options: &Network, converted: &Converted, steps: usize) -> Result<O
 
 /// Reads a file of the outputs' potentials: one line for each step, with a number for each output.
 fn potentials(path: &Path) -> Result<Vec<Vec<f64>>> {
-    let name = || path.display().to_string();
-    let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", name()))?;
     let number = |word: &str| {
         let number = word.parse().ok().filter(|number: &f64| number.is_finite());
         number.with_context(|| format!("`{word}` is not a finite number"))
     };
-    let numbers = |line: &str| line.split_whitespace().map(number).collect::<Result<_>>();
-    let step = |(at, line)| numbers(line).with_context(|| format!("{}: line {at}", name()));
+    steps(path, |line| line.split_whitespace().map(number).collect())
+}
+
+/// Reads a file with a line for each step.
+fn steps<T>(path: &Path, read: impl Fn(&str) -> Result<T>) -> Result<Vec<T>> {
+    let name = || path.display().to_string();
+    let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", name()))?;
+    let step = |(at, line)| read(line).with_context(|| format!("{}: line {at}", name()));
     (1..).zip(text.lines()).map(step).collect()
 }
 

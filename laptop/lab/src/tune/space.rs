@@ -173,8 +173,9 @@ impl Space {
     }
 
     /// Returns `count` points from which a search starts, spread over each axis. `share` is the largest number of spikes
-    /// for each sample, if it is limited; without a limit sums start as for 0.5. For each point, the sum of the filter's taps is chosen such that a signal at
-    /// its mean gives about this number of spikes for each sample. Receptive fields give a quarter of it to a little more.
+    /// for each sample, if it is limited; without a limit sums start as for 0.5. For each point, the sum of the filter's
+    /// taps is chosen such that a signal at its mean gives about this number of spikes for each sample. Receptive fields
+    /// give a quarter of it to a little more.
     pub(crate) fn starts(&self, seed: u64, count: usize, share: Option<f64>) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(seed);
         let apart = 1.0 / share.unwrap_or(0.5).clamp(0.02, 1.0);
