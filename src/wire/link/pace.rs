@@ -266,29 +266,32 @@ impl Pace {
         if doubt.saturating_mul(4) >= unit {
             return Elapsed::Unknown;
         }
-        let Some(slot) = self.slot_of(samples, since, slots, doubt) else {
-            return Elapsed::Misfit;
-        };
-        // Where a fast clock makes samples shorter than their sub-timesteps, it may be the last one of the sample before.
+        // At most three eighths of a unit, so that a tick that is half a unit early or late is always noticed.
+        let widest = (unit / 4).wrapping_add(doubt);
+        let most = widest.min(unit.wrapping_mul(3) / 8);
+        let Some(slot) = self.slot_of(samples, since, slots, most) else { return Elapsed::Misfit };
+        // Where samples may be about as short as their sub-timesteps, the tick may as well lie in the last one of the sample
+        // before, or be that of the next sample.
         let before = samples.checked_sub(1);
-        if before.is_some_and(|before| self.slot_of(before, since, slots, doubt).is_some()) {
+        let is_before =
+            before.is_some_and(|before| self.slot_of(before, since, slots, widest).is_some());
+        let next = samples.wrapping_add(1);
+        let until_next = self.time_of(next).wrapping_add(unit / 2).saturating_sub(since);
+        if is_before || until_next <= (unit / 4).wrapping_add(self.doubt(next)) {
             return Elapsed::Unknown;
         }
         Elapsed::Samples { samples, slot }
     }
 
-    /// The sub-timestep of this sample in which a tick lies that comes half a unit earlier than after so many µs.
-    fn slot_of(&self, sample: u64, half_later: u64, slots: u32, doubt: u64) -> Option<u32> {
+    /// The sub-timestep of this sample from which a tick is at most so far away that comes half a unit earlier than after so
+    /// many µs.
+    fn slot_of(&self, sample: u64, half_later: u64, slots: u32, most: u64) -> Option<u32> {
         let unit = u64::from(self.unit);
         let rest = half_later.saturating_sub(self.time_of(sample));
         let slot = rest.checked_div(unit)?;
         let away = slot.wrapping_mul(unit).wrapping_add(unit / 2).abs_diff(rest);
-        // The events of the last known sample have its tick, to the microsecond. Others lie at most three eighths of a unit
-        // away, so that a tick that is half a unit early or late is always noticed.
-        let most = match sample {
-            0 => 0,
-            _ => (unit / 4).wrapping_add(doubt).min(unit.wrapping_mul(3) / 8),
-        };
+        // The events of the last known sample have its tick, to the microsecond.
+        let most = if sample == 0 { 0 } else { most };
         u32::try_from(slot).ok().filter(|&slot| slot < slots && away <= most)
     }
 
@@ -309,5 +312,355 @@ impl Pace {
         let samples = self.samples(since.unsigned_abs());
         let is_certain = self.stated_doubt(samples).saturating_mul(4) < u64::from(self.period);
         if is_certain { samples } else { self.least(samples) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Elapsed, LEARNED, Pace, longest_slot};
+    use std::vec::Vec;
+
+    /// Numbers that look random.
+    struct Random(u64);
+
+    impl Random {
+        /// A number from 0 up to this one, without it.
+        fn below(&mut self, end: u64) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (self.0 >> 33) % end
+        }
+
+        /// A number within this far of 0.
+        fn around(&mut self, most: f64) -> f64 {
+            (self.below(1_000_001) as f64 / 500_000.0 - 1.0) * most
+        }
+
+        /// A whole tick that is at most so far from this time.
+        fn tick(&mut self, time: f64, most: f64) -> i64 {
+            let (first, last) = ((time - most).ceil(), (time + most).floor());
+            if first > last {
+                return time.round() as i64;
+            }
+            first as i64 + self.below((last - first) as u64 + 1) as i64
+        }
+    }
+
+    /// What became of silences of a code that counts samples.
+    #[derive(Debug, Default)]
+    struct Counted {
+        known: u32,
+        settled: u32,
+        lost: u32,
+    }
+
+    /// Samples whose clock changes at any time to any rate within the tolerance, in steps, and a pace that must never count
+    /// others than there were.
+    fn count(period: u32, tolerance: u32, longest: u64, settled: u32) -> Counted {
+        let mut random = Random(u64::from(period) + u64::from(tolerance) + longest);
+        let mut pace = Pace::new(tolerance);
+        pace.set(period, period);
+        pace.begin();
+        let eighth = f64::from(period) / 8.0;
+        let widest = f64::from(tolerance) / 1e6;
+        let (mut time, mut anchor, mut rate) = (1e6, 1_000_000, 0.0);
+        let mut counted = Counted::default();
+        for _ in 0..60_000 {
+            let silence = 1 + random.below(longest);
+            // The clock changes once in a few silences, within one of them.
+            let change = random.below(3 * silence);
+            for sample in 0..silence {
+                if sample == change {
+                    rate = [random.around(widest), widest, -widest][random.below(3) as usize];
+                }
+                time += f64::from(period) * (1.0 + rate);
+            }
+            let tick = random.tick(time, eighth);
+            let since = tick - anchor;
+            anchor = tick;
+            match pace.elapsed(since, settled) {
+                Elapsed::Samples { samples, .. } => {
+                    assert_eq!(samples, silence, "{period} {tolerance} {since}: {pace:?}");
+                    pace.learn(since, samples);
+                    counted.known += 1;
+                }
+                Elapsed::Settled { .. } => {
+                    assert!(silence > u64::from(settled), "{period} {tolerance} {since}: {pace:?}");
+                    pace.begin();
+                    counted.settled += 1;
+                }
+                Elapsed::Misfit => {
+                    pace.forget();
+                    pace.begin();
+                    counted.lost += 1;
+                }
+                Elapsed::Unknown => {
+                    pace.begin();
+                    counted.lost += 1;
+                }
+            }
+        }
+        counted
+    }
+
+    #[test]
+    fn a_clock_that_changes_within_its_tolerance_is_never_counted_wrong() {
+        for period in [4, 7, 40, 1_000, 4_999] {
+            // However the clock changes: a quarter of a period of drift beside a quarter of jitter.
+            for (tolerance, longest) in [(0, 10_000), (20_000, 11), (100_000, 1), (1_000, 200)] {
+                let counted = count(period, tolerance, longest, 100_000);
+                let are_known = counted.known == 60_000 || period < 1_000;
+                assert!(are_known, "{period} {tolerance}: {counted:?}");
+            }
+            for tolerance in [1_000, 20_000, 100_000, 200_000, 249_000, 400_000, 1_000_000] {
+                let counted = count(period, tolerance, 90, 40);
+                assert!(
+                    counted.lost > 0 || tolerance < 20_000,
+                    "{period} {tolerance}: {counted:?}"
+                );
+                let is_settled =
+                    counted.settled > 1_000 || tolerance > 200_000 || tolerance < 20_000;
+                assert!(is_settled, "{period} {tolerance}: {counted:?}");
+            }
+        }
+    }
+
+    /// Within what a tolerance of 40 % allows, one sample may look like two.
+    #[test]
+    fn the_next_sample_is_certain_only_with_a_clock_known_well() {
+        let elapsed = |tolerance| {
+            let mut pace = Pace::new(tolerance);
+            pace.set(1_000, 1_000);
+            pace.elapsed(1_200, 100)
+        };
+        assert_eq!(elapsed(20_000), Elapsed::Samples { samples: 1, slot: 0 });
+        assert_eq!(elapsed(100_000), Elapsed::Samples { samples: 1, slot: 0 });
+        assert_eq!(elapsed(400_000), Elapsed::Unknown);
+    }
+
+    #[test]
+    fn a_tick_half_a_period_away_fits_no_sample() {
+        for tolerance in [0, 20_000] {
+            let mut pace = Pace::new(tolerance);
+            pace.set(1_000, 1_000);
+            for samples in 1..6 {
+                for away in [-499, -438, -380, 380, 438, 500] {
+                    let elapsed = pace.elapsed(samples * 1_000 + away, 100);
+                    assert_eq!(elapsed, Elapsed::Misfit, "{tolerance} {samples} {away}");
+                }
+            }
+            assert_eq!(pace.elapsed(0, 100), Elapsed::Misfit);
+            assert_eq!(pace.elapsed(-1_000, 100), Elapsed::Misfit);
+        }
+        // A clock at one end of its tolerance, as measured.
+        let mut pace = Pace::new(20_000);
+        pace.set(1_000, 1_000);
+        pace.begin();
+        for _ in 0..LEARNED {
+            pace.learn(1_019, 1);
+        }
+        assert_eq!(pace.elapsed(10_190, 100), Elapsed::Samples { samples: 10, slot: 0 });
+        assert_eq!(pace.elapsed(10_190 + 560, 100), Elapsed::Misfit);
+    }
+
+    /// A world of sub-timesteps.
+    #[derive(Clone, Copy, Debug)]
+    struct World {
+        period: u32,
+        unit: u32,
+        slots: u32,
+        tolerance: u32,
+        /// Samples from heartbeat to heartbeat.
+        beat: u64,
+    }
+
+    /// Samples of a clock that is steady: what is told apart must be so. Returns how many of the events were.
+    fn tell_apart(world: World, seed: u64) -> f64 {
+        let World { period, unit, slots, tolerance, beat } = world;
+        let mut random = Random(seed);
+        let mut pace = Pace::new(tolerance);
+        pace.set(period, unit);
+        let eighth = f64::from(unit) / 8.0;
+        let widest = f64::from(tolerance) / 1e6;
+        let mut rate = [random.around(widest), widest, -widest][random.below(3) as usize];
+        let mut time = 1e6;
+        // The last known sample, and how many samples ago it was; whether sub-timesteps may be told apart from it.
+        let mut anchor: Option<(i64, u64)> = None;
+        let mut is_timed = false;
+        let (mut events, mut told) = (0_u32, 0_u32);
+        for sample in 1..20_000_u64 {
+            if sample.is_multiple_of(320) {
+                rate = (rate + random.around(widest / 128.0)).clamp(-widest, widest);
+            }
+            time += f64::from(period) * (1.0 + rate);
+            let taken = random.tick(time, eighth);
+            if let Some((_, ago)) = &mut anchor {
+                *ago += 1;
+            }
+            if random.below(3) == 0 {
+                let slot = random.below(slots.into()) as u32;
+                let tick = taken + i64::from(slot * unit);
+                events += 1;
+                if let Some((known, ago)) = anchor.filter(|_| is_timed) {
+                    match pace.slot(tick - known, slots) {
+                        Elapsed::Samples { samples, slot: heard } => {
+                            assert_eq!((samples, heard), (ago, slot), "{world:?} {pace:?}");
+                            pace.learn(taken - known, samples);
+                            anchor = Some((taken, 0));
+                            told += 1;
+                        }
+                        Elapsed::Unknown => is_timed = false,
+                        Elapsed::Misfit | Elapsed::Settled { .. } => {
+                            pace.forget();
+                            anchor = None;
+                            is_timed = false;
+                        }
+                    }
+                }
+            }
+            if sample.is_multiple_of(beat) {
+                match anchor.map(|(known, ago)| (taken - known, ago)) {
+                    None => pace.begin(),
+                    Some((0, _)) => {}
+                    Some((since, ago)) => match pace.beat(since, 0) {
+                        Elapsed::Samples { samples, .. } => {
+                            assert_eq!(samples, ago, "{world:?} {pace:?}");
+                            pace.learn(since, samples);
+                        }
+                        Elapsed::Settled { .. } | Elapsed::Unknown => pace.begin(),
+                        Elapsed::Misfit => {
+                            pace.forget();
+                            pace.begin();
+                        }
+                    },
+                }
+                anchor = Some((taken, 0));
+                is_timed = true;
+            }
+        }
+        f64::from(told) / f64::from(events)
+    }
+
+    /// Sub-timesteps of 1 µs and more: those of a few are known only with the clock of the ticks, as rounding takes all of
+    /// what jitter may.
+    #[test]
+    fn sub_timesteps_are_never_mistaken() {
+        let mut told = Vec::new();
+        for unit in (1..17).chain([24, 49, 62, 100, 499]) {
+            for (slots, tolerance, beat) in
+                [(2, 20_000, 9), (8, 20_000, 12), (8, 100_000, 4), (8, 5_000, 5)]
+            {
+                for room in [0, unit / 2, 3 * unit] {
+                    // As long as all sub-timesteps, or longer.
+                    let period = slots * unit + room;
+                    let world = World { period, unit, slots, tolerance, beat };
+                    let shortest =
+                        u64::from(period) * (1_000_000 - u64::from(tolerance)) / 1_000_000;
+                    if u64::from(slots * unit - unit / 2) > shortest {
+                        continue; // A receiver refuses it.
+                    }
+                    for seed in 0..3 {
+                        told.push((world, tell_apart(world, seed)));
+                    }
+                }
+            }
+            let world = World { period: 8 * unit, unit, slots: 8, tolerance: 0, beat: 50 };
+            let exact = tell_apart(world, u64::from(unit));
+            assert!(exact > 0.9 || unit < 4, "{world:?} {exact}");
+        }
+        for (world, told) in told {
+            let has_room = world.period >= world.slots * world.unit + world.unit;
+            let is_due = world.unit >= 49 && has_room && world.tolerance == 20_000;
+            assert!(told > 0.9 || !is_due, "{world:?} {told}");
+        }
+    }
+
+    /// A tick up to 3/8 of a unit away may be jitter and doubt; one further away fits none.
+    #[test]
+    fn a_tick_half_a_sub_timestep_away_fits_none() {
+        let mut pace = Pace::new(10);
+        pace.set(10_000, 64);
+        for (away, fits) in
+            [(0, true), (16, true), (-16, true), (28, false), (-28, false), (31, false)]
+        {
+            let slot = pace.slot(10_000 + 3 * 64 + away, 100);
+            let expected =
+                if fits { Elapsed::Samples { samples: 1, slot: 3 } } else { Elapsed::Misfit };
+            assert_eq!(slot, expected, "{away}");
+        }
+        assert_eq!(
+            pace.slot(3 * 64 + 1, 100),
+            Elapsed::Misfit,
+            "the last known sample has no jitter"
+        );
+        assert_eq!(pace.slot(3 * 64, 100), Elapsed::Samples { samples: 0, slot: 3 });
+    }
+
+    /// 8 sub-timesteps of 4 µs, 0.5 % fast: with a quarter of jitter and one of doubt the nearest is not the right one.
+    #[test]
+    fn a_doubt_of_a_quarter_is_too_much() {
+        let mut pace = Pace::new(5_000);
+        pace.set(46, 4);
+        pace.begin();
+        assert_eq!(pace.slot(184, 8), Elapsed::Unknown);
+    }
+
+    #[test]
+    fn each_piece_of_what_is_learned_has_its_jitter() {
+        let learned = |pieces: u32| {
+            let mut pace = Pace::new(20_000);
+            pace.set(10_000, 1_000);
+            for _ in 0..pieces {
+                pace.begin();
+                for _ in 0..120 / pieces {
+                    pace.learn(10_000, 1);
+                }
+            }
+            pace.doubt(100)
+        };
+        // 100 samples by 120: 1000 / 4 of jitter in each piece; 20 000 / 128 of change; 1 of rounding.
+        let change = 157;
+        assert_eq!(learned(1), 209 + change + 1);
+        assert_eq!(learned(2), 417 + change + 1);
+        assert_eq!(learned(8), 1_667 + change + 1);
+        // More would say little, and the first eight are forgotten.
+        assert_eq!(learned(10), 2_084 + change + 1);
+    }
+
+    /// The older half is forgotten: a clock that changed is measured anew.
+    #[test]
+    fn what_was_learned_long_ago_is_forgotten() {
+        let mut pace = Pace::new(20_000);
+        pace.set(10_000, 1_000);
+        pace.begin();
+        for time in [10_000, 10_150] {
+            for _ in 0..10 * LEARNED {
+                pace.learn(time, 1);
+            }
+            let (span, samples) = pace.pace();
+            assert!(samples <= 2 * u64::from(LEARNED));
+            assert!((span / samples).abs_diff(time as u64) <= 1, "{time}: {pace:?}");
+        }
+        // Nothing is learned of the time over a break.
+        pace.cut();
+        pace.learn(5_000_000, 1);
+        let (span, samples) = pace.pace();
+        assert!((span / samples).abs_diff(10_150) <= 1);
+    }
+
+    #[test]
+    fn the_doubt_of_years_is_no_overflow() {
+        let mut pace = Pace::new(u32::MAX);
+        pace.set(1, 1);
+        let doubt = ((1_u128 << 48) * u128::from(u32::MAX)).div_ceil(1_000_000);
+        assert_eq!(u128::from(pace.stated_doubt(1 << 48)), doubt);
+        assert_eq!(pace.elapsed(1 << 47, 3), Elapsed::Unknown);
+    }
+
+    #[test]
+    fn a_slot_leaves_room_for_a_clock_that_is_fast() {
+        assert_eq!(longest_slot(8, 1_000, 0), 125);
+        assert_eq!(longest_slot(8, 1_000, 20_000), 122);
+        assert_eq!(longest_slot(2_000, 1_000, 0), 0);
+        assert_eq!((longest_slot(0, 1_000, 0), longest_slot(8, 1_000, 2_000_000)), (0, 0));
     }
 }

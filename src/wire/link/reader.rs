@@ -39,7 +39,7 @@ impl Received<'_> {
 ///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen late frames in a row show
 ///   that their session goes on or is used again, and the sixteenth counts as a start.
 /// - **A session that is used again**, as where a sender's supply fails before its start was counted, begins anew where it
-///   shows: by a first frame other than the one delivered, by other bytes of the frame delivered last, by a time that goes
+///   shows: by another first frame than that delivered, or one that comes more than sixteen frames late, by other bytes of the frame delivered last, by a time that goes
 ///   back by more than 65.5 ms while numbers rise or the other way round, or by sixteen late frames in a row.
 /// - **Memory:** `N + 152` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
@@ -278,9 +278,11 @@ impl<const N: usize> Reader<N> {
         let ahead = present.ahead(frame);
         let since = frame.time().since(self.time);
         if frame.is_first() {
-            // The first frame of the present session once more; or of another start with the same session. If none was
-            // delivered it may be late, too: frames that go back by one start are better than a start left out.
-            let is_known = present.first == Some(checksum);
+            // The first frame of the present session once more, or late; or of another start with the same session.
+            let is_known = match present.first {
+                Some(first) => first == checksum,
+                None => since <= DISORDER && ahead.is_some_and(|ahead| ahead >= -i64::from(RETURN)),
+            };
             match ahead {
                 Some(-1) if is_known => return Standing::Repeated,
                 Some(BEFORE..0) if is_known => return Standing::Late,

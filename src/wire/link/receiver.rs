@@ -372,13 +372,15 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         CodeOf::<T, N>::SLOTS > 1 && self.slots > 1
     }
 
-    /// Whether all sub-timesteps of a sample are over when the next begins, however fast the clock is, but for half of the last
-    /// one: up to there they can be told apart.
+    /// Whether all sub-timesteps of a sample are over when the next begins. With a clock as fast as its tolerance allows, half of
+    /// the last one may be missing: up to there they can be told apart.
     fn slots_fit(&self) -> bool {
         let slot_ticks = u64::from(self.addresses.slot_ticks);
         let length = u64::from(self.slots).wrapping_mul(slot_ticks);
-        let shortest = self.sample.pace.shortest_period();
-        length.saturating_sub(slot_ticks / 2) <= u64::from(shortest)
+        let pace = &self.sample.pace;
+        let fits_shortest =
+            length.saturating_sub(slot_ticks / 2) <= u64::from(pace.shortest_period());
+        length <= u64::from(pace.period()) && fits_shortest
     }
 
     /// Counts an address that belongs to no channel.
@@ -617,6 +619,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
                 }
                 Elapsed::Unknown => {
                     self.lose_time(false, on_value);
+                    self.sample.pace.begin();
                 }
                 Elapsed::Settled { .. } | Elapsed::Samples { .. } | Elapsed::Misfit => {
                     self.lose_time(true, on_value);

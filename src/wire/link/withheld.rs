@@ -68,7 +68,7 @@ impl fmt::Display for Withheld {
             Self::SlotTicks => write!(f, "the length of the sub-timesteps is not given"),
             Self::Slots { slots, slot_ticks, period } => write!(
                 f,
-                "{slots} sub-timesteps of {slot_ticks} µs are longer than the link's period, {period} µs of a clock as fast as its tolerance allows"
+                "{slots} sub-timesteps of {slot_ticks} µs are longer than a period of {period} µs, the shortest that the clock's tolerance allows"
             ),
             Self::Clock => write!(
                 f,
