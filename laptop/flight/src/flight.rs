@@ -3,7 +3,7 @@
 use crate::{Filter, Filtering, FlightError, FlightErrorKind};
 use catalogue::run::{Asked, Error, Known, RunTime, SampleType, Settings, Value, Visit};
 use catalogue::{Info, Kind, Parameter, for_sample_type};
-use spikewire::link::Coding;
+use spikewire::link::{Coding, slots_fit};
 use spikewire::{Fingerprint, Sample, Scheme};
 use std::collections::BTreeSet;
 use std::num::NonZeroU16;
@@ -138,7 +138,8 @@ impl Flight {
         Ok(flight)
     }
 
-    /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, and that a sub-timestep takes at least 1 µs.
+    /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, that a sub-timestep takes at least 1 µs, and that a
+    /// receiver can tell sub-timesteps apart with a clock as fast as its tolerance allows.
     fn check_bank(&self) -> Result<(), FlightError> {
         let shape = |settings: &Settings| -> Vec<String> {
             let parameters =
@@ -152,9 +153,14 @@ impl Flight {
             let error = FlightError::new("parameters", FlightErrorKind::NotOneBank);
             return Err(error.of_channel(index));
         }
-        let (slots, period) = (self.slots(), f64::from(self.period.get()));
-        if self.is_slotted() && slots as f64 > period {
-            let kind = FlightErrorKind::Range { given: slots as f64, min: 1.0, max: period };
+        let (slots, period) = (self.slots() as u32, self.period.get());
+        let has_room = slots_fit(slots, self.slot_ticks(), period, self.clock_ppm);
+        if self.is_slotted() && (self.slot_ticks() == 0 || !has_room) {
+            let mut most = slots.min(period.into());
+            while most > 1 && !slots_fit(most, u32::from(period) / most, period, self.clock_ppm) {
+                most -= 1;
+            }
+            let kind = FlightErrorKind::Range { given: slots.into(), min: 1.0, max: most.into() };
             return Err(FlightError::new("slots", kind));
         }
         Ok(())

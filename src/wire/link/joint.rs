@@ -59,7 +59,7 @@ impl Joint {
         self.addresses
     }
 
-    /// The fingerprint of all parts: that of the first, [and](Fingerprint::and) of each of the others.
+    /// The fingerprint of all parts: see its [specification](Fingerprint#specification).
     pub const fn fingerprint(self) -> Fingerprint {
         self.fingerprint
     }
@@ -93,17 +93,14 @@ impl Joint {
 pub fn join(parts: &mut [&mut dyn Part]) -> Result<Joint, ConfigError> {
     let addresses = parts.iter().map(|part| part.addresses()).fold(0, usize::saturating_add);
     within("addresses of all parts", addresses as f64, 1.0, 65_536.0)?;
-    let mut joint: Option<Joint> = None;
+    // A name first: with one fingerprint right after the other, their order would not matter.
+    let mut joint = Joint { addresses: 0, fingerprint: Fingerprint::new("Joint") };
     for part in &mut *parts {
-        let first_address = joint.map_or(0, Joint::addresses);
-        part.set_first_address(first_address as u16);
-        let fingerprint = part.fingerprint();
-        joint = Some(Joint {
-            addresses: first_address.wrapping_add(part.addresses() as u32),
-            fingerprint: joint.map_or(fingerprint, |joint| joint.fingerprint.and(fingerprint)),
-        });
+        part.set_first_address(joint.addresses as u16);
+        joint.addresses = joint.addresses.wrapping_add(part.addresses() as u32);
+        joint.fingerprint = joint.fingerprint.and(part.fingerprint());
     }
-    let joint = joint.unwrap_or(Joint { addresses: 0, fingerprint: Fingerprint::from_bits(0) });
+    joint.fingerprint = joint.fingerprint.number(parts.len() as u32);
     parts.iter_mut().for_each(|part| part.join(joint));
     Ok(joint)
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::pace::{CLOCK_TOLERANCE, Elapsed, Pace};
+use super::pace::{CLOCK_TOLERANCE, Elapsed, Pace, slots_fit};
 use super::time::Time;
 use super::trust::Trust;
 use super::{Joint, Part, Received, Withheld};
@@ -35,7 +35,7 @@ use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Recovery, Sample, Schem
 /// - **Codes with sub-timesteps** need the sender's [`with_slot_ticks`](Self::with_slot_ticks), and a
 ///   [heartbeat](crate::Item::Heartbeat) after each loss, which says when a sample was taken: no value is decoded before.
 ///   The sender must take a sample every period, with a jitter of each tick of at most an eighth of a sub-timestep. A period
-///   less the clock's tolerance is as long as all sub-timesteps or longer: see [`longest_slot`](super::longest_slot).
+///   less the clock's tolerance is as long as all sub-timesteps or longer; [`slots_fit`](super::slots_fit) is the least.
 ///
 /// **Time:** however long a link is down, or a sender at rest, a frame's time says how many samples have passed. The
 /// sender must know it: see [`Transmitter::observe`](super::Transmitter::observe). A time that goes back, or that lies
@@ -179,10 +179,10 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// Sets by how many millionths the time from sample to sample may differ from the link's period, in ticks of the
     /// sender; 20 000 (2 %) by default, for a sensor that takes samples by its own clock. 0 is a timer of the clock that the
-    /// ticks come from. Within the tolerance the clock may change at any time: it says how long a silence may last in which
-    /// samples are counted, about a quarter of a period over the tolerance (12 samples of 2 %) in the worst case. Sub-timesteps
-    /// are told apart by the time that the receiver measures; while it does, over some 200 samples, the clock may change by
-    /// a 128th of the tolerance (156 millionths of 2 %).
+    /// ticks come from. Within the tolerance the clock may change at any time. Samples of a silence are thus counted while the
+    /// most that drift and jitter make of it stays below three eighths of a period: 18 samples of 2 % without jitter, 6 with
+    /// all of it. Sub-timesteps are told apart by the time that the receiver measures; while it does, over some 200 samples,
+    /// the clock may change by a 128th of the tolerance (156 millionths of 2 %).
     #[must_use]
     pub const fn with_clock_tolerance(mut self, millionths: u32) -> Self {
         self.sample.pace = self.sample.pace.with_tolerance(millionths);
@@ -372,17 +372,6 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         CodeOf::<T, N>::SLOTS > 1 && self.slots > 1
     }
 
-    /// Whether all sub-timesteps of a sample are over when the next begins. With a clock as fast as its tolerance allows, half of
-    /// the last one may be missing: up to there they can be told apart.
-    fn slots_fit(&self) -> bool {
-        let slot_ticks = u64::from(self.addresses.slot_ticks);
-        let length = u64::from(self.slots).wrapping_mul(slot_ticks);
-        let pace = &self.sample.pace;
-        let fits_shortest =
-            length.saturating_sub(slot_ticks / 2) <= u64::from(pace.shortest_period());
-        length <= u64::from(pace.period()) && fits_shortest
-    }
-
     /// Counts an address that belongs to no channel.
     fn pass_by(&mut self, address: u16) {
         let is_outside = u32::from(address) >= self.joined;
@@ -391,7 +380,13 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// Whether the code tells values by sub-timesteps that are not known.
     fn is_blind(&self) -> bool {
-        self.has_slots() && (self.addresses.slot_ticks == 0 || !self.slots_fit())
+        if !self.has_slots() {
+            return false;
+        }
+        let Addresses { slot_ticks, .. } = self.addresses;
+        let pace = &self.sample.pace;
+        slot_ticks == 0
+            || !slots_fit(self.slots, slot_ticks, pace.period() as u16, pace.tolerance())
     }
 
     /// Takes a keyframe, the second one of its address in the frame if `is_again`. Returns whether it has a channel.

@@ -122,7 +122,7 @@ impl Transmitter {
         Self { first_address, span, ..self }
     }
 
-    /// Sends this fingerprint: that of the bank, or of several banks on one link, each [and](Fingerprint::and) the next.
+    /// Sends this fingerprint: that of the bank, of several [joined](join) banks, or of a whole flight.
     #[must_use]
     pub const fn with_fingerprint(self, fingerprint: Fingerprint) -> Self {
         Self { framer: self.framer.with_fingerprint(fingerprint), ..self }
