@@ -290,13 +290,13 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     /// Checks that a bank may be sampled every `period` µs: that its filters are made for this rate, and that a sample's
     /// sub-timesteps, where they matter, are over when the next is taken.
     #[cfg(feature = "link")]
-    pub(crate) fn check_period(&self, period: u16) -> Result<(), ConfigError> {
+    pub(crate) fn check_period(&self, period: u32) -> Result<(), ConfigError> {
         let period = period.max(1);
         for (scheme, _) in T::each(&self.channels) {
             scheme.check_period(period)?;
             if CodeOf::<T, N>::SLOTS > 1 && T::Scheme::RECOVERY != Recovery::Keyframe {
                 let length = scheme.slots() as f64 * f64::from(self.slot_ticks);
-                crate::error::within("time of all sub-timesteps", length, 0.0, period.into())?;
+                crate::error::within("time of all sub-timesteps", length, 0.0, period as f32)?;
             }
         }
         Ok(())

@@ -178,9 +178,9 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
     }
 
     /// The rate of the filter may differ from that of the samples by a twentieth, as a sensor's from its data sheet.
-    fn check_period(&self, period: u16) -> Result<(), ConfigError> {
+    fn check_period(&self, period: u32) -> Result<(), ConfigError> {
         if let Some(rate) = self.filter.rate() {
-            let sampled = 1_000_000.0 / f32::from(period.max(1));
+            let sampled = 1_000_000.0 / period.max(1) as f32;
             within("rate of the filter", rate.into(), sampled * 0.95, sampled * 1.05)?;
         }
         self.scheme.check_period(period)

@@ -156,7 +156,7 @@ pub trait Scheme: Sized {
     ///
     /// # Errors
     /// Returns an error that names the parameter.
-    fn check_period(&self, _period: u16) -> Result<(), ConfigError> {
+    fn check_period(&self, _period: u32) -> Result<(), ConfigError> {
         Ok(())
     }
 

@@ -9,7 +9,8 @@ use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use spikewire::link::{
-    Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter, slots_fit,
+    CLOCK_TOLERANCE, Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter,
+    longest_slot,
 };
 use spikewire::{Bank, Fingerprint, FromItems, Item, Recovery, Sample, Scheme, Spike, Tick};
 
@@ -176,9 +177,13 @@ impl Build<'_> {
         }
         let slots = schemes.iter().map(|own| own.slots()).max().unwrap_or(1);
         let is_slotted = P::RECOVERY != Recovery::Keyframe && slots > 1;
-        let slot_ticks = if is_slotted { u32::from(*period) / slots as u32 } else { 0 };
-        let has_room = slots_fit(slots as u32, slot_ticks, *period, clock_tolerance);
-        if is_slotted && (slot_ticks == 0 || !has_room) {
+        let slots = slots as u32;
+        let slot_ticks =
+            if is_slotted { longest_slot(slots, (*period).into(), CLOCK_TOLERANCE) } else { 0 };
+        if is_slotted
+            && (slot_ticks == 0
+                || slot_ticks > longest_slot(slots, (*period).into(), clock_tolerance))
+        {
             bail!(
                 "{slots} sub-timesteps do not fit into {period} µs with a clock tolerance of {clock_tolerance} ppm"
             );

@@ -19,7 +19,7 @@ pub trait Part {
     ///
     /// # Errors
     /// Returns an error if its parameters are those of another period.
-    fn check_period(&self, _period: u16) -> Result<(), ConfigError> {
+    fn check_period(&self, _period: u32) -> Result<(), ConfigError> {
         Ok(())
     }
 
@@ -40,7 +40,7 @@ impl<T: Schemes<N>, const N: usize> Part for Bank<T, N> {
         self.fingerprint()
     }
 
-    fn check_period(&self, period: u16) -> Result<(), ConfigError> {
+    fn check_period(&self, period: u32) -> Result<(), ConfigError> {
         self.check_period(period)
     }
 }

@@ -123,7 +123,7 @@ mod writer;
 pub use error::LinkError;
 pub use frame::{Events, FrameView, MAX_FRAME, MIN_FRAME};
 pub use joint::{Joint, Part, join};
-pub use pace::{CLOCK_TOLERANCE, slots_fit};
+pub use pace::{CLOCK_TOLERANCE, longest_slot};
 pub use reader::{Gap, Reader, Received};
 pub use receiver::Receiver;
 pub use session::Session;

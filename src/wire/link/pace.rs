@@ -4,13 +4,24 @@
 /// otherwise: 2 %, as of an RC oscillator, or of a sensor that takes samples by a clock of its own.
 pub const CLOCK_TOLERANCE: u32 = 20_000;
 
-/// Whether so many sub-timesteps of so many µs are over when the next sample is taken, a period later in µs by a clock whose
-/// tolerance is so many millionths. By the fastest clock, half of the last one may be missing: up to there a receiver can tell
-/// them apart.
-pub const fn slots_fit(slots: u32, slot_ticks: u32, period: u16, clock_tolerance: u32) -> bool {
-    let length = slots as u64 * slot_ticks as u64;
-    let shortest = shortest_period(period as u32, clock_tolerance) as u64;
-    length <= period as u64 && length.saturating_sub(slot_ticks as u64 / 2) <= shortest
+/// The longest sub-timestep in µs, if a sample has so many and the next is taken a period later in µs, by a clock whose
+/// tolerance is so many millionths; 0 if none of 1 µs fits. Where it runs as fast as it may, half of the last sub-timestep may
+/// be missing: up to there a receiver can tell them apart.
+pub const fn longest_slot(slots: u32, period: u32, clock_tolerance: u32) -> u32 {
+    let halves = (slots as u64 * 2).saturating_sub(1);
+    let shortest = shortest_period(period, clock_tolerance) as u64;
+    match (period.checked_div(slots), (2 * shortest).checked_div(halves)) {
+        (Some(longest), Some(by_clock)) if by_clock < longest as u64 => by_clock as u32,
+        (Some(longest), _) => longest,
+        (None, _) => 0,
+    }
+}
+
+/// Whether a sub-timestep is no longer than the [longest](longest_slot), without a division by their number.
+pub(super) fn slots_fit(slots: u32, slot_ticks: u32, period: u32, tolerance: u32) -> bool {
+    let length = u64::from(slots).wrapping_mul(slot_ticks.into());
+    let shortest = u64::from(shortest_period(period, tolerance));
+    length <= u64::from(period) && length.saturating_sub(u64::from(slot_ticks / 2)) <= shortest
 }
 
 /// The shortest time from sample to sample in µs, by a tolerance in millionths.
@@ -324,7 +335,7 @@ impl Pace {
 
 #[cfg(test)]
 mod tests {
-    use super::{Elapsed, LEARNED, Pace, slots_fit};
+    use super::{Elapsed, LEARNED, Pace, longest_slot, slots_fit};
     use std::vec::Vec;
 
     /// Numbers that look random.
@@ -560,7 +571,7 @@ mod tests {
                     // As long as all sub-timesteps, or longer.
                     let period = slots * unit + room;
                     let world = World { period, unit, slots, tolerance, beat };
-                    if !slots_fit(slots, unit, period as u16, tolerance) {
+                    if !slots_fit(slots, unit, period, tolerance) {
                         continue;
                     }
                     for seed in 0..3 {
@@ -674,6 +685,16 @@ mod tests {
             (u32::MAX, u32::MAX, u32::MAX, false),
         ] {
             assert_eq!(slots_fit(slots, slot_ticks, 1_000, tolerance), fits, "{slots} {tolerance}");
+        }
+        assert_eq!(longest_slot(0, 1_000, 0), 0);
+        for (slots, period) in
+            [(1, 1), (8, 1_000), (35, 2_000), (50, 2_500), (50, 40), (256, 65_535)]
+        {
+            for tolerance in [0, 20_000, 21_111, 100_000, 3_000_000] {
+                let fits = |length: &u32| slots_fit(slots, *length, period, tolerance);
+                let longest = (0..=period).take_while(fits).last();
+                assert_eq!(Some(longest_slot(slots, period, tolerance)), longest);
+            }
         }
     }
 }

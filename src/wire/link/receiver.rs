@@ -35,7 +35,8 @@ use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Recovery, Sample, Schem
 /// - **Codes with sub-timesteps** need the sender's [`with_slot_ticks`](Self::with_slot_ticks), and a
 ///   [heartbeat](crate::Item::Heartbeat) after each loss, which says when a sample was taken: no value is decoded before.
 ///   The sender must take a sample every period, with a jitter of each tick of at most an eighth of a sub-timestep. A period
-///   less the clock's tolerance is as long as all sub-timesteps or longer; [`slots_fit`](super::slots_fit) is the least.
+///   less the clock's tolerance is as long as all sub-timesteps or longer; at most half a sub-timestep may be missing: see
+///   [`longest_slot`](super::longest_slot).
 ///
 /// **Time:** however long a link is down, or a sender at rest, a frame's time says how many samples have passed. The
 /// sender must know it: see [`Transmitter::observe`](super::Transmitter::observe). A time that goes back, or that lies
@@ -385,8 +386,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
         let Addresses { slot_ticks, .. } = self.addresses;
         let pace = &self.sample.pace;
-        slot_ticks == 0
-            || !slots_fit(self.slots, slot_ticks, pace.period() as u16, pace.tolerance())
+        slot_ticks == 0 || !slots_fit(self.slots, slot_ticks, pace.period(), pace.tolerance())
     }
 
     /// Takes a keyframe, the second one of its address in the frame if `is_again`. Returns whether it has a channel.

@@ -77,7 +77,7 @@ impl Transmitter {
         period: u16,
         session: Session,
     ) -> Result<Self, ConfigError> {
-        bank.check_period(period)?;
+        bank.check_period(period.into())?;
         let (first, count) = (bank.first_address(), bank.addresses().max(1));
         let last = first.saturating_add(count.saturating_sub(1) as u16);
         let coding = Coding::for_channels(u16::try_from(count).unwrap_or(u16::MAX), period);
@@ -98,7 +98,7 @@ impl Transmitter {
         session: Session,
     ) -> Result<Self, ConfigError> {
         for bank in &*banks {
-            bank.check_period(period)?;
+            bank.check_period(period.into())?;
         }
         let joint = join(banks)?;
         let last = joint.addresses().saturating_sub(1) as u16;
