@@ -391,7 +391,7 @@ mod tests {
         let widest = f64::from(tolerance) / 1e6;
         let (mut time, mut anchor, mut rate) = (1e6, 1_000_000, 0.0);
         let mut counted = Counted::default();
-        for _ in 0..60_000 {
+        for _ in 0..20_000 {
             let silence = 1 + random.below(longest);
             // The clock changes once in a few silences, within one of them.
             let change = random.below(3 * silence);
@@ -433,9 +433,9 @@ mod tests {
     fn a_clock_that_changes_within_its_tolerance_is_never_counted_wrong() {
         for period in [4, 7, 40, 1_000, 4_999] {
             // Drift and jitter stay below three eighths of a period, but where the clock has just changed.
-            for (tolerance, longest) in [(0, 10_000), (20_000, 6), (100_000, 1), (1_000, 120)] {
+            for (tolerance, longest) in [(0, 300), (20_000, 6), (100_000, 1), (1_000, 120)] {
                 let counted = count(period, tolerance, longest, 100_000);
-                let are_known = counted.known > 58_500 || period < 1_000;
+                let are_known = counted.known > 19_500 || period < 1_000;
                 assert!(are_known, "{period} {tolerance}: {counted:?}");
             }
             for tolerance in [1_000, 20_000, 100_000, 200_000, 249_000, 400_000, 1_000_000] {
@@ -445,7 +445,7 @@ mod tests {
                     "{period} {tolerance}: {counted:?}"
                 );
                 let is_settled =
-                    counted.settled > 1_000 || !(20_000..=200_000).contains(&tolerance);
+                    counted.settled > 300 || !(20_000..=200_000).contains(&tolerance);
                 assert!(is_settled, "{period} {tolerance}: {counted:?}");
             }
         }
@@ -514,7 +514,7 @@ mod tests {
         let mut anchor: Option<(i64, u64)> = None;
         let mut is_timed = false;
         let (mut events, mut told) = (0_u32, 0_u32);
-        for sample in 1..20_000_u64 {
+        for sample in 1..8_000_u64 {
             if sample.is_multiple_of(320) {
                 rate = (rate + random.around(widest / 128.0)).clamp(-widest, widest);
             }
