@@ -126,10 +126,10 @@ fn has_a_row_in_the_table_of_fingerprints() {
     let text = read(FINGERPRINTS);
     let mut named = 0;
     for source in ["src/scheme", "src/filter"].into_iter().flat_map(sources_of) {
-        // `Fingerprint::new("…")`, or a function of this name that is given the scheme's.
-        for call in source.split("ingerprint").skip(1) {
-            let begun = call.strip_prefix("::new").unwrap_or(call).strip_prefix("(\"");
-            let Some(name) = begun.and_then(|begun| begun.split('"').next()) else { continue };
+        for begun in
+            ["Fingerprint::new(\"", ".named(\""].iter().flat_map(|call| source.split(call).skip(1))
+        {
+            let name = begun.split('"').next().unwrap();
             let is_told = text
                 .lines()
                 .any(|line| line.starts_with("///") && line.contains(&format!("`{name}`")));

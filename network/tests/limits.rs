@@ -55,10 +55,10 @@ fn integers_reach_their_bound_and_no_further() {
 fn a_reset_value_beyond_the_bound_panics() {
     let beyond = LARGEST.next_up();
     for with_reset in [
-        |value| drop(Lif::<f32, ToValue>::new(0.5, 1.0).with_reset(value)),
-        |value| drop(Lif::<f32, ToValueLate>::new(0.5, 1.0).with_reset(value)),
-        |value| drop(Lif::<f32, ToValueHeld>::new(0.5, 1.0).with_reset(value)),
-        |value| drop(Lif::<f32, Subtract>::new(0.5, 1.0).with_reset(value)),
+        |value| _ = Lif::<f32, ToValue>::new(0.5, 1.0).with_reset(value),
+        |value| _ = Lif::<f32, ToValueLate>::new(0.5, 1.0).with_reset(value),
+        |value| _ = Lif::<f32, ToValueHeld>::new(0.5, 1.0).with_reset(value),
+        |value| _ = Lif::<f32, Subtract>::new(0.5, 1.0).with_reset(value),
     ] as [fn(f32); 4]
     {
         with_reset(LARGEST);
