@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use spikewire::filter::{Biquad, Filtered, FirstOrder};
 use spikewire::temporal::StepForward;
-use spikewire::{Bank, Fingerprint, Sample, Scheme};
+use spikewire::{Bank, Fingerprint, Sample, Start};
 use spikewire_flight::{Flight, FlightErrorKind};
 
 /// Returns a flight of one channel, with further lines before it.
@@ -53,8 +53,8 @@ fn a_channel_s_parameter_goes_before_the_shared_one() {
 }
 
 /// Returns the fingerprint of the flight of one channel behind a filter, as its sender computes it.
-fn by_hand<S: Sample, P: Scheme<Sample = S> + Clone>(scheme: P, label: &str) -> Fingerprint {
-    Bank::<_, 1>::new(scheme).fingerprint().labelled(label)
+fn by_hand<P: Start>(scheme: P, label: &str) -> Fingerprint {
+    Bank::<_, 1>::new(&scheme).fingerprint().labelled(label)
 }
 
 macro_rules! same_as_by_hand {
