@@ -42,7 +42,7 @@ pub fn new_scheme(args: &[String]) -> Result<()> {
     println!(
         "By hand now: the law in the first, names and parameters in the second, the rows' empty cells, and \
          host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, which are empty; then `cargo xtask write`. \
-         `cargo test --package host-tests --test every_scheme` names what is missing.",
+         `cargo test --package host-tests --test codes every_scheme` names what is missing.",
         module = names.new.module
     );
     Ok(())

@@ -106,8 +106,7 @@ impl Passed {
         let Some(before) = self.files.clone() else { return function() };
         let mut pass = self.passes.get(name).cloned().unwrap_or_default();
         pass.hash = None; // a failure leaves none
-        self.passes.insert(name.to_owned(), pass.clone());
-        write(&here(), &self.passes);
+        put(&here(), &mut self.passes, name, &pass);
         shell::ran();
         let ((result, seconds), opened) = opened::opened(&root(), &names(&before), function);
         if result.is_ok() && self.is_whole {
@@ -122,11 +121,9 @@ impl Passed {
                 self.files = Some(now);
             }
             if is_long && pass.hash.is_some() {
-                self.committed.insert(name.to_owned(), pass.clone());
-                write(&committed(), &self.committed);
+                put(&committed(), &mut self.committed, name, &pass);
             }
-            self.passes.insert(name.to_owned(), pass);
-            write(&here(), &self.passes);
+            put(&here(), &mut self.passes, name, &pass);
         }
         (result, seconds)
     }
@@ -239,7 +236,12 @@ fn parsed(path: &Path) -> Result<Passes> {
     }
 }
 
-fn write(path: &Path, passes: &Passes) {
+/// Adds a record, beside what another run has written meanwhile.
+fn put(path: &Path, passes: &mut Passes, name: &str, pass: &Pass) {
+    if let Ok(now) = parsed(path) {
+        *passes = now;
+    }
+    passes.insert(name.to_owned(), pass.clone());
     if let Ok(text) = toml::to_string(passes) {
         let _ = fs::write(path, text);
     }
