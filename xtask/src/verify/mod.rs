@@ -140,7 +140,7 @@ const LONG: &[Step] = &[
         "every codec without a panic handler, on two cores",
         everyday::no_panic_all
     ),
-    step!("scalar", "the codes' tests with the loops of a core without vectors", long::scalar),
+    step!("scalar", "codes and networks with the loops of a core without vectors", long::scalar),
     step!(
         "lints",
         "clippy on all at once, and the crates that fly alone and with all their features on every core",
