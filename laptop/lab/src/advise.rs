@@ -569,7 +569,7 @@ fn usual_rmse(recording: &Recording, trial: &Trial) -> f64 {
 pub fn link_bytes(trial: &Trial, rate: f64, keyframe_every: u64) -> Result<f64> {
     let period = (1e6 / rate).round().max(1.0);
     let format: Format = format!("link,period={period}").parse()?;
-    let mut writer = format.writer(true);
+    let mut writer = format.writer(true)?;
     let mut bytes: Vec<u8> = Vec::new();
     let tick = |sample: u64| Tick::from_micros((sample as f64 * period) as u64);
     let (mut next, every) = (0, keyframe_every.max(1));
