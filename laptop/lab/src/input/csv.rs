@@ -177,10 +177,6 @@ impl Table {
             }
         };
         if let Some((column, named)) = time.filter(|(time, _)| !table.columns.contains(time)) {
-            if let Some(rate) = options.rate {
-                let kind = TableKind::RateAndTimes { column: column.name };
-                return Err(kind.of(Given::new("rate", rate)).at(file));
-            }
             table.read_times(column, named, &names, options);
         } else if let Some(unit) = options.time_unit {
             return Err(TableKind::NoTimes.of(Given::new("time_unit", unit)).at(file));

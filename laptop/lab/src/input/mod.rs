@@ -15,7 +15,7 @@ mod text;
 mod time;
 mod times;
 
-pub use clock::{Clock, Kind, Step};
+pub use clock::{Clock, Kind, Step, UnevenRate};
 pub use csv::{ColumnSummary, Summary, summary};
 pub use kinds::{LogKind, TableKind};
 pub use names::near;
@@ -79,7 +79,8 @@ pub struct ChannelOptions {
     pub field: Vec<String>,
     /// Further fields of the topic, read after those in [`field`](Self::field).
     pub fields: Vec<String>,
-    /// Samples a second, for a recording without times.
+    /// Samples a second. They stand in place of the rate that the times show, and are needed where there are no times
+    /// or where the times contradict themselves (see [`Clock::uneven`]).
     pub rate: Option<f64>,
     /// Limit on the step between the times of consecutive samples, as a multiple of the usual step. A longer step
     /// counts as a gap.
@@ -241,7 +242,6 @@ impl InputOptions {
             ("column", !self.column.is_empty()),
             ("columns", !self.columns.is_empty()),
             ("delimiter", self.delimiter.is_some()),
-            ("rate", self.rate.is_some()),
         ];
         let of_times = [("time", self.time.is_some()), ("time_unit", self.time_unit.is_some())];
         let kind = if self.is_stdin() { None } else { flight_logs::Kind::of(&self.input)? };
