@@ -61,7 +61,10 @@ pub struct UnevenRate {
 impl fmt::Display for UnevenRate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { through_length, by_median } = self;
-        write!(f, "{through_length:.2} Hz by samples through length, {by_median:.2} Hz by the median step")
+        write!(
+            f,
+            "{through_length:.2} Hz by samples through length, {by_median:.2} Hz by the median step"
+        )
     }
 }
 
@@ -194,9 +197,8 @@ impl Clock {
         if !are_sorted {
             sorted.sort_unstable();
         }
-        let (usual_step, samples_a_step) = usual_step(&sorted)
-            .or_else(|| Some((1e6 / rate?, 1.0)))
-            .unwrap_or((f64::NAN, 1.0));
+        let (usual_step, samples_a_step) =
+            usual_step(&sorted).or_else(|| Some((1e6 / rate?, 1.0))).unwrap_or((f64::NAN, 1.0));
         let burst = burst(&sorted, usual_step / samples_a_step);
         let mut clock = Self {
             given_rate: rate,

@@ -1,6 +1,6 @@
 //! Reasons for which a recording cannot be read.
 
-use super::UnevenRate;
+use super::{TimeUnit, UnevenRate};
 use crate::error::room;
 use catalogue::kinds;
 use flight_logs::Rest;
@@ -36,6 +36,10 @@ kinds! {
         UnevenRate { uneven: UnevenRate } => (
             "the times give {uneven}, as those of samples that arrive in bursts; {} says how many a second are taken",
             spell("rate")
+        ),
+        WhichUnit { column: String, unit: TimeUnit, rate: f64 } => (
+            "times of column `{column}` in {unit} would be {rate:.2} samples a second; {} says their unit",
+            spell("time_unit")
         ),
         NoTimes => ("{subject}: no column is known to hold times; {} says which", spell("time")),
         // Settings.

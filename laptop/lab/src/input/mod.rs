@@ -73,6 +73,9 @@ pub struct ChannelOptions {
     pub time_unit: Option<TimeUnit>,
     /// Delimiter of columns: `,` `;` `|` `tab` `space`. By default, the delimiter is found in the header.
     pub delimiter: Option<Delimiter>,
+    /// Number of the line with the names of a table's columns, counted from 1. The lines above it are left out. By
+    /// default, the header is found where it is sure.
+    pub header: Option<u64>,
     /// Topic of a log. The suffix `:1` stands for the second instance of a sensor.
     pub topic: Option<String>,
     /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
@@ -101,6 +104,7 @@ impl Default for ChannelOptions {
             time: None,
             time_unit: None,
             delimiter: None,
+            header: None,
             topic: None,
             field: Vec::new(),
             fields: Vec::new(),
@@ -242,6 +246,7 @@ impl InputOptions {
             ("column", !self.column.is_empty()),
             ("columns", !self.columns.is_empty()),
             ("delimiter", self.delimiter.is_some()),
+            ("header", self.header.is_some()),
         ];
         let of_times = [("time", self.time.is_some()), ("time_unit", self.time_unit.is_some())];
         let kind = if self.is_stdin() { None } else { flight_logs::Kind::of(&self.input)? };
