@@ -50,8 +50,9 @@ pub(crate) struct ChannelOptions {
     )]
     columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: the column
-    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a ROS log: the time at which
-    /// a message was recorded
+    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a log: the sensor's own stamp
+    /// such as `header.stamp`, `timestamp_sample` or `time_boot_ms`, and without one the time at which a message was
+    /// recorded, which is called `recorded`
     #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     time: Option<String>,
     /// Unit of the time column; default: the unit in its name, such as `time (us)` or `stamp_ns`, or else a guess from

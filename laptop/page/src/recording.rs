@@ -181,6 +181,7 @@ pub(crate) fn load(channel: Channel) -> Result<Value> {
         "name": recording.name,
         "samples": recording.values.len(),
         "rate": recording.rate,
+        "uneven": recording.uneven().is_some(),
         "seconds": recording.seconds(),
         "unit": known_unit(&recording.name),
         "notes": notes.collect::<Vec<_>>(),

@@ -147,6 +147,7 @@ impl Content {
                             "texts": own.texts,
                             "unread": own.unread,
                             "missing": own.missing,
+                            "stamp": own.stamp,
                         });
                         add_times(&mut all, &own.clock, &own.rollover);
                         all
@@ -228,6 +229,9 @@ fn write(topic: &Overview, output: &mut impl Write) -> Result<()> {
     }
     if let Some(note) = rollover.note() {
         writeln!(output, "  {note}")?;
+    }
+    if let Some(stamp) = topic.stamp {
+        writeln!(output, "  times are the sensor's own, `{stamp}`")?;
     }
     if topic.missing > 0 {
         writeln!(

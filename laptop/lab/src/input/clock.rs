@@ -154,7 +154,7 @@ impl Count {
 
     /// Returns the number of steps a second.
     fn rate(self) -> Option<f64> {
-        (self.time > 0 && self.steps > 0).then(|| self.steps as f64 / self.time as f64 * 1e6)
+        (self.time > 0 && self.steps > 0).then(|| self.steps as f64 * 1e6 / self.time as f64)
     }
 }
 
@@ -454,17 +454,40 @@ struct Burst {
     longest: f64,
 }
 
-/// Finds bursts in sorted times whose median step is `usual`. Returns `None` if the mean step, taken over as many
-/// samples as a long burst has, is that of the median within a fifth. The median of these means is taken, so that a few
-/// gaps are no bursts.
-fn burst(times: &[i64], usual: f64) -> Option<Burst> {
+/// Returns the mean step between sorted times in µs, taken over as many samples as a long burst has. It is the median of
+/// such means, so that a few gaps do not count.
+fn mean_step(times: &[i64]) -> Option<f64> {
     /// A longest burst, such as a sensor's queue that is read 50 times a second at 8 kHz, has fewer samples.
     const WINDOW: usize = 256;
     let window = (times.len() / 8).clamp(1, WINDOW);
     let pairs = times.iter().zip(times.get(window..)?);
     let mut means: Vec<i64> = pairs.map(|(first, last)| last.saturating_sub(*first)).collect();
     means.sort_unstable();
-    let mean = *means.get(means.len() / 2)? as f64 / window as f64;
+    Some(*means.get(means.len() / 2)? as f64 / window as f64)
+}
+
+/// Returns whether the sensor's own stamps are to be preferred to the times at which its samples arrived, both in µs:
+/// they go forward at least as often, never go back, and show the same mean step within a factor of 2, unless the times
+/// of arrival do not go forward at all.
+pub(super) fn prefers_stamps(stamps: &[i64], arrivals: &[i64]) -> bool {
+    const ALIKE: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+    let forward = |times: &[i64]| times.windows(2).filter(|pair| pair[0] < pair[1]).count();
+    if stamps.len() != arrivals.len() || !stamps.is_sorted() || forward(stamps) < forward(arrivals)
+    {
+        return false;
+    }
+    match (mean_step(stamps), mean_step(arrivals)) {
+        (Some(own), Some(arrival)) => {
+            own > 0.0 && (arrival == 0.0 || ALIKE.contains(&(own / arrival)))
+        }
+        _ => false,
+    }
+}
+
+/// Finds bursts in sorted times whose median step is `usual`. Returns `None` if the mean step is that of the median
+/// within a fifth.
+fn burst(times: &[i64], usual: f64) -> Option<Burst> {
+    let mean = mean_step(times)?;
     if mean <= 0.0 || (1.0 / EVEN..EVEN).contains(&(mean / usual)) || usual.is_nan() {
         return None;
     }
@@ -519,7 +542,7 @@ fn usual_step(times: &[i64]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Clock, Kind};
+    use super::{Clock, Kind, prefers_stamps};
 
     #[test]
     fn messages_out_of_order_have_a_rate_and_a_length() {
@@ -546,6 +569,71 @@ mod tests {
             assert!((rate / 200.0 - 1.0).abs() < within, "{rate}");
             assert!(!clock.to_string().contains("jumps"), "{clock}");
         }
+    }
+
+    #[test]
+    fn the_rate_is_samples_through_length_without_gaps() {
+        let clock_of = |times: &[i64]| {
+            let mut clock = Clock::new(times, None, 1.5);
+            clock.observe(times);
+            clock
+        };
+        let is_near = |clock: &Clock, rate: f64| (clock.rate().unwrap() / rate - 1.0).abs() < 0.002;
+        // Packets of 8 samples, stamped on arrival.
+        let packets: Vec<i64> = (0..16_000).map(|at| at / 8 * 10_000 + at % 8 * 50).collect();
+        let clock = clock_of(&packets);
+        let uneven = clock.uneven().unwrap();
+        assert!(is_near(&clock, 800.0) && clock.gaps() == 0, "{clock}");
+        assert_eq!((uneven.by_median.round(), clock.period()), (20_000.0, 1250));
+        assert!(clock.steady_rate().is_err());
+        let mut given = Clock::new(&packets, Some(800.0), 1.5);
+        given.observe(&packets);
+        assert_eq!((given.uneven(), given.steady_rate().unwrap()), (None, Some(800.0)));
+        // A packet that is lost is a gap, and takes no part.
+        let lost: Vec<i64> =
+            packets.iter().map(|time| time + if *time > 5_000_000 { 400_000 } else { 0 }).collect();
+        let clock = clock_of(&lost);
+        assert!(is_near(&clock, 800.0) && clock.gaps() == 1, "{clock}");
+        // Evenly stamped, with two gaps.
+        let gaps: Vec<i64> = (0..3000).map(|at| at * 5000 + at / 1000 * 700_000).collect();
+        let clock = clock_of(&gaps);
+        assert_eq!((clock.rate(), clock.gaps(), clock.uneven()), (Some(200.0), 2, None));
+        // Whole milliseconds at 400 Hz: the median step is 2 or 3 ms.
+        let coarse: Vec<i64> = (0..4000).map(|at| at * 5 / 2 * 1000).collect();
+        let clock = clock_of(&coarse);
+        assert!(is_near(&clock, 400.0) && clock.uneven().is_none(), "{clock}");
+        // A rate that falls to less than half for good: most steps would be gaps.
+        let slower: Vec<i64> =
+            (0..20_000).map(|at| at * 1000 + (at - 9000).max(0) * 1500).collect();
+        let clock = clock_of(&slower);
+        assert!(clock.uneven().is_some() && clock.rate().unwrap() < 600.0, "{clock}");
+        // Steps at random, as of packets on a busy line: one in some hundred is a gap.
+        let mut state = 1_u32;
+        let mut time = 0;
+        let mut at_random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            time += (-(f64::from(state >> 8) + 0.5).ln() + 24.0 * 2_f64.ln()) as i64 * 1000;
+            time
+        };
+        let random: Vec<i64> = (0..20_000).map(|_| at_random()).collect();
+        let mean = (random[19_999] - random[0]) as f64 / 19_999.0;
+        let rate = clock_of(&random).rate().unwrap();
+        assert!((rate * mean / 1e6 - 1.0).abs() < 0.15, "{rate} of {}", 1e6 / mean);
+    }
+
+    #[test]
+    fn stamps_are_preferred_to_arrivals_if_they_are_times() {
+        let stamps: Vec<i64> = (0..400).map(|at| at * 4000).collect();
+        let arrivals: Vec<i64> = (0..400).map(|at| at / 8 * 32_000 + 5000).collect();
+        assert!(prefers_stamps(&stamps, &arrivals) && prefers_stamps(&stamps, &[0; 400]));
+        let backward: Vec<i64> = stamps.iter().rev().copied().collect();
+        let other: Vec<i64> = stamps.iter().map(|time| time * 1000).collect();
+        for odd in [&[0; 400][..], &backward, &other, &stamps[1..]] {
+            assert!(!prefers_stamps(odd, &arrivals), "{odd:?}");
+        }
+        // Coarser than the times of arrival.
+        let coarse: Vec<i64> = stamps.iter().map(|time| time / 20_000 * 20_000).collect();
+        assert!(!prefers_stamps(&coarse, &stamps));
     }
 
     #[test]

@@ -205,7 +205,10 @@ impl Table {
         let chosen = match asked[..] {
             [] | [ALL] => None,
             ref asked => {
-                let columns = asked.iter().map(|name| find(name, &names, file));
+                let columns = asked.iter().map(|name| {
+                    let named = |own: &Column| with_unit(own, &of_units) == *name;
+                    all(&names).find(named).map_or_else(|| find(name, &names, file), Ok)
+                });
                 Some(columns.collect::<Result<Vec<_>>>()?)
             }
         };
@@ -225,9 +228,7 @@ impl Table {
             return Err(TableKind::NoTimes.of(Given::new("time_unit", unit)).at(file));
         }
         for column in &mut table.columns {
-            if let Some(unit) = of_units.get(column.index).filter(|unit| !unit.is_empty()) {
-                column.name = format!("{} ({unit})", column.name);
-            }
+            column.name = with_unit(column, &of_units);
         }
         table.origin = vec![("column", table.names().join(","))];
         Ok(table)
@@ -243,23 +244,42 @@ impl Table {
         chosen: Option<&[Column]>,
         options: &InputOptions,
     ) -> Result<Option<(Column, Named)>> {
-        let with_unit = |index: usize| match units.get(index).filter(|unit| !unit.is_empty()) {
-            Some(unit) => format!("{} ({unit})", names[index]),
-            None => names[index].clone(),
-        };
         if let Some(asked) = &options.time {
             let column = find(asked, names, &self.file)?;
-            let says = of_given(&with_unit(column.index));
+            let says = of_given(&with_unit(&column, units));
             return Ok(Some((column, says)));
         }
+        let mut times = self.columns_of_times(names, units);
+        if times.len() < 2 {
+            return Ok(times.pop());
+        }
+        let first = times.first().cloned();
+        times.retain(|(column, _)| self.rises(column.index));
+        let before = |(time, _): &(Column, Named)| {
+            chosen.and_then(<[Column]>::first).is_none_or(|chosen| time.index < chosen.index)
+        };
+        let stamp = times.iter().find(|(column, _)| is_stamp(&column.name));
+        let nearest = times.iter().rfind(|time| chosen.is_some() && before(time));
+        let Some(taken) = stamp.or(nearest).or(times.first()).cloned() else { return Ok(first) };
+        if times.len() > 1 {
+            let all: Vec<&str> = times.iter().map(|(column, _)| column.name.as_str()).collect();
+            let (all, read) = (all.join(", "), &taken.0.name);
+            let note = format!("columns {all} hold times, and those of `{read}` are read; ");
+            self.notes.push(Words::from(note).setting("time").text(" says if others are meant"));
+        }
+        Ok(Some(taken))
+    }
+
+    /// Returns the columns of times by their names, each with the format of times that the name suggests.
+    fn columns_of_times(&self, names: &[String], units: &[String]) -> Vec<(Column, Named)> {
         let is_betaflight = names.iter().any(|name| name == "loopIteration");
         let mut times = Vec::new();
-        for (index, name) in names.iter().enumerate() {
-            let says = match of_name(&with_unit(index)) {
+        for column in all(names) {
+            let says = match of_name(&with_unit(&column, units)) {
                 Some(Named::Whole(_)) if is_betaflight => Named::Whole(TimeUnit::Us),
                 Some(Named::Dates) => {
-                    let dates =
-                        Reading::new(Named::Dates, &self.first(index), self.has_decimal_commas);
+                    let first = self.first(column.index);
+                    let dates = Reading::new(Named::Dates, &first, self.has_decimal_commas);
                     if dates.is_none() || !times.is_empty() {
                         continue;
                     }
@@ -268,47 +288,26 @@ impl Table {
                 Some(says) => says,
                 None => continue,
             };
-            times.push((Column { index, name: name.clone() }, says));
+            times.push((column, says));
         }
-        if times.len() < 2 {
-            return Ok(times.pop());
-        }
+        // Nanoseconds beside whole seconds are no times of their own.
         let rests: Vec<Column> =
             times.iter().filter_map(|(column, _)| nanoseconds(column, names)).collect();
         times.retain(|(column, _)| !rests.contains(column));
-        let first = times.first().cloned();
-        times.retain(|(column, _)| self.rises(column.index));
-        let nearest =
-            |column: &Column| times.iter().rposition(|(time, _)| time.index < column.index);
-        let places: Vec<usize> =
-            chosen.unwrap_or_default().iter().map(|own| nearest(own).unwrap_or(0)).collect();
-        let place = times
-            .iter()
-            .position(|(column, _)| is_stamp(&column.name))
-            .or(places.first().copied())
-            .unwrap_or(0);
-        let Some(taken) = times.get(place).cloned() else { return Ok(first) };
-        if times.len() > 1 {
-            let all: Vec<&str> = times.iter().map(|(column, _)| column.name.as_str()).collect();
-            let note = format!(
-                "columns {} hold times, and those of `{}` are read; ",
-                all.join(", "),
-                taken.0.name
-            );
-            self.notes.push(Words::from(note).setting("time").text(" says if others are meant"));
-        }
-        Ok(Some(taken))
+        times
     }
 
     /// Returns whether the numbers of a column rise in the first rows, as times do.
     fn rises(&self, index: usize) -> bool {
-        let numbers: Option<Vec<f64>> = self
-            .first(index)
-            .into_iter()
-            .map(|field| number(field, self.has_decimal_commas))
-            .collect();
-        let Some(numbers) = numbers else { return true };
+        // Dates have been read by their name.
+        let Some(numbers) = self.first_numbers(index) else { return true };
         numbers.is_sorted() && numbers.first() < numbers.last()
+    }
+
+    /// Returns the numbers of a column in the first rows, or `None` if a field is no number.
+    fn first_numbers(&self, index: usize) -> Option<Vec<f64>> {
+        let fields = self.first(index).into_iter();
+        fields.map(|field| number(field, self.has_decimal_commas)).collect()
     }
 
     /// Returns the columns of signals: all columns except the column of times and the columns of counts. Notes the
@@ -339,11 +338,8 @@ impl Table {
         let name = column.name.to_lowercase();
         let is_named = COUNTS.contains(&name.as_str())
             || column.index == 0 && column.name != "I" && FIRST_COUNTS.contains(&name.as_str());
-        let numbers = self.first(column.index).into_iter();
-        let numbers: Option<Vec<f64>> =
-            numbers.map(|field| number(field, self.has_decimal_commas)).collect();
         is_named
-            && numbers.is_some_and(|numbers| {
+            && self.first_numbers(column.index).is_some_and(|numbers| {
                 numbers.iter().all(|number| number.fract() == 0.0)
                     && numbers.windows(2).all(|pair| pair[0] < pair[1])
             })
@@ -352,22 +348,23 @@ impl Table {
     /// Notes the chosen columns whose name stands for several columns.
     fn note_names(&mut self, names: &[String]) {
         let mut noted: Vec<&str> = Vec::new();
+        let mut notes = Vec::new();
         for column in &self.columns {
             let same = names.iter().filter(|name| **name == column.name).count();
             if same > 1 && !noted.contains(&column.name.as_str()) {
                 noted.push(&column.name);
                 let read = self.columns.iter().filter(|own| own.name == column.name);
                 let read: Vec<String> = read.map(|own| (own.index + 1).to_string()).collect();
-                self.notes.push(
-                    format!(
-                        "{same} columns are called `{}`; of them, column {} is read; a number names another",
-                        column.name,
-                        read.join(", ")
-                    )
-                    .into(),
+                let (name, count) = (&column.name, read.len());
+                let which =
+                    if count == 1 { "the one that is read is" } else { "those that are read are" };
+                let read = read.join(", ");
+                notes.push(
+                    format!("{same} columns are called `{name}`; {which} column {read}").into(),
                 );
             }
         }
+        self.notes.append(&mut notes);
     }
 
     /// Decides the format of the times in `column`, and adds a note on the format for the user. `says` is the format
@@ -718,6 +715,19 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
             let near = near(asked, names.iter().map(String::as_str));
             Err(TableKind::NoColumn { name: asked.to_owned(), near }.at(file))
         }
+    }
+}
+
+/// Returns all columns of a table.
+fn all(names: &[String]) -> impl Iterator<Item = Column> {
+    names.iter().enumerate().map(|(index, name)| Column { index, name: name.clone() })
+}
+
+/// Returns a column's name with the unit that the row below the header gives, such as `gyro_x (deg/s)`.
+fn with_unit(column: &Column, units: &[String]) -> String {
+    match units.get(column.index).filter(|unit| !unit.is_empty()) {
+        Some(unit) => format!("{} ({unit})", column.name),
+        None => column.name.clone(),
     }
 }
 

@@ -66,7 +66,9 @@ pub struct ChannelOptions {
     pub columns: Vec<String>,
     /// Name of the table's column or the log's field that holds the time, such as `header.stamp`. If `None`, the time
     /// column of a table is recognised by its name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. If
-    /// `None`, each message of a log has the time at which the message was recorded.
+    /// `None`, each message of a log has the sensor's own stamp if it has one that goes forward (`header.stamp`,
+    /// `timestamp_sample`, `time_usec`, `time_boot_ms`), and the time at which it was recorded otherwise. The name
+    /// `recorded` stands for the latter.
     pub time: Option<String>,
     /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
     /// `stamp_ns`, or from the column's values.
@@ -248,16 +250,12 @@ impl InputOptions {
             ("delimiter", self.delimiter.is_some()),
             ("header", self.header.is_some()),
         ];
-        let of_times = [("time", self.time.is_some()), ("time_unit", self.time_unit.is_some())];
         let kind = if self.is_stdin() { None } else { flight_logs::Kind::of(&self.input)? };
         if let Some(kind) = kind {
             if let Some(named) = self.named_by_topic() {
                 return named.open_as_is();
             }
             self.refuse(&of_tables, "a log")?;
-            if kind == flight_logs::Kind::Ulog {
-                self.refuse(&of_times, "a flight log")?;
-            }
             return Ok(Box::new(messages::Channel::open(self, kind)?));
         }
         Ok(Box::new(self.open_table()?))
