@@ -1,7 +1,7 @@
 //! Encodes and decodes recordings in memory, in order to draw and score the results.
 
 use crate::Result;
-use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind};
+use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRate};
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
@@ -18,7 +18,8 @@ pub struct Recording {
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
-    /// Sample rate in Hz, if known.
+    /// Sample rate in Hz, if known: samples through the length without gaps, or the rate that the user gave. What relies
+    /// on the rate asks for [`steady_rate`](Self::steady_rate).
     pub rate: Option<f64>,
     /// Name of the channel.
     pub name: String,
@@ -126,6 +127,20 @@ impl Recording {
     /// Returns the number of samples that were missing or not finite.
     pub fn rejected(&self) -> usize {
         self.rejected
+    }
+
+    /// Returns the two rates of a recording whose times contradict themselves.
+    pub fn uneven(&self) -> Option<UnevenRate> {
+        self.clock.uneven()
+    }
+
+    /// Returns the sample rate in Hz, if it is known, for what must rely on it: a period that is written, or advice.
+    ///
+    /// # Errors
+    /// Returns an error that asks for the rate if the times of the recording contradict themselves.
+    pub fn steady_rate(&self) -> Result<Option<f64>> {
+        self.clock.steady_rate()?;
+        Ok(self.rate)
     }
 
     /// Returns the duration in seconds, if it is known. The unknown time between segments is left out.
