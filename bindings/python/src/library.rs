@@ -243,7 +243,7 @@ impl Advise {
         let request = AdviseRequest::new(recordings);
         Ok(AdviseRequest {
             sample: self.sample.parse()?,
-            max_rmse: self.max_rmse,
+            max_rmse: self.max_rmse.into_iter().collect(),
             max_latency: self.max_latency,
             loop_bandwidth: self.loop_bandwidth,
             frame_loss: self.frame_loss.unwrap_or(request.frame_loss),
