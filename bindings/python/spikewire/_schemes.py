@@ -4,6 +4,7 @@ import inspect
 import textwrap
 
 from . import _native
+from ._errors import CallError, Unknown
 from ._scheme import KINDS, Scheme
 
 #: What is not given of a code by chance.
@@ -49,10 +50,10 @@ paper:
 
     def __init__(self, *args, **keywords):
         if args:
-            raise TypeError(f"{info['type_name']} takes keywords only, as {own_names[0]}={args[0]!r}")
+            raise CallError(f"{info['type_name']} takes keywords only, as {own_names[0]}={args[0]!r}")
         unknown = [name for name in keywords if name not in own_names and name not in ("sample", "paper")]
         if unknown:
-            raise TypeError(f"{info['type_name']} takes no {unknown[0]}; it takes {', '.join(own_names)}")
+            raise CallError(f"{info['type_name']} takes no {unknown[0]}; it takes {', '.join(own_names)}")
         Scheme.__init__(self, **keywords)
 
     __init__.__signature__ = inspect.Signature(
@@ -64,7 +65,7 @@ paper:
 
 class _ByName(dict):
     def __missing__(self, name):
-        raise KeyError(f"there is no scheme {name!r}; there are {', '.join(self)}")
+        raise Unknown(f"there is no scheme {name!r}; there are {', '.join(self)}")
 
 
 #: The classes by their short names, in the order of the catalogue.

@@ -1,8 +1,10 @@
 //! Samples of `NumPy` arrays as they lie in memory, and decoded values.
 
-use std::{array, ops::Range};
+use std::{array, borrow::Cow, ops};
 
 use catalogue::run::{self, Calibrated, Codec, SampleType};
+use lab::fit::{self, Range};
+use lab::resolution::Resolution;
 use numpy::PyReadonlyArrayDyn;
 use numpy::ndarray::{ArrayView1, ArrayViewD, Axis, Ix1, Ix2, Slice};
 use pyo3::prelude::*;
@@ -53,7 +55,7 @@ impl Lane<'_> {
     }
 
     /// Some of the samples.
-    pub(crate) fn part(&self, range: Range<usize>) -> Lane<'_> {
+    pub(crate) fn part(&self, range: ops::Range<usize>) -> Lane<'_> {
         let part = Slice::from(range);
         match self {
             Self::F32(lane) => Lane::F32(lane.slice_axis(Axis(0), part)),
@@ -108,6 +110,37 @@ impl Lane<'_> {
         }
     }
 
+    /// Says that the type is too coarse for the steps from sample to sample, if it is.
+    fn lost(&self, sample: SampleType) -> Option<String> {
+        let values = match (self, sample) {
+            // A type of 16 bits or more holds what comes in it or in whole numbers of 16 bits, unless it clamps.
+            (Self::I16(_), _) | (Self::F32(_), SampleType::F32) => return None,
+            (Self::F64(lane), _) if lane.as_slice().is_some() => Cow::Borrowed(lane.as_slice()?),
+            _ => Cow::Owned(self.to_vec()),
+        };
+        let spacing = match sample.step() {
+            0.0 => {
+                let (low, high) = ends(&values)?;
+                low.abs().max(high.abs()) * f64::from(f32::EPSILON)
+            }
+            step => step,
+        };
+        // Rounding changes a step by one spacing at most. Samples that move far more than that in all lose nothing, and
+        // need no look at each step; so do most signals.
+        if spacing * values.len() as f64 <= SURE * moved(&values) {
+            return None;
+        }
+        Resolution::of(sample, &values).lost()
+    }
+
+    /// Whether some of the samples lie outside a range.
+    pub(crate) fn leaves(&self, range: &Range) -> bool {
+        match self.in_memory() {
+            Some(samples) => leaves(samples, range),
+            None => leaves(run::Samples::F64(&self.to_vec()), range),
+        }
+    }
+
     /// The first sample that an encoder of this type does not take: it is not finite, or becomes so in the type.
     pub(crate) fn bad(&self, sample: SampleType) -> Option<Bad> {
         match self {
@@ -148,7 +181,7 @@ pub(crate) struct Grid<'a> {
 
 impl<'a> Grid<'a> {
     /// Returns the first samples of these channels, up to `count` of each.
-    pub(crate) fn firsts(&self, channels: Range<usize>, count: usize) -> Vec<f64> {
+    pub(crate) fn firsts(&self, channels: ops::Range<usize>, count: usize) -> Vec<f64> {
         match self.all {
             run::Samples::F32(all) => self.firsts_of(all, channels, count),
             run::Samples::F64(all) => self.firsts_of(all, channels, count),
@@ -159,7 +192,7 @@ impl<'a> Grid<'a> {
     fn firsts_of<T: Copy + Into<f64>>(
         &self,
         all: &[T],
-        channels: Range<usize>,
+        channels: ops::Range<usize>,
         count: usize,
     ) -> Vec<f64> {
         let times = 0..count.min(self.length);
@@ -177,7 +210,7 @@ impl<'a> Grid<'a> {
     /// Returns the samples of these channels, one channel after the other: where they are, or copied to the tile.
     pub(crate) fn channels<'b>(
         &self,
-        channels: Range<usize>,
+        channels: ops::Range<usize>,
         tile: &'b mut Tile,
     ) -> run::Samples<'b>
     where
@@ -198,7 +231,7 @@ impl<'a> Grid<'a> {
     fn copied<'b, T: Copy + Default>(
         &self,
         all: &[T],
-        channels: Range<usize>,
+        channels: ops::Range<usize>,
         tile: &'b mut Vec<T>,
     ) -> &'b [T] {
         tile.resize(channels.len() * self.length, T::default());
@@ -293,6 +326,51 @@ fn first_bad<T>(samples: &[T], narrow: impl Fn(&T) -> f32) -> Option<usize> {
     Some(start + samples[start..].iter().position(|own| !narrow(own).is_finite())?)
 }
 
+/// Largest share of a signal's movement that rounding may make up for certain to be harmless.
+const SURE: f64 = 0.05;
+
+/// Number of comparisons or sums side by side, so that the processor does several at once: their order in a single one
+/// would be fixed.
+const SIDE: usize = 16;
+
+/// Returns the sum of the sizes of all steps from sample to sample, in any order.
+fn moved(samples: &[f64]) -> f64 {
+    let mut sums = [0.0; SIDE];
+    let later = samples.get(1..).unwrap_or_default();
+    for (before, after) in samples.chunks(SIDE).zip(later.chunks(SIDE)) {
+        for ((sum, before), after) in sums.iter_mut().zip(before).zip(after) {
+            *sum += (after - before).abs();
+        }
+    }
+    sums.iter().sum()
+}
+
+/// Returns the smallest and the largest sample; `None` if there is no sample. All must be numbers.
+fn ends<T: Copy + PartialOrd>(samples: &[T]) -> Option<(T, T)> {
+    let first = *samples.first()?;
+    let (mut low, mut high) = ([first; SIDE], [first; SIDE]);
+    for part in samples.chunks(SIDE) {
+        for ((low, high), &own) in low.iter_mut().zip(&mut high).zip(part) {
+            *low = if own < *low { own } else { *low };
+            *high = if own > *high { own } else { *high };
+        }
+    }
+    let smaller = |one: T, other: T| if other < one { other } else { one };
+    let larger = |one: T, other: T| if other > one { other } else { one };
+    Some((low.into_iter().fold(first, smaller), high.into_iter().fold(first, larger)))
+}
+
+/// Returns whether some of the samples, which are numbers, lie outside a range.
+pub(crate) fn leaves(samples: run::Samples, range: &Range) -> bool {
+    let ends = match samples {
+        run::Samples::F32(all) => ends(all).map(|(low, high)| (low.into(), high.into())),
+        run::Samples::F64(all) => ends(all),
+        run::Samples::I16(all) => ends(all).map(|(low, high)| (low.into(), high.into())),
+    };
+    // Rounding to the sample type keeps the order, so that the ends stand for all.
+    ends.is_some_and(|(low, high): (f64, f64)| !(range.holds(low) && range.holds(high)))
+}
+
 /// Returns whether an encoder of this type takes all of the samples.
 pub(crate) fn are_good(samples: run::Samples, sample: SampleType) -> bool {
     match samples {
@@ -370,16 +448,54 @@ impl<'a> View<'a> {
     }
 }
 
-/// Says how many samples were cut to the range of the sample type, if any. Fixed point cuts; beyond `f32` is an error.
+/// Says what the sample type does to the samples, a sentence each: that it clamps some, or is too coarse for their steps.
 #[pyfunction]
-pub(crate) fn cut(py: Python, sample: &str, samples: Samples) -> PyResult<Option<String>> {
+pub(crate) fn remarks(py: Python, sample: &str, samples: Samples) -> PyResult<Vec<String>> {
     let sample: SampleType = sample.parse().map_err(value)?;
-    if sample == SampleType::F32 {
-        return Ok(None);
-    }
     let lanes = samples.view().lanes();
-    let count: usize = py.detach(|| lanes.iter().map(|lane| lane.beyond(sample)).sum());
-    Ok(lab::fit::cut(sample, count as u64))
+    Ok(py.detach(|| {
+        let mut remarks = Vec::new();
+        if sample != SampleType::F32 {
+            let count: usize = lanes.iter().map(|lane| lane.beyond(sample)).sum();
+            remarks.extend(fit::cut(sample, count as u64));
+        }
+        for (place, lane) in lanes.iter().enumerate() {
+            if let Some(lost) = lane.lost(sample) {
+                let channel =
+                    if lanes.len() > 1 { format!("channel {place}: ") } else { String::new() };
+                remarks.push(channel + &lost);
+                break; // other channels of one sensor lose the same
+            }
+        }
+        remarks
+    }))
+}
+
+/// Says which share of the samples lies outside the range of their code, if any does. A range for all channels, or one for
+/// each, is its two ends.
+#[pyfunction]
+pub(crate) fn outside(
+    py: Python,
+    sample: &str,
+    ranges: Vec<[f64; 2]>,
+    samples: Samples,
+) -> PyResult<Option<String>> {
+    let sample: SampleType = sample.parse().map_err(value)?;
+    let ranges: Vec<Range> =
+        ranges.into_iter().map(|[min, max]| Range::new(sample, min, max)).collect();
+    let lanes = samples.view().lanes();
+    Ok(py.detach(|| {
+        let (mut count, mut total, mut odd) = (0, 0, None);
+        for (lane, range) in lanes.iter().zip(ranges.iter().cycle()) {
+            total += lane.len() as u64;
+            if lane.leaves(range) {
+                let is_outside = |value: &&f64| !range.holds(**value);
+                count += lane.to_vec().iter().filter(is_outside).count() as u64;
+                odd = odd.or(Some(range));
+            }
+        }
+        odd.and_then(|range| range.outside(count, total))
+    }))
 }
 
 /// The rows along the last axis.
