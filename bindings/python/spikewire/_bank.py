@@ -44,16 +44,16 @@ class Bank:
         >>> bank.encode([[0.0, 1.0]], period=1000).tolist(), bank.encode([[2.0]], np.timedelta64(1, "ms")).tolist()
         ([(1000, 0, 1)], [(2000, 0, 1)])
         """
-        period = period_in_micros(period)
-        return self._events(self._encoder.encode(x), period)
+        each = period_in_micros(period)
+        return self._events(self._encoder.encode(x), each)
 
     def finish(self, period: Period) -> NDArray[Any]:
         """The events of the samples that wait for later ones. The bank is as at its start then.
 
         >>> import spikewire as sw
-        >>> bank = sw.Bank(sw.Hough(filter=[1.0, 1.0], shift=0), channels=1)
-        >>> bank.encode([[2.0, 2.0, 2.0]], period=1000)["t"].tolist(), bank.finish(period=1000)["t"].tolist()
-        ([0, 1000], [2000])
+        >>> bank = sw.Bank(sw.Hough(filter=[0.5, 1.0, 0.5], shift=0), channels=1)
+        >>> bank.encode([[2.0, 2.0, 2.0, 2.0]], period=1000)["t"].tolist(), len(bank.finish(period=1000))
+        ([0, 1000], 0)
         """
         events = self._events(self._encoder.finish(), period)
         self._done = 0
@@ -75,10 +75,11 @@ def events(codes: NDArray[Any], period: Period, times: ArrayLike | None = None, 
     by_time = codes.transpose(1, 2, 0, 3)
     sample, slot, channel, neuron = np.nonzero(by_time)
     counts = by_time[sample, slot, channel, neuron]
+    start: NDArray[Any]
+    step: Any
     if times is None:
-        period = period_in_micros(period)
-        start = (first + sample) * period
-        step = period
+        step = period_in_micros(period)
+        start = (first + sample) * step
     else:
         times = micros(times)
         if times.shape != (length,):

@@ -59,8 +59,8 @@ def dataset(
     >>> place = pathlib.Path(tempfile.mkdtemp())
     >>> for name in ["one", "two"]:
     ...     _ = (place / f"{name}.csv").write_text("time,gyro_x\\n0.000,0\\n0.005,1\\n0.010,2\\n")
-    >>> sw.dataset(place, sw.StepForward(threshold=0.5), place / "spikes", channels=["gyro_x"])["encoded"]
-    2
+    >>> sw.dataset(place, sw.StepForward(threshold=0.5), place / "spikes", channels=["gyro_x"])["events"]
+    4
     """
     flight = flight if isinstance(flight, Scheme) else Path(flight)
     if isinstance(flight, Path):

@@ -8,6 +8,8 @@ from typing import Any, TypeVar, cast
 
 from ._native import Error
 
+__all__ = ["Busy", "CallError", "Error", "FileError", "OutOfRange", "RangeError", "Unknown", "checked"]
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -27,6 +29,10 @@ class OutOfRange(Error, IndexError):
     """A place beyond the last one."""
 
 
+class FileError(Error, OSError):
+    """A file that the system does not open or write."""
+
+
 class Busy(Error, RuntimeError):
     """An encoder or decoder that works for another thread."""
 
@@ -44,6 +50,8 @@ def checked(function: Function) -> Function:
             raise CallError(*error.args) from error
         except OverflowError as error:
             raise RangeError(*error.args) from error
+        except OSError as error:
+            raise FileError(str(error)) from error
         except ValueError as error:
             raise Error(*error.args) from error
 

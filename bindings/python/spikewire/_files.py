@@ -117,7 +117,7 @@ def read_events(source: str | Path | bytes | bytearray | memoryview, format: str
     ``"eieio"`` or ``"csv"``. Times of 32 bits that wrapped, after 71.6 minutes, go on.
 
     >>> import spikewire as sw
-    >>> sw.read_events(b"t,x,p\\n1000,3,1\\n", "csv").tolist()
+    >>> sw.read_events(b"tick,address,polarity\\n1000,3,1\\n", "csv").tolist()
     [(1000, 3, 1)]
     """
     data = bytes(source) if isinstance(source, (bytes, bytearray, memoryview)) else Path(source).read_bytes()

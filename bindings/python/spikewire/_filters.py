@@ -53,7 +53,7 @@ class Filter:
 
         >>> import spikewire as sw
         >>> round(sw.Filter.first_order(40, rate=500).delay, 1)
-        1.5
+        1.6
         """
         return cls(("first_order", float(corner), float(rate)))
 
@@ -89,7 +89,7 @@ class Filter:
 
         >>> import numpy as np, spikewire as sw
         >>> sw.Filter.first_order(40, rate=500).filter([[0.0, 1.0, 1.0], [2.0, 2.0, 2.0]]).round(2).tolist()
-        [[0.0, 0.2, 0.52], [2.0, 2.0, 2.0]]
+        [[0.0, 0.39, 0.63], [2.0, 2.0, 2.0]]
         """
         (_, time, _), lanes = samples(x, axis)
         filtered = self._native.filter(lanes, sample).reshape(lanes.shape)

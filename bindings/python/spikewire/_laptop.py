@@ -253,6 +253,7 @@ class Picture:
     def __repr__(self) -> str:
         return f"Picture of {self._words}"
 
+    @checked
     def save(self, path: str | Path) -> None:
         """Writes it as ``.svg`` or ``.png``, by the ending of `path`.
 

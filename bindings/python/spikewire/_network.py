@@ -28,7 +28,7 @@ class Ran(NamedTuple):
     >>> import spikewire as sw
     >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
     >>> network = sw.Network.from_toml(f"layers = [{one}]")
-    >>> ran = network.run([[1, 0], [1, 1]])
+    >>> ran = network.run([[0], [0, 1]])
     >>> ran.spikes.tolist(), ran.potentials.round(2).tolist()
     ([[False], [True]], [[0.6], [0.0]])
     """
@@ -130,6 +130,7 @@ class Network:
         text: str = self._native.rust(self._steps(spikes), numbers, source)
         return text
 
+    @checked
     def to_nir(self, path: str | Path) -> dict[str, Any]:
         """Writes a NIR graph, with times in steps. Returns the keywords with which :meth:`from_nir` gives the same network
         again. Needs the package ``nir``.

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _progress, _weighted
-from ._arrays import codes_time_last, remark, remark_outside, row, samples, warn
+from ._arrays import Whole, codes_time_last, remark, remark_outside, row, samples, warn
 from ._errors import Error, checked
 from ._spikes import Spikes
 from ._stream import Decoder, Encoder
@@ -168,6 +168,7 @@ class Scheme:
         return _native.to_toml(self._coder, [])
 
     @staticmethod
+    @checked
     def from_toml(file: str | Path) -> Scheme:
         """The scheme that a file of parameters describes: what :meth:`to_toml` and ``spikewire tune --emit toml`` write.
 
@@ -177,7 +178,7 @@ class Scheme:
         >>> sw.Scheme.from_toml('scheme = "sf"\\nthreshold = 0.35\\n')
         StepForward(threshold=0.35)
         """
-        place, text = (str(file), _text(file)) if isinstance(file, Path) else ("TOML", file)
+        place, text = (str(file), file.read_text(encoding="utf-8")) if isinstance(file, Path) else ("TOML", file)
         name, sample, options = _native.from_toml(place, text)
         return _again(name, {**dict(options), "sample": sample})
 
@@ -254,7 +255,7 @@ class Scheme:
         """
         return _weighted.decode(self, weights, first, axis)
 
-    def encoder(self, channels: int | None = None) -> Encoder:
+    def encoder(self, channels: Whole | None = None) -> Encoder:
         """An encoder that keeps its state between chunks (samples,), or (channels, samples) of so many channels.
 
         >>> import spikewire as sw
@@ -264,7 +265,7 @@ class Scheme:
         """
         return Encoder(self, channels)
 
-    def decoder(self, first: ArrayLike | None = None, channels: int | None = None) -> Decoder:
+    def decoder(self, first: ArrayLike | None = None, channels: Whole | None = None) -> Decoder:
         """A decoder that keeps its state between chunks; a code of steps starts from the `first` sample.
 
         >>> import spikewire as sw
@@ -296,13 +297,6 @@ class Scheme:
 
     def __reduce__(self) -> Any:
         return _again, (self.name, {"sample": self._sample, "paper": self._paper, **self._given})
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise Error(f"{path}: cannot be read: {error}") from error
 
 
 def _again(name: str, keywords: dict[str, Any]) -> Scheme:

@@ -29,6 +29,17 @@ def _told(own):
     return f"{own['name']}:\n" + textwrap.indent("\n".join(lines), "    ")
 
 
+def _example(parameters):
+    """Keywords for what neither a default nor a signal tells; of two that stand for each other, the first."""
+    given = []
+    for own in parameters:
+        is_open = own["default"] is None and own["found"] is None
+        if is_open and own["example"] and not own["help"].startswith("in the place of"):
+            example = own["example"] if own["kind"] in ("number", "count") else repr(own["example"])
+            given.append(f"{own['name']}={example}")
+    return ", ".join(given)
+
+
 def _class(info):
     parameters = "\n".join(_told(own) for own in info["parameters"])
     document = f"""{info["words"][0].upper()}{info["words"][1:]}, `{info["name"]}`: good for {info["good_for"]}.
@@ -39,6 +50,12 @@ sample:
     rounded to it
 paper:
     the settings of the paper, scaled to the signal's range, for what is not given
+
+>>> import numpy as np, spikewire as sw
+>>> x = np.sin(np.linspace(0, 60, 300))
+>>> spikes = sw.{info["type_name"]}({_example(info["parameters"])}).encode(x)
+>>> spikes.count > 0, spikes.decode().shape
+(True, (300,))
 """
     keyword = inspect.Parameter.KEYWORD_ONLY
     names = [inspect.Parameter(own["name"], keyword, default=None) for own in info["parameters"]]

@@ -113,7 +113,7 @@ class Spikes(np.ndarray[Any, np.dtype[np.int8]]):
         """What a decoder makes of them: ``float32`` of ``f32``, ``int16`` of ``i16``, else ``float64``.
 
         >>> import spikewire as sw
-        >>> sw.StepForward(threshold=0.5).encode([0.0, 1.0, 1.0]).decode().tolist()
+        >>> sw.StepForward(threshold=0.5).encode([0.0, 1.0, 2.0]).decode().tolist()
         [0.0, 0.5, 1.0]
         """
         flat, outer = self._flat()
@@ -133,7 +133,7 @@ class Spikes(np.ndarray[Any, np.dtype[np.int8]]):
         as ``datetime64``. Channels count their neurons on: the address of the second channel's first neuron is ``neurons``.
 
         >>> import spikewire as sw
-        >>> spikes = sw.StepForward(threshold=0.5).encode([0.0, 1.0, 0.0])
+        >>> spikes = sw.StepForward(threshold=0.5).encode([0.0, 1.0, -1.0])
         >>> spikes.events(period=1000).tolist(), spikes.events(times=[0.0, 0.5, 0.75]).tolist()
         ([(1000, 0, 1), (2000, 0, 0)], [(500000, 0, 1), (750000, 0, 0)])
         """
@@ -180,7 +180,7 @@ class Spikes(np.ndarray[Any, np.dtype[np.int8]]):
         >>> import spikewire as sw
         >>> spikes = sw.StepForward(threshold=0.5).encode([0.0, 1.0, 0.0])
         >>> f"{spikes.fingerprint():016x}"
-        '?'
+        '5432d4e8ff2e59c5'
         """
         flat, _ = self._flat()
         values = self.decode(progress=False) if values is None else np.asarray(values)
@@ -238,14 +238,14 @@ def _plain(own: Any) -> Any:
 
 def _delegate(name: str) -> Any:
     """A method or attribute of arrays, whose result is one of the plain array."""
-    inherited = getattr(np.ndarray, name)
-    if not callable(inherited):
-        return property(lambda self: getattr(_plain(self), name), doc=inherited.__doc__)
+    words = f"``numpy.ndarray.{name}`` of the plain array."
+    if not callable(getattr(np.ndarray, name)):
+        return property(lambda self: getattr(_plain(self), name), doc=words)
 
     def method(self: Spikes, *arguments: Any, **keywords: Any) -> Any:
         return getattr(_plain(self), name)(*arguments, **keywords)
 
-    method.__name__, method.__doc__ = name, inherited.__doc__
+    method.__name__, method.__doc__ = name, words
     return method
 
 

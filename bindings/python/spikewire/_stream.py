@@ -46,7 +46,7 @@ class Encoder:
 
         >>> import spikewire as sw
         >>> encoder = sw.StepForward(threshold=0.5).encoder(channels=2)
-        >>> encoder.encode([[0.0, 1.0], [0.0, -1.0]]).tolist(), encoder.encode([[1.0], [0.0]]).tolist()
+        >>> encoder.encode([[0.0, 1.0], [0.0, -1.0]]).tolist(), encoder.encode([[2.0], [0.5]]).tolist()
         ([[0, 1], [0, -1]], [[1], [1]])
         """
         _, x = samples(x)
@@ -62,9 +62,9 @@ class Encoder:
         """The codes of the samples that wait for later ones. The encoder is as at its start then.
 
         >>> import spikewire as sw
-        >>> encoder = sw.Hough(filter=[1.0, 1.0], shift=0).encoder()
-        >>> encoder.encode([2.0, 2.0, 2.0]).tolist(), encoder.finish().tolist()
-        ([1, 1], [1])
+        >>> encoder = sw.Hough(filter=[0.5, 1.0, 0.5], shift=0).encoder()
+        >>> encoder.encode([2.0, 2.0, 2.0, 2.0]).tolist(), encoder.finish().tolist()
+        ([1, 1], [0, 0])
         """
         return self._rows(self._native.finish())
 

@@ -111,7 +111,7 @@ class Encode(nn.Module):
         """Encodes samples: a tensor of floats or integers.
 
         >>> import spikewire as sw
-        >>> Encode(sw.StepForward(threshold=0.5)).forward(torch.tensor([0.0, 1.0, 1.0])).tolist()
+        >>> Encode(sw.StepForward(threshold=0.5)).forward(torch.tensor([0.0, 1.0, 2.0])).tolist()
         [[0.0], [1.0], [1.0]]
         """
         if self.gradient is None or not x.is_floating_point():

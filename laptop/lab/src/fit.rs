@@ -150,7 +150,7 @@ impl Range {
         let percent = short(count as f64 * 100.0 / samples as f64);
         (count > 0).then(|| {
             format!(
-                "{count} of {samples} samples, {percent} %, lie outside the code's range, `min` {} to `max` {}: the \
+                "{count} of {samples} samples, {percent} %, lie outside the code's range, min {} to max {}: the \
                  code clamps them or is silent there",
                 short(min),
                 short(max)
