@@ -26,11 +26,11 @@ class Ran(NamedTuple):
     """The spikes and potentials of a network's last layer, by step.
 
     >>> import spikewire as sw
-    >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+    >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
     >>> network = sw.Network.from_toml(f"layers = [{one}]")
     >>> ran = network.run([[0], [0, 1]])
-    >>> ran.spikes.tolist(), ran.potentials.round(2).tolist()
-    ([[False], [True]], [[0.6], [0.0]])
+    >>> ran.spikes.tolist(), ran.potentials.tolist()
+    ([[False], [True]], [[0.75], [0.0]])
     """
 
     #: Whether each neuron fired: (steps, neurons).
@@ -44,7 +44,7 @@ class Network:
     on every core. :meth:`from_nir` reads one; `spikewire.torch.Controller` trains one.
 
     >>> import spikewire as sw
-    >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+    >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
     >>> network = sw.Network.from_toml(f"layers = [{one}]")
     >>> network
     Network of 2 inputs and layers of 1 neurons
@@ -87,7 +87,7 @@ class Network:
         """Reads what :meth:`to_toml` wrote.
 
         >>> import spikewire as sw
-        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
         >>> network = sw.Network.from_toml(f"layers = [{one}]")
         >>> sw.Network.from_toml(network.to_toml()).layers
         [1]
@@ -99,7 +99,7 @@ class Network:
         whose name ends in ``.toml``.
 
         >>> import spikewire as sw
-        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
         >>> network = sw.Network.from_toml(f"layers = [{one}]")
         >>> print(network.to_toml().splitlines()[0])
         [[layers]]
@@ -121,7 +121,7 @@ class Network:
         8 bits the scales are searched on it. `source` is what the module's first line names.
 
         >>> import spikewire as sw
-        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
         >>> network = sw.Network.from_toml(f"layers = [{one}]")
         >>> rust = network.to_rust([[0], [0, 1], [1]], source="one.toml")
         >>> "pub fn is_intact() -> bool" in rust
@@ -139,7 +139,7 @@ class Network:
         amount than the threshold, or if layers differ in when they fire or which current they take: no graph has these.
 
         >>> import pathlib, tempfile, spikewire as sw
-        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
         >>> network = sw.Network.from_toml(f"layers = [{one}]")
         >>> keywords = network.to_nir(pathlib.Path(tempfile.mkdtemp()) / "one.nir")
         >>> keywords["reset"]
@@ -204,7 +204,7 @@ class Network:
         in order.
 
         >>> import numpy as np, spikewire as sw
-        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
         >>> network = sw.Network.from_toml(f"layers = [{one}]")
         >>> counts = network.run(np.array([[1, 0], [1, 1]]))
         >>> numbers = network.run([[0], [0, 1]])
@@ -260,10 +260,10 @@ class Network:
         :meth:`run` takes.
 
         >>> import numpy as np, spikewire as sw
-        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
         >>> network = sw.Network.from_toml(f"layers = [{one}]")
-        >>> network.step([0]).round(2).tolist(), network.step(np.array([0, 1])).round(2).tolist()
-        ([0.6], [0.6])
+        >>> network.step([0]).tolist(), network.step(np.array([0, 1])).tolist()
+        ([0.75], [0.625])
         """
         self._native.step(self._step(spikes))
         return self._native.potentials()
@@ -277,7 +277,7 @@ class Network:
         """Puts the network at rest.
 
         >>> import spikewire as sw
-        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.6, 0.3]]}'
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
         >>> network = sw.Network.from_toml(f"layers = [{one}]")
         >>> first = network.step([0])
         >>> network.reset()

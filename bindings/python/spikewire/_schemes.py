@@ -52,7 +52,7 @@ paper:
     the settings of the paper, scaled to the signal's range, for what is not given
 
 >>> import numpy as np, spikewire as sw
->>> x = np.sin(np.linspace(0, 60, 300))
+>>> x = 3 * np.sin(np.linspace(0, 20, 300))
 >>> spikes = sw.{info["type_name"]}({_example(info["parameters"])}).encode(x)
 >>> spikes.count > 0, spikes.decode().shape
 (True, (300,))

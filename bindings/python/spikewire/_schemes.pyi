@@ -30,7 +30,7 @@ class TemporalContrast(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.TemporalContrast(threshold=0.1).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -66,7 +66,7 @@ class AdaptiveContrast(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.AdaptiveContrast(threshold=0.1, doublings=4).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -101,7 +101,7 @@ class MovingWindow(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.MovingWindow(threshold=0.1, window=5).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -133,7 +133,7 @@ class StepForward(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.StepForward(threshold=0.1).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -166,7 +166,7 @@ class SendOnDelta(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.SendOnDelta(threshold=0.1, spikes=4).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -202,7 +202,7 @@ class AdaptiveStepForward(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.AdaptiveStepForward(threshold=0.1, doublings=3).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -242,7 +242,7 @@ class Bsa(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Bsa(filter='triang:15,peak=2', threshold=0.955).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -277,7 +277,7 @@ class Hough(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Hough(filter='triang:15,peak=2').encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -312,7 +312,7 @@ class ThresholdHough(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.ThresholdHough(filter='triang:15,peak=2', threshold=0.1).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -347,7 +347,7 @@ class IntegrateAndFire(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.IntegrateAndFire(threshold=0.5, spikes=4).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -383,7 +383,7 @@ class LeakyIntegrateAndFire(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.LeakyIntegrateAndFire(threshold=0.5, spikes=4).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -421,7 +421,7 @@ class SigmaDelta(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.SigmaDelta().encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -462,7 +462,7 @@ class Bernoulli(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Bernoulli().encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -506,7 +506,7 @@ class WeightedBurst(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.WeightedBurst(weight=1).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -546,7 +546,7 @@ class Position(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Position(neurons=20).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -581,7 +581,7 @@ class Gaussian(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Gaussian(neurons=20).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -621,7 +621,7 @@ class Slots(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Slots(neurons=20, slots=10).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -663,7 +663,7 @@ class Probabilistic(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Probabilistic(neurons=20).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -707,7 +707,7 @@ class NonLinearGaussian(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.NonLinearGaussian(neurons=20).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -758,7 +758,7 @@ class NonLinearSlots(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.NonLinearSlots(neurons=20, slots=10).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -803,7 +803,7 @@ class RankOrder(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.RankOrder(neurons=20, spikes=3).encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -844,7 +844,7 @@ class FirstSpike(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.FirstSpike().encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -886,7 +886,7 @@ class LatencyPhase(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.LatencyPhase().encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -923,7 +923,7 @@ class WeightedPhase(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.WeightedPhase().encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
@@ -963,7 +963,7 @@ class Burst(Scheme):
         the settings of the paper, scaled to the signal's range, for what is not given
 
     >>> import numpy as np, spikewire as sw
-    >>> x = np.sin(np.linspace(0, 60, 300))
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
     >>> spikes = sw.Burst().encode(x)
     >>> spikes.count > 0, spikes.decode().shape
     (True, (300,))
