@@ -118,26 +118,17 @@ impl Lane<'_> {
             (Self::F64(lane), _) if lane.as_slice().is_some() => Cow::Borrowed(lane.as_slice()?),
             _ => Cow::Owned(self.to_vec()),
         };
-        let spacing = match sample.step() {
-            0.0 => {
-                let (low, high) = ends(&values)?;
-                low.abs().max(high.abs()) * f64::from(f32::EPSILON)
-            }
-            step => step,
-        };
-        // Rounding changes a step by one spacing at most. Samples that move far more than that in all lose nothing, and
-        // need no look at each step; so do most signals.
-        if spacing * values.len() as f64 <= SURE * moved(&values) {
+        if is_surely_fine(&values, sample) {
             return None;
         }
         Resolution::of(sample, &values).lost()
     }
 
-    /// Whether some of the samples lie outside a range.
-    pub(crate) fn leaves(&self, range: &Range) -> bool {
+    /// Whether all samples are numbers within bounds.
+    pub(crate) fn lies_in(&self, bounds: &Bounds) -> bool {
         match self.in_memory() {
-            Some(samples) => leaves(samples, range),
-            None => leaves(run::Samples::F64(&self.to_vec()), range),
+            Some(samples) => lies_in(samples, bounds),
+            None => lies_in(run::Samples::F64(&self.to_vec()), bounds),
         }
     }
 
@@ -326,49 +317,94 @@ fn first_bad<T>(samples: &[T], narrow: impl Fn(&T) -> f32) -> Option<usize> {
     Some(start + samples[start..].iter().position(|own| !narrow(own).is_finite())?)
 }
 
-/// Largest share of a signal's movement that rounding may make up for certain to be harmless.
-const SURE: f64 = 0.05;
+/// Returns whether the type is certain to be fine enough for the steps from sample to sample, by a bound that costs less
+/// than a look at each step, and that most signals keep.
+fn is_surely_fine(samples: &[f64], sample: SampleType) -> bool {
+    /// Largest error, as a share of all steps, that is harmless for certain: half of what counts as a loss.
+    const SURE: f64 = 0.05;
+    const BLOCK: usize = 4096;
+    let (mut moved, mut off, mut start) = (0.0, 0.0, 0);
+    while start + 1 < samples.len() {
+        let end = samples.len().min(start + BLOCK);
+        // With the last sample of the block before, from which its first step starts.
+        let block = &samples[start..end];
+        let steps = sum_of_steps(block);
+        // No sample is larger than the first one and all steps. Rounding changes a step by one spacing at most.
+        let spacing = match sample.step() {
+            0.0 => (block[0].abs() + steps) * f64::from(f32::EPSILON),
+            step => step,
+        };
+        (moved, off) = (moved + steps, off + spacing * block.len() as f64);
+        start = end - 1;
+    }
+    off <= SURE * moved
+}
 
-/// Number of comparisons or sums side by side, so that the processor does several at once: their order in a single one
-/// would be fixed.
-const SIDE: usize = 16;
-
-/// Returns the sum of the sizes of all steps from sample to sample, in any order.
-fn moved(samples: &[f64]) -> f64 {
-    let mut sums = [0.0; SIDE];
+/// Returns the sum of the sizes of all steps from sample to sample, of which there is one at least.
+fn sum_of_steps(samples: &[f64]) -> f64 {
+    /// Number of sums side by side, which the processor adds at once. The order of a single one would be fixed.
+    const SIDE: usize = 8;
     let later = samples.get(1..).unwrap_or_default();
-    for (before, after) in samples.chunks(SIDE).zip(later.chunks(SIDE)) {
+    let (before, _) = samples[..later.len()].as_chunks::<SIDE>();
+    let (after, rest) = later.as_chunks::<SIDE>();
+    let mut sums = [0.0; SIDE];
+    for (before, after) in before.iter().zip(after) {
         for ((sum, before), after) in sums.iter_mut().zip(before).zip(after) {
             *sum += (after - before).abs();
         }
     }
-    sums.iter().sum()
+    let rest = &samples[samples.len() - rest.len() - 1..];
+    let last: f64 = rest.windows(2).map(|step| (step[1] - step[0]).abs()).sum();
+    sums.iter().sum::<f64>() + last
 }
 
-/// Returns the smallest and the largest sample; `None` if there is no sample. All must be numbers.
-fn ends<T: Copy + PartialOrd>(samples: &[T]) -> Option<(T, T)> {
-    let first = *samples.first()?;
-    let (mut low, mut high) = ([first; SIDE], [first; SIDE]);
-    for part in samples.chunks(SIDE) {
-        for ((low, high), &own) in low.iter_mut().zip(&mut high).zip(part) {
-            *low = if own < *low { own } else { *low };
-            *high = if own > *high { own } else { *high };
-        }
+/// The range of a code as samples are compared with it before the sample type has rounded them.
+#[derive(Clone, Copy)]
+pub(crate) struct Bounds {
+    low: f64,
+    high: f64,
+    is_single: bool,
+}
+
+impl Bounds {
+    /// Returns the bounds of samples that lie within `min` to `max` once they are rounded, as these are.
+    pub(crate) fn new(sample: SampleType, min: f64, max: f64) -> Self {
+        // A sample that is half a step too large is rounded up, and one that is half a step too small, too.
+        let half = sample.step() / 2.0;
+        let high = if half > 0.0 { (max + half).next_down() } else { max };
+        Self { low: min - half, high, is_single: sample == SampleType::F32 }
     }
-    let smaller = |one: T, other: T| if other < one { other } else { one };
-    let larger = |one: T, other: T| if other > one { other } else { one };
-    Some((low.into_iter().fold(first, smaller), high.into_iter().fold(first, larger)))
 }
 
-/// Returns whether some of the samples, which are numbers, lie outside a range.
-pub(crate) fn leaves(samples: run::Samples, range: &Range) -> bool {
-    let ends = match samples {
-        run::Samples::F32(all) => ends(all).map(|(low, high)| (low.into(), high.into())),
-        run::Samples::F64(all) => ends(all),
-        run::Samples::I16(all) => ends(all).map(|(low, high)| (low.into(), high.into())),
-    };
-    // Rounding to the sample type keeps the order, so that the ends stand for all.
-    ends.is_some_and(|(low, high): (f64, f64)| !(range.holds(low) && range.holds(high)))
+/// Returns whether all samples are numbers within bounds. Doubles are compared as the `f32` that they become, so that ends
+/// which are no `f32` are compared with what they became, too.
+pub(crate) fn lies_in(samples: run::Samples, bounds: &Bounds) -> bool {
+    let Bounds { low, high, is_single } = *bounds;
+    if !is_single {
+        return match samples {
+            run::Samples::F32(all) => are_within(all, |own| f64::from(*own), low, high),
+            run::Samples::F64(all) => are_within(all, |own| *own, low, high),
+            run::Samples::I16(all) => are_within(all, |own| f64::from(*own), low, high),
+        };
+    }
+    let (low, high) = (low as f32, high as f32);
+    match samples {
+        run::Samples::F32(all) => are_within(all, |own| *own, low, high),
+        run::Samples::F64(all) => are_within(all, |own| *own as f32, low, high),
+        run::Samples::I16(all) => are_within(all, |own| f32::from(*own), low, high),
+    }
+}
+
+/// Looks at blocks, without a branch for each sample. What is no number compares as false, and lies outside.
+fn are_within<T, N: Copy + PartialOrd>(
+    samples: &[T],
+    narrow: impl Fn(&T) -> N,
+    low: N,
+    high: N,
+) -> bool {
+    const BLOCK: usize = 512;
+    let is_within = |own: &T| u32::from(narrow(own) >= low) & u32::from(narrow(own) <= high);
+    samples.chunks(BLOCK).all(|block| block.iter().fold(1, |all, own| all & is_within(own)) == 1)
 }
 
 /// Returns whether an encoder of this type takes all of the samples.
@@ -481,17 +517,17 @@ pub(crate) fn outside(
     samples: Samples,
 ) -> PyResult<Option<String>> {
     let sample: SampleType = sample.parse().map_err(value)?;
-    let ranges: Vec<Range> =
-        ranges.into_iter().map(|[min, max]| Range::new(sample, min, max)).collect();
     let lanes = samples.view().lanes();
     Ok(py.detach(|| {
         let (mut count, mut total, mut odd) = (0, 0, None);
-        for (lane, range) in lanes.iter().zip(ranges.iter().cycle()) {
+        for (lane, [min, max]) in lanes.iter().zip(ranges.iter().cycle()) {
             total += lane.len() as u64;
-            if lane.leaves(range) {
+            let range = Range::new(sample, *min, *max);
+            if !lane.lies_in(&Bounds::new(sample, *min, *max)) {
                 let is_outside = |value: &&f64| !range.holds(**value);
-                count += lane.to_vec().iter().filter(is_outside).count() as u64;
-                odd = odd.or(Some(range));
+                let outside = lane.to_vec().iter().filter(is_outside).count() as u64;
+                count += outside;
+                odd = odd.or((outside > 0).then_some(range));
             }
         }
         odd.and_then(|range| range.outside(count, total))

@@ -7,13 +7,12 @@ use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{
     Asked, Calibrated, Codec, Known, RunTime, SampleType, Settings, Value, Values, missing,
 };
-use lab::fit;
 use lab::tune::costs::Costs;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{Grid, Lane, RUN, Samples, Tile, View, are_good, leaves};
+use crate::array::{Bounds, Grid, Lane, RUN, Samples, Tile, View, are_good, lies_in};
 use crate::channel::{self, Bad};
 use crate::error::{Error, value};
 use crate::stream::{Decoder, Encoder};
@@ -310,7 +309,7 @@ pub(crate) struct Fitted {
     /// Whether a codec of one channel can start anew as that of another: they have the same settings, and draw nothing.
     serves_all: bool,
     /// The ranges of `channels`; none of a code without a range.
-    ranges: Vec<fit::Range>,
+    bounds: Vec<Bounds>,
 }
 
 /// The first samples of each channel, from which its encoder starts.
@@ -336,12 +335,17 @@ impl Fitted {
         count: usize,
     ) -> Self {
         let serves_all = matches!(&*channels, [own] if own.get("seed").is_none());
-        let ranges = channels.iter().filter_map(fit::Range::of).collect();
-        Self { scheme, sample, channels, begins, count, serves_all, ranges }
+        let mut bounds = Vec::new();
+        for own in &channels {
+            if let (Ok(min), Ok(max)) = (own.number("min"), own.number("max")) {
+                bounds.push(Bounds::new(sample, min, max));
+            }
+        }
+        Self { scheme, sample, channels, begins, count, serves_all, bounds }
     }
 
-    fn range(&self, channel: usize) -> Option<&fit::Range> {
-        self.ranges.get(channel).or(self.ranges.first())
+    fn bounds(&self, channel: usize) -> Option<&Bounds> {
+        self.bounds.get(channel).or(self.bounds.first())
     }
 
     fn common(&self, channel: usize) -> Result<&Settings> {
@@ -598,11 +602,12 @@ impl Fitted {
         };
         let (first, count) = (channels.start as u64, channels.len());
         let samples = grid.channels(channels, &mut bench.tile);
-        if !are_good(samples, self.sample) {
+        // They share their settings. What lies in the range of their code is good without a look at each sample.
+        let is_inside = self.bounds(0).map(|bounds| lies_in(samples, bounds));
+        if is_inside != Some(true) && !are_good(samples, self.sample) {
             bail!(BAD);
         }
-        // They share their settings.
-        if self.range(0).is_some_and(|range| leaves(samples, range)) {
+        if is_inside == Some(false) {
             watch.is_outside.store(true, Ordering::Relaxed);
         }
         codec.encode_channels(samples, length, first, room);
@@ -629,11 +634,11 @@ impl Fitted {
                 return Ok(());
             }
             let part = lane.part(start..lane.len().min(start + PIECE));
-            if part.bad(self.sample).is_some() {
+            let is_inside = self.bounds(channel).map(|bounds| part.lies_in(bounds));
+            if is_inside != Some(true) && part.bad(self.sample).is_some() {
                 bail!(BAD);
             }
-            // While the piece is in the cache, this costs little.
-            if self.range(channel).is_some_and(|range| part.leaves(range)) {
+            if is_inside == Some(false) {
                 watch.is_outside.store(true, Ordering::Relaxed);
             }
             made += part.encode(codec, &mut room[made * width..]);
