@@ -63,7 +63,7 @@ impl Format {
                 Box::new(prophesee::Reader::new(Version::Evt2, has_pixels))
             }
             Self::Evt21 => Box::new(prophesee::Reader::new(Version::Evt21, true)),
-            Self::Evt3 { .. } => Box::new(prophesee::Reader::new(Version::Evt3, true)),
+            Self::Evt3 { .. } => Box::new(prophesee::Reader::new(Version::Evt3, false)),
             Self::Eieio(board) => Box::new(eieio::Reader::new(board)),
             Self::Csv => Box::new(csv::Reader::new(file)),
         }

@@ -114,8 +114,8 @@ impl Decoder {
 }
 
 impl Reader {
-    /// Makes a reader. If `has_pixels` is false, a stream without a header, or with the header of a file of addresses,
-    /// gives events with addresses.
+    /// Makes a reader. If `has_pixels` is false, the header of a file of addresses gives events with addresses, and so does
+    /// an EVT2 stream without a header.
     pub(super) fn new(version: Version, has_pixels: bool) -> Self {
         let decoder = match version {
             Version::Evt2 => Decoder::Evt2(Evt2Pixels::decoder()),
@@ -140,7 +140,9 @@ impl Reader {
             });
         }
         let addresses = Size { width: ADDRESS_COLUMNS, height: ADDRESS_ROWS };
-        self.has_pixels |= *is_there && *size != Some(addresses);
+        let has_addresses =
+            if *is_there { *size == Some(addresses) } else { self.version == Version::Evt2 };
+        self.has_pixels |= !has_addresses;
         Ok(())
     }
 

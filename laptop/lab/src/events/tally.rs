@@ -119,7 +119,7 @@ impl Worded for Tally {
             writeln!(f, "{} ticks kept their low 32 bits", self.long_ticks)?;
         }
         if self.far_rows > 0 {
-            EventsKind::FarRows { events: self.far_rows }.word(f, spell)?;
+            EventsKind::FarRows { events: self.far_rows }.word_about(f, spell, None)?;
             writeln!(f)?;
         }
         if self.is_cut {
