@@ -718,8 +718,11 @@ impl Advice {
         };
         let flown = if best.is_as_flown { ", with the parameters that flew" } else { "" };
         let take = if self.is_one_of_many { "alone" } else { "take" };
+        // Every encoder starts from its own first sample, so that the log's first is no parameter to take.
+        let entries = row.settings.entries().iter();
+        let parameters: Vec<_> = entries.filter(|(key, _)| *key != "first").cloned().collect();
         let mut reasons = vec![
-            format!("  {take} {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
+            format!("  {take} {} in {sample}: {}", row.scheme, brief(&parameters)),
             format!(
                 "    RMSE {}{held_out}{beside}, {:.1} % of the samples without a spike, {} events a second",
                 short(row.tuned_on.rmse),

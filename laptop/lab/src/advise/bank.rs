@@ -24,7 +24,8 @@ const SLOWEST: f64 = 250.0;
 /// request has a control loop, a scheme whose simulated flights had keyframes keeps the time of those flights instead.
 const KEYFRAMES: f64 = 1.0;
 
-/// Number of items in the smallest queue of the example firmware for a flight file. All events of a sample must fit.
+/// Number of items in the smallest queue of the example firmware for a flight file. All events of a sample must fit, and
+/// a keyframe of each channel.
 const QUEUE: usize = 256;
 
 /// The advice on all channels together.
@@ -48,6 +49,8 @@ pub struct BankAdvice {
     is_cut_short: bool,
     /// Questions that the advice leaves open, such as how the user's drone flies with the code.
     unknown: Vec<String>,
+    /// Reasons not to trust what is advised on a channel.
+    warnings: Vec<String>,
     /// Share of frames that the link loses, in percent.
     frame_loss: f64,
 }
@@ -113,6 +116,7 @@ impl BankAdvice {
             unsent: None,
             is_cut_short: heard.iter().any(|(own, _)| own.is_cut_short),
             unknown: Vec::new(),
+            warnings: Vec::new(),
             frame_loss: request.frame_loss,
         };
         let Some((advised, first)) = heard.iter().find(|(own, _)| own.objection.is_none()) else {
@@ -125,6 +129,7 @@ impl BankAdvice {
             return Ok(all);
         }
         all.unknown = unknown(request, rate, &heard);
+        all.warnings = heard.iter().filter_map(|(own, _)| own.warning.clone()).collect();
         let schemes: Vec<Scheme> = Scheme::all().collect();
         for (done, scheme) in schemes.iter().enumerate() {
             let words = format!("bank of {}", scheme.name());
@@ -235,6 +240,7 @@ impl BankAdvice {
         } else {
             lines.push(format!("none: {}", self.none()));
         }
+        lines.extend(self.warnings.iter().map(|words| format!("! {words}")));
         if self.is_cut_short {
             lines.push(format!("! {CUT_SHORT}"));
         }
@@ -430,7 +436,6 @@ fn unknown(request: &AdviseRequest, rate: f64, heard: &[(&Advice, &Recording)]) 
              bears would tell"
         ));
     }
-    all.extend(heard.iter().filter_map(|(own, _)| own.warning.clone()));
     all.push("what this log did not do: faster turns, a harder landing, other rotors".to_owned());
     all.push("the sensor's counts: samples are in the log's unit, until `counts` and `sample` in the file say otherwise".to_owned());
     all
@@ -459,9 +464,9 @@ fn shared(scheme: Scheme, rows: &[&Row], channels: usize) -> Asked {
             _ => most,
         };
         let value = match (values.fold(None, largest), parameter.search) {
-            (Some(Value::Count(count)), Some(Search::Most(least, _))) => {
-                Some(Value::Count(count.min((QUEUE / channels).max(least as usize) as u64)))
-            }
+            (Some(Value::Count(count)), Some(Search::Most(least, _))) => Some(Value::Count(
+                count.min((QUEUE / channels).saturating_sub(1).max(least as usize) as u64),
+            )),
             (value, _) => value,
         };
         if let Some(value) = value {
