@@ -56,8 +56,10 @@ fn peer(action: &str, kind: &str, path: &Path, input: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-fn file(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
+/// Returns a file of a format, with the ending that the format's program asks for.
+fn file(name: &str, format: &str) -> PathBuf {
+    let ending = if format == "es" { "es" } else { "raw" };
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{format}.{ending}"))
 }
 
 fn the_peer_reads_ours(name: &str, header: &[u8], encoder: impl EventFormat) {
@@ -79,13 +81,13 @@ fn the_peer_reads<E: Copy>(
         let length = encoder.encode(event, &mut buffer).unwrap();
         bytes.extend(&buffer[..length]);
     }
-    let path = file(&format!("ours.{name}"));
+    let path = file("ours", name);
     std::fs::write(&path, &bytes).unwrap();
     assert!(peer("read", name, &path, "") == lines(events));
 }
 
 fn we_read_the_peers(name: &str, events: &[Event], mut decoder: impl EventDecoder) {
-    let path = file(&format!("theirs.{name}"));
+    let path = file("theirs", name);
     peer("write", name, &path, &lines(events));
     let bytes = std::fs::read(&path).unwrap();
     let read: Vec<Event> = decoder.decode(&bytes).collect();
