@@ -1,4 +1,4 @@
-//! The event formats against independent programs: `event-stream` and `expelliarmus`.
+//! The event formats against independent programs: `event-stream`, `expelliarmus` and `evt3`.
 //!
 //! `cargo verify peers` installs them in a virtual environment and runs this with `PEERS_PYTHON` set to
 //! its Python.
@@ -114,10 +114,10 @@ fn evt2_agrees_with_expelliarmus() {
     we_read_the_peers("evt2", &events(), Evt2::file_decoder());
 }
 
-/// Only one way: the peer's writer leaves out words of the upper time, which its reader makes up for.
+/// Only one way: the program has no writer.
 #[test]
 #[ignore = "needs other programs: run by `cargo verify peers`"]
-fn expelliarmus_reads_our_evt3() {
+fn evt3_reads_ours() {
     let events = events();
     let pixel = |event: &Event| {
         let Event { tick, address, polarity } = *event;
