@@ -19,13 +19,12 @@ use lab::tune::report::Row;
 use lab::tune::{Goal, Limits, Over, TuneRequest};
 use lab::watch::{Progress, Watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use spikewire::{Event, Polarity, Tick};
 
 use crate::coder::Coder;
-use crate::error::value;
+use crate::error::{Error, value};
 use crate::values::{self, Given as Keyword, keywords};
 use crate::work;
 use catalogue::run::Given;
@@ -44,7 +43,7 @@ fn tuned_fields(scheme: Scheme, row: &Row, channel: &str) -> Result<TunedFields>
 /// A signal as the library has recordings.
 fn recording(name: &str, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> PyResult<Recording> {
     let values = values.as_array().to_vec();
-    let refused = |text: String| Err(PyValueError::new_err(text));
+    let refused = |text: String| Err(Error::new_err(text));
     if values.is_empty() {
         return refused(format!("{name}: there is no sample"));
     }
@@ -116,7 +115,7 @@ pub(crate) fn plot<'py>(
     if shown.start + 1 >= shown.end || shown.end > samples {
         let Range { start, end } = shown;
         let text = format!("samples {start}..{end}: two samples at least, within 0..{samples}");
-        return Err(PyValueError::new_err(text));
+        return Err(Error::new_err(text));
     }
     let drawn = || -> Result<_> {
         let trials = coders.iter().map(|coder| coder.trial(&recording));
@@ -243,7 +242,7 @@ impl Advise {
         let request = AdviseRequest::new(recordings);
         Ok(AdviseRequest {
             sample: self.sample.parse()?,
-            max_rmse: self.max_rmse,
+            max_rmse: self.max_rmse.into_iter().collect(),
             max_latency: self.max_latency,
             loop_bandwidth: self.loop_bandwidth,
             frame_loss: self.frame_loss.unwrap_or(request.frame_loss),
@@ -300,6 +299,16 @@ pub(crate) fn to_c(
 #[pyfunction]
 pub(crate) fn to_toml(coder: &Coder, comments: Vec<String>) -> PyResult<String> {
     lab::emit::toml(&coder.coding(), &comments).map_err(value)
+}
+
+/// A scheme out of a file of parameters: its name, its sample type and its keywords.
+type Parsed = (&'static str, String, Vec<(&'static str, Keyword)>);
+
+/// Reads a file of parameters, which `to_toml` or `spikewire tune --emit toml` wrote. Errors name it as `file`.
+#[pyfunction]
+pub(crate) fn from_toml(file: &str, text: &str) -> PyResult<Parsed> {
+    let Coding { scheme, sample, asked } = Coding::parse(file, text).map_err(value)?;
+    Ok((scheme.name(), sample.to_string(), keywords(&asked)))
 }
 
 /// Channels of a file: names, samples, times in µs, notes.

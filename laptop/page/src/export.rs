@@ -61,7 +61,7 @@ fn spikes(open: &Open, trial: &Trial, choice: &Choice) -> Result<Vec<u8>> {
     let input = open.input.as_ref().context("these samples come from no file")?;
     let (output, _) = if choice.filter.is_some() {
         let channel = (open.recording.name.clone(), trial.settings.to_asked(trial.scheme.info()));
-        let flight = flight::of(choice, open.recording.rate, vec![channel])?;
+        let flight = flight::of(choice, open.recording.steady_rate()?, vec![channel])?;
         encode_flight(&flight, input, None, || Ok(Output::memory()))?
     } else {
         let Coding { scheme, sample, asked } = Coding::of_settings(trial.scheme, &trial.settings);
