@@ -22,6 +22,8 @@ pub struct Recording {
     pub rate: Option<f64>,
     /// Name of the channel.
     pub name: String,
+    /// Name by which the channel is found in the log again: `TOPIC.FIELD`, or `name` in a table.
+    pub source: String,
     /// Number of samples that were missing or not finite.
     rejected: usize,
     clock: Clock,
@@ -38,7 +40,8 @@ impl Recording {
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
         let (times, notes) = (Vec::new(), Vec::new());
-        Self { values, times, segments, rate, name, rejected: 0, clock, notes }
+        let source = name.clone();
+        Self { values, times, segments, rate, name, source, rejected: 0, clock, notes }
     }
 
     /// Reads a recording of one channel.
@@ -74,6 +77,7 @@ impl Recording {
         let finite = |row: usize| rows[..row].iter().filter(|row| **row).count();
         let segments = segments.into_iter().map(|own| finite(own.start)..finite(own.end));
         let segments: Vec<Range<usize>> = segments.filter(|own| !own.is_empty()).collect();
+        let topic = source.origin().iter().find(|(key, _)| *key == "topic").map(|(_, topic)| topic);
         let channels = all.kept(&rows).into_iter().zip(source.names());
         channels
             .map(|(values, name)| {
@@ -88,6 +92,10 @@ impl Recording {
                     segments: segments.clone(),
                     rate: clock.rate(),
                     name: name.to_owned(),
+                    source: match topic {
+                        Some(topic) => format!("{topic}.{name}"),
+                        None => name.to_owned(),
+                    },
                     clock: clock.clone(),
                     notes: source.notes().to_vec(),
                 })
@@ -112,6 +120,7 @@ impl Recording {
             segments: self.segments.clone(),
             rate: self.rate,
             name: self.name.clone(),
+            source: self.source.clone(),
             rejected: self.rejected,
             clock: self.clock.clone(),
             notes: self.notes.clone(),

@@ -239,7 +239,7 @@ fn bank(
         channels.push(BankChannel { name: recording.name.clone(), parameters, rmse });
         parts.push(Channel {
             name: recording.name.clone(),
-            source: recording.name.clone(),
+            source: recording.source.clone(),
             unit: known_unit(&recording.name).unwrap_or_default().to_owned(),
             counts: 1.0,
             asked,
