@@ -169,8 +169,7 @@ impl Flight {
             return Ok(());
         };
         let kind = FlightErrorKind::NoUnit { name: self.channels[index].name.clone() };
-        let line = self.lines.get(index).copied().flatten();
-        Err(FlightError::new("unit", kind).of_channel(index).at(line))
+        Err(FlightError::new("unit", kind).of_channel(index).at(self.line_of(index)))
     }
 
     /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, and that a sub-timestep takes at least 1 µs.
@@ -193,6 +192,11 @@ impl Flight {
             return Err(FlightError::new("slots", kind));
         }
         Ok(())
+    }
+
+    /// Returns the line of a channel in the flight file; `None` if the flight was not parsed from text.
+    pub fn line_of(&self, channel: usize) -> Option<usize> {
+        self.lines.get(channel).copied().flatten()
     }
 
     /// Returns the scheme of all channels, in the form that runs on the laptop.

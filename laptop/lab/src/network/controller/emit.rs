@@ -304,7 +304,7 @@ pub static NETWORK: Trained = {value};
 
 /// Returns the checksum over words, as `spikewire-network` computes it.
 fn checksum(words: impl IntoIterator<Item = u32>) -> u32 {
-    let add = |sum: u32, word| (sum.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B1);
+    let add = |sum: u32, word: u32| (sum.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B1);
     words.into_iter().fold(0, add)
 }
 

@@ -1,1 +1,0 @@
-fn main() { for n in std::env::args().skip(1) { let f = spikewire_flight::Flight::read(format!("tests/flights/{n}.toml")).unwrap(); std::fs::write(format!("tests/flights/{n}.rs"), spikewire_flight::rust(&f).unwrap()).unwrap(); } }
