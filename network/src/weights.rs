@@ -1,8 +1,8 @@
 //! Weights in flash.
 
+use crate::checksum::Checksum;
 use crate::error::{ParameterError, unwrap};
 use crate::integer::{self, Packed};
-use crate::checksum::Checksum;
 use crate::number::{LARGEST, Number};
 
 /// The weights from `IN` inputs to `OUT` neurons, with a row for each input. Put them in a `static`: they are read from

@@ -1,5 +1,6 @@
 //! The trained network of `examples/trained`, as the laptop program writes it, has its checksum and its spikes.
 
+#[rustfmt::skip]
 #[path = "../../examples/trained/src/braille.rs"]
 #[allow(dead_code, unreachable_pub, reason = "a firmware's module")]
 mod network;

@@ -330,7 +330,9 @@ impl Sender {
             &mut *own;
         if samples.len() != *channels {
             let values = samples.len();
-            return Err(value(anyhow!("a sample has {channels} values, one a channel, not {values}")));
+            return Err(value(anyhow!(
+                "a sample has {channels} values, one a channel, not {values}"
+            )));
         }
         items.clear();
         let tick = Tick::from_micros(*count * *period);

@@ -1,7 +1,7 @@
 //! From a sensor's counts to the samples of a flight's file.
 
 use crate::Sample;
-use crate::names::{RADIANS, G, axis, unit};
+use crate::names::{G, RADIANS, axis, unit};
 
 /// Size of one count of a sensor: in rad/s for the turn rates, in m/s² for the accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::num::NonZeroU16;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 /// Version of the file format that is read and written.
@@ -88,8 +88,7 @@ impl Flight {
         let directory = path.parent().unwrap_or(Path::new(""));
         let text = fs::read_to_string(path)
             .map_err(|error| FlightError::new("", FlightErrorKind::File(error)));
-        text.and_then(|text| Self::parse_in(&text, directory))
-            .map_err(|error| error.in_file(path))
+        text.and_then(|text| Self::parse_in(&text, directory)).map_err(|error| error.in_file(path))
     }
 
     /// Parses the text of a flight file. The path of a file of taps is relative to the working directory.
@@ -104,12 +103,14 @@ impl Flight {
     /// Parses the text of a flight file in this directory.
     fn parse_in(text: &str, directory: &Path) -> Result<Self, FlightError> {
         let keys = Keys::of(text);
-        let parts = parts(text, directory, &keys);
+        let mut files = Vec::new();
+        let parts = parts(text, directory, &keys, &mut files);
         let mut flight = parts.and_then(Self::new).map_err(|error| {
             let line = keys.line_of(error.place.channel, &error.parameter);
             error.at(Some(line))
         })?;
         flight.lines = (0..flight.channels.len()).map(|index| keys.channel_line(index)).collect();
+        flight.files = files;
         Ok(flight)
     }
 
@@ -153,8 +154,14 @@ impl Flight {
     }
 }
 
-/// Reads the parts of a flight. An error has a line only if that is not the line of its parameter's key.
-fn parts(text: &str, directory: &Path, keys: &Keys) -> Result<Parts, FlightError> {
+/// Reads the parts of a flight, and appends the paths of other files that were read to `files`. An error has a line only
+/// if that is not the line of its parameter's key.
+fn parts(
+    text: &str,
+    directory: &Path,
+    keys: &Keys,
+    files: &mut Vec<PathBuf>,
+) -> Result<Parts, FlightError> {
     let missing = |name: &str| FlightError::new(name, FlightErrorKind::Missing);
     let file: File = toml::from_str(text).map_err(|error| {
         let kind = FlightErrorKind::Text(error.message().to_owned());
@@ -174,12 +181,12 @@ fn parts(text: &str, directory: &Path, keys: &Keys) -> Result<Parts, FlightError
     };
     let period = file.period.ok_or_else(|| missing("period"))?;
     let usual = (KEYFRAMES / u32::from(period.get())).max(1);
-    let shared = asked(scheme, file.parameters, directory, keys)?;
+    let shared = asked(scheme, file.parameters, directory, keys, files)?;
     let mut channels = Vec::new();
     for (index, channel) in file.channel.into_iter().enumerate() {
         let FileChannel { name, source, unit, counts, parameters } = channel;
         let name = name.ok_or_else(|| missing("name").of_channel(index))?;
-        let asked = asked(scheme, parameters, directory, keys)
+        let asked = asked(scheme, parameters, directory, keys, files)
             .map_err(|error| error.of_channel(index))?;
         let source = source.unwrap_or_else(|| name.clone());
         channels.push(Channel { name, source, unit, counts: counts.unwrap_or(1.0), asked });
@@ -229,7 +236,7 @@ fn filter(file: FileFilter) -> Result<Filter, FlightError> {
     })
 }
 
-/// Reads the parameters of a scheme.
+/// Reads the parameters of a scheme, and appends the paths of their files to `files`.
 ///
 /// # Errors
 /// Returns an error if the scheme has no parameter of a name, or if a value is wrong for its parameter.
@@ -238,6 +245,7 @@ fn asked(
     given: Given,
     directory: &Path,
     keys: &Keys,
+    files: &mut Vec<PathBuf>,
 ) -> Result<Asked, FlightError> {
     let mut asked = Asked::default();
     for (name, value) in given {
@@ -245,6 +253,10 @@ fn asked(
         let parameter = parameter(scheme, name.get_ref()).map_err(|error| error.at(line))?;
         if let Some(value) = read(parameter, &value, directory).map_err(|error| error.at(line))? {
             asked.set(parameter.name, value);
+        }
+        if let (Kind::Filter, Some(text)) = (parameter.kind, value.as_str()) {
+            // A shape or a list is no file.
+            files.extend(Some(directory.join(text)).filter(|path| path.is_file()));
         }
     }
     Ok(asked)

@@ -9,6 +9,7 @@ use spikewire::{ConfigError, Fingerprint, Sample, Scheme};
 use std::collections::BTreeSet;
 use std::num::NonZeroU16;
 use std::ops::Deref;
+use std::path::PathBuf;
 
 /// A channel of a flight: one sensor signal.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,6 +90,8 @@ pub struct Flight {
     fingerprint: Fingerprint,
     /// Line of each channel in the flight file; empty if the flight was not parsed from text.
     pub(crate) lines: Vec<Option<usize>>,
+    /// Other files from which the flight was read, such as a file of taps.
+    pub(crate) files: Vec<PathBuf>,
 }
 
 impl Deref for Flight {
@@ -152,7 +155,8 @@ impl Flight {
             settings.push(settled.with_stream(index as u64));
         }
         let fingerprint = Fingerprint::new("");
-        let mut flight = Self { parts, settings, fingerprint, lines: Vec::new() };
+        let mut flight =
+            Self { parts, settings, fingerprint, lines: Vec::new(), files: Vec::new() };
         flight.check_bank()?;
         flight.check_rounding()?;
         flight.fingerprint = flight.described()?;

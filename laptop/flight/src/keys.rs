@@ -95,7 +95,9 @@ impl<'t> Keys<'t> {
             Some(channel) => {
                 vec![Table::ChannelParameters(channel), Table::Channel(channel), Table::Parameters]
             }
-            None => vec![Table::File, Table::Filter, Table::Parameters, Table::ChannelParameters(0)],
+            None => {
+                vec![Table::File, Table::Filter, Table::Parameters, Table::ChannelParameters(0)]
+            }
         };
         for table in tables {
             let found = self.keys.iter().find(|key| key.table == table && key.name == name);

@@ -14,6 +14,9 @@ pub fn build(path: impl AsRef<Path>) -> Result<(), FlightError> {
     let path = path.as_ref();
     println!("cargo:rerun-if-changed={}", path.display());
     let flight = Flight::read(path)?;
+    for file in &flight.files {
+        println!("cargo:rerun-if-changed={}", file.display());
+    }
     flight.check_units().map_err(|error| error.in_file(path))?;
     for rounded in flight.rounded() {
         println!("cargo:warning={}: {}", path.display(), escaped(&rounded.to_string()));

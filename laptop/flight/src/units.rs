@@ -1,13 +1,8 @@
 //! Units of channels: how they are written, and which ones the ends of names stand for.
 
 /// Ends of names that stand for units.
-const ENDS: [(&str, &str); 5] = [
-    ("_dps", "deg/s"),
-    ("_deg_s", "deg/s"),
-    ("_rad_s", "rad/s"),
-    ("_m_s2", "m/s²"),
-    ("_g", "g"),
-];
+const ENDS: [(&str, &str); 5] =
+    [("_dps", "deg/s"), ("_deg_s", "deg/s"), ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_g", "g")];
 
 /// Ways to write a unit that are not read, in lower case, each with the way that is.
 const MISSPELLED: [(&str, &str); 22] = [

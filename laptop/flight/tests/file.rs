@@ -80,7 +80,13 @@ fn an_invalid_file_is_refused_with_key_and_line() {
             "q 1000 must lie in",
         ),
         ("[filter]\nkind = \"notch\"\ncentre = 80\n", "q", None, 4, "is missing"),
-        ("[filter]\nkind = \"notch\"\nq = 3\ncorner = 80\n", "corner", None, 7, "there are centre, q"),
+        (
+            "[filter]\nkind = \"notch\"\nq = 3\ncorner = 80\n",
+            "corner",
+            None,
+            7,
+            "there are centre, q",
+        ),
         ("[filter]\ncorner = 80\nkind = \"high-pass\"", "kind", None, 6, "is unknown"),
         ("[filter]\nkind = \"notch\"\ncentre = \"80\"\n", "centre", None, 6, "cannot be read"),
         ("[[channel]]\nname = \"a\"\nunits = \"m\"", "units", None, 6, "unknown field"),
@@ -142,7 +148,13 @@ fn an_invalid_file_is_refused_with_key_and_line() {
             10,
             "names two channels",
         ),
-        ("[[channel]]\nname = \"a\"\nparameters = { threshold = -1 }", "threshold", Some(0), 6, "above 0"),
+        (
+            "[[channel]]\nname = \"a\"\nparameters = { threshold = -1 }",
+            "threshold",
+            Some(0),
+            6,
+            "above 0",
+        ),
     ] {
         let error = after(more);
         assert_eq!(
@@ -289,7 +301,10 @@ fn a_rounded_parameter_is_told_or_refused() {
     let [rounded] = &flight.rounded()[..] else { panic!("{:?}", flight.rounded()) };
     assert_eq!(rounded.to_string(), "a: threshold 0.1 is 0.1015625 in q8.8");
     let module = rust(&flight).unwrap();
-    assert!(module.contains("    /// Rounded: a: threshold 0.1 is 0.1015625 in q8.8.\n"), "{module}");
+    assert!(
+        module.contains("    /// Rounded: a: threshold 0.1 is 0.1015625 in q8.8.\n"),
+        "{module}"
+    );
     for (sample, threshold) in [("f32", "0.1"), ("q8.8", "0.25"), ("i16", "3")] {
         assert!(Flight::parse(&text(sample, threshold)).unwrap().rounded().is_empty());
     }
@@ -308,7 +323,10 @@ fn names_are_escaped_in_rust_and_toml() {
     let flight = Flight::parse(&text).unwrap();
     let module = rust(&flight).unwrap();
     assert!(!module.contains(['\u{85}', '\u{202e}']), "{module}");
-    assert!(module.contains(r"/// Scheme with the parameters of e\u{301}\u{85}\u{202e}??/\n"), "{module}");
+    assert!(
+        module.contains(r"/// Scheme with the parameters of e\u{301}\u{85}\u{202e}??/\n"),
+        "{module}"
+    );
     let written = flight.to_toml(&[format!("of {name}")]);
     assert_eq!(Flight::parse(&written).unwrap().channels, flight.channels);
 }

@@ -94,7 +94,10 @@ impl Worded for Tally {
                 link.keyframes
             )?;
             let rare = [
-                (link.late, "frames came late, after later ones or another sender's, and were left out"),
+                (
+                    link.late,
+                    "frames came late, after later ones or another sender's, and were left out",
+                ),
                 (link.after_loss, "frames before which the sender lost events"),
                 (link.impossible, "frames with events that cannot be"),
                 (link.outside, "events and keyframes at addresses without a decoder"),
@@ -104,7 +107,10 @@ impl Worded for Tally {
                 writeln!(f, "{count} {what}")?;
             }
             if link.has_two_senders() {
-                writeln!(f, "are there two senders on the line? Frames of two sessions came in turn")?;
+                writeln!(
+                    f,
+                    "are there two senders on the line? Frames of two sessions came in turn"
+                )?;
             }
             let (unused, scheme) = (link.unused_keyframes, spell("scheme"));
             // The fingerprint tells what these only suggest.

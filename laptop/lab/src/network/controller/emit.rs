@@ -332,8 +332,7 @@ fn checksum_of<K: Spelled>(layer: &Layer<K>, shift: u32) -> u32 {
         words.extend([K::word_of_factor(neuron.decay), or(bias, zero).word()]);
         if let Some(spike) = neuron.spike {
             let usual = if rule.reset.subtracts() { spike.threshold } else { zero };
-            let reset =
-                if rule.reset == Reset::NoReset { usual } else { or(spike.reset, usual) };
+            let reset = if rule.reset == Reset::NoReset { usual } else { or(spike.reset, usual) };
             let is_at = rule.fires == Fires::At;
             let threshold = if is_at { spike.threshold.below() } else { spike.threshold };
             words.extend([threshold.word(), reset.word()]);

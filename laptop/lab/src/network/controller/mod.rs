@@ -168,6 +168,9 @@ impl Flown {
 /// Returns an error if the converted network cannot be run on the recordings.
 pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     let ControllerRequest { model, numbers, tuned, held_out, progress } = *request;
+    if numbers == Numbers::Integer {
+        check_spikes(&model.net)?;
+    }
     let original = model.original(tuned);
     let mut notes = model.notes.clone();
     notes.extend(model.net.rules());
@@ -215,6 +218,19 @@ fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
         (counts.last().copied().unwrap_or(0).min(1), counts.iter().sum::<usize>())
     };
     windows.max_by_key(lively).unwrap_or_default().to_vec()
+}
+
+/// Checks that no layer takes more spikes in a step than `spikewire-network` adds with weights of 8 bits.
+fn check_spikes(net: &Net<f64>) -> Result<()> {
+    const MOST: usize = 4096;
+    for layer in &net.layers {
+        let own = if matches!(layer.own, Recurrent::Full(_)) { layer.neurons.len() } else { 0 };
+        let inputs = layer.inputs() + own;
+        if inputs > MOST {
+            return Err(FitKind::Spikes { layer: layer.name.clone(), inputs, most: MOST }.into());
+        }
+    }
+    Ok(())
 }
 
 /// Returns steps in which each input fires that does not fire in these: up to 16 inputs in a step, so that the network
