@@ -74,7 +74,8 @@ pub(crate) struct Listen {
     /// it
     #[arg(long, value_name = "FILE", value_parser = crate::options::read)]
     params: Option<Coding>,
-    /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`
+    /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`. If the sender was made from
+    /// another one, no value is exact: the reason is printed, and the exit status is 2
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
     flight: Option<PathBuf>,
     /// Length in µs of the sender's sub-timesteps. Needed if the decoded value depends on the sub-timestep in which a
