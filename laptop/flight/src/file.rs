@@ -191,13 +191,14 @@ fn parts(
         let source = source.unwrap_or_else(|| name.clone());
         channels.push(Channel { name, source, unit, counts: counts.unwrap_or(1.0), asked });
     }
+    let filter = file.filter.map(|file| filter(file, keys));
     Ok(Parts {
         scheme,
         sample,
         period,
         keyframe_every: file.keyframe_every.unwrap_or(usual),
         clock_ppm: file.clock_ppm.unwrap_or(CLOCK_PPM),
-        filter: file.filter.map(filter).transpose()?,
+        filter: filter.transpose()?,
         shared,
         channels,
     })
@@ -207,23 +208,27 @@ fn parts(
 ///
 /// # Errors
 /// Returns an error if the kind is unknown, or if a number is missing or belongs to another kind.
-fn filter(file: FileFilter) -> Result<Filter, FlightError> {
+fn filter(file: FileFilter, keys: &Keys) -> Result<Filter, FlightError> {
     /// Kinds of filters, each with the numbers that it has.
     const KINDS: [(&str, &[&str]); 3] =
         [("first-order", &["corner"]), ("low-pass", &["corner"]), ("notch", &["centre", "q"])];
     let error = |name: &str, kind| Err(FlightError::new(name, kind));
+    let missing = |name: &str| {
+        let line = keys.line_of(None, "filter");
+        Err(FlightError::new(name, FlightErrorKind::Missing).at(Some(line)))
+    };
     let unknown = |given: &str, known: &[&str]| {
         let known = known.iter().map(|name| (*name).to_owned()).collect();
         FlightErrorKind::Unknown { given: given.to_owned(), known }
     };
     let FileFilter { kind, corner, centre, q } = file;
-    let Some(kind) = kind else { return error("kind", FlightErrorKind::Missing) };
+    let Some(kind) = kind else { return missing("kind") };
     let Some((_, numbers)) = KINDS.iter().find(|(name, _)| *name == kind) else {
         return error("kind", unknown(&kind, &KINDS.map(|(name, _)| name)));
     };
     for (name, number) in [("corner", corner), ("centre", centre), ("q", q)] {
         match (number, numbers.contains(&name)) {
-            (None, true) => return error(name, FlightErrorKind::Missing),
+            (None, true) => return missing(name),
             (Some(_), false) => return error(name, unknown(name, numbers)),
             _ => {}
         }

@@ -28,7 +28,7 @@ struct Key {
 #[derive(Debug)]
 pub(crate) struct Keys<'t> {
     text: &'t str,
-    keys: Vec<Key>,
+    list: Vec<Key>,
     /// Byte offset of each channel.
     channels: Vec<usize>,
 }
@@ -36,7 +36,7 @@ pub(crate) struct Keys<'t> {
 impl<'t> Keys<'t> {
     /// Finds the keys; none if the text is not TOML.
     pub(crate) fn of(text: &'t str) -> Self {
-        let mut keys = Self { text, keys: Vec::new(), channels: Vec::new() };
+        let mut keys = Self { text, list: Vec::new(), channels: Vec::new() };
         let Ok(file) = DeTable::parse(text) else { return keys };
         for (name, value) in file.get_ref() {
             keys.push(Table::File, name.get_ref(), name.span().start, value);
@@ -47,7 +47,7 @@ impl<'t> Keys<'t> {
                 _ => {}
             }
         }
-        keys.keys.sort_by_key(|key| key.start);
+        keys.list.sort_by_key(|key| key.start);
         keys
     }
 
@@ -69,7 +69,7 @@ impl<'t> Keys<'t> {
     }
 
     fn push(&mut self, table: Table, name: &str, start: usize, value: &Spanned<DeValue>) {
-        self.keys.push(Key { table, name: name.to_owned(), start, end: value.span().end });
+        self.list.push(Key { table, name: name.to_owned(), start, end: value.span().end });
     }
 
     /// Returns the line of a byte of the text, counted from 1.
@@ -79,7 +79,7 @@ impl<'t> Keys<'t> {
 
     /// Returns name and line of the innermost key whose name or value has this byte.
     pub(crate) fn at(&self, at: usize) -> Option<(&str, usize)> {
-        let key = self.keys.iter().rfind(|key| (key.start..key.end).contains(&at))?;
+        let key = self.list.iter().rfind(|key| (key.start..key.end).contains(&at))?;
         Some((&key.name, self.line(key.start)))
     }
 
@@ -100,7 +100,7 @@ impl<'t> Keys<'t> {
             }
         };
         for table in tables {
-            let found = self.keys.iter().find(|key| key.table == table && key.name == name);
+            let found = self.list.iter().find(|key| key.table == table && key.name == name);
             if let Some(key) = found {
                 return self.line(key.start);
             }
