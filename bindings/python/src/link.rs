@@ -10,7 +10,10 @@ use lab::events::LinkTally;
 use lab::values::with_kind;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
-use spikewire::link::{Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter};
+use spikewire::link::{
+    CLOCK_TOLERANCE, Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter,
+    longest_slot,
+};
 use spikewire::{
     Bank, Fingerprint, FromItems, Item, Keyframe, Recovery, Sample, SampleKind, Scheme, Spike, Tick,
 };
@@ -201,9 +204,16 @@ impl Build<'_> {
         }
         let slots = schemes.iter().map(|own| own.slots()).max().unwrap_or(1);
         let is_slotted = P::RECOVERY != Recovery::Keyframe && slots > 1;
-        let slot_ticks = if is_slotted { u32::from(*period) / slots as u32 } else { 0 };
-        if is_slotted && slot_ticks == 0 {
-            bail!("{slots} sub-timesteps do not fit into {period} µs");
+        let slots = slots as u32;
+        let slot_ticks =
+            if is_slotted { longest_slot(slots, (*period).into(), CLOCK_TOLERANCE) } else { 0 };
+        if is_slotted
+            && (slot_ticks == 0
+                || slot_ticks > longest_slot(slots, (*period).into(), clock_tolerance))
+        {
+            bail!(
+                "{slots} sub-timesteps do not fit into {period} µs with a clock tolerance of {clock_tolerance} ppm"
+            );
         }
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
         let end = (count * neurons) as u16;

@@ -4,7 +4,7 @@ use crate::units::{self, unit_of_name};
 use crate::{Filter, Filtering, FlightError, FlightErrorKind};
 use catalogue::run::{Asked, Error, Known, RunTime, SampleType, Settings, Value, Visit};
 use catalogue::{Info, Kind, Parameter, for_sample_type};
-use spikewire::link::Coding;
+use spikewire::link::{CLOCK_TOLERANCE, Coding, longest_slot};
 use spikewire::{ConfigError, Fingerprint, Sample, Scheme};
 use std::collections::BTreeSet;
 use std::num::NonZeroU16;
@@ -176,7 +176,8 @@ impl Flight {
         Err(FlightError::new("unit", kind).of_channel(index).at(self.line_of(index)))
     }
 
-    /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, and that a sub-timestep takes at least 1 µs.
+    /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, that a sub-timestep takes at least 1 µs, and that a
+    /// receiver can tell sub-timesteps apart with a clock as fast as its tolerance allows.
     fn check_bank(&self) -> Result<(), FlightError> {
         let [first, others @ ..] = &self.settings[..] else { return Ok(()) };
         for parameter in self.scheme.parameters {
@@ -190,9 +191,13 @@ impl Flight {
                 return Err(error.of_channel(index + 1));
             }
         }
-        let (slots, period) = (self.slots(), f64::from(self.period.get()));
-        if self.is_slotted() && slots as f64 > period {
-            let kind = FlightErrorKind::Range { given: slots as f64, min: 1.0, max: period };
+        let slots = self.slots() as u32;
+        if self.is_slotted() && !self.has_room(slots) {
+            let mut most = slots;
+            while most > 1 && !self.has_room(most) {
+                most -= 1;
+            }
+            let kind = FlightErrorKind::Range { given: slots.into(), min: 1.0, max: most.into() };
             return Err(FlightError::new("slots", kind));
         }
         Ok(())
@@ -201,6 +206,12 @@ impl Flight {
     /// Returns the line of a channel in the flight file; `None` if the flight was not parsed from text.
     pub fn line_of(&self, channel: usize) -> Option<usize> {
         self.lines.get(channel).copied().flatten()
+    }
+
+    /// Returns whether a sample has time for so many sub-timesteps.
+    fn has_room(&self, slots: u32) -> bool {
+        let length = longest_slot(slots, self.period.get().into(), CLOCK_TOLERANCE);
+        length > 0 && length <= longest_slot(slots, self.period.get().into(), self.clock_ppm)
     }
 
     /// Returns the scheme of all channels, in the form that runs on the laptop.
@@ -277,9 +288,13 @@ impl Flight {
         !self.scheme.has_first_value() && self.slots() > 1
     }
 
-    /// Returns the length of a sub-timestep in µs, or 0 if the scheme has no sub-timesteps.
+    /// Returns the length of a sub-timestep in µs, or 0 if the scheme has no sub-timesteps: the longest that leaves room for a
+    /// clock that is 2 % fast.
     pub fn slot_ticks(&self) -> u32 {
-        if self.is_slotted() { u32::from(self.period.get()) / self.slots() as u32 } else { 0 }
+        if !self.is_slotted() {
+            return 0;
+        }
+        longest_slot(self.slots() as u32, self.period.get().into(), CLOCK_TOLERANCE)
     }
 
     /// Returns the period and each channel's name, unit and counts as one text. The text is part of the
