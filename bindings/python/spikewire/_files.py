@@ -109,23 +109,30 @@ def read_ulog(path: str | Path, topic: str, *fields: str, accept_cut: bool = Fal
     return read(path, topic=topic, field=fields, accept_cut=accept_cut)
 
 
+#: An event of a camera: its time, column, row and polarity.
+_PIXELS = np.dtype([("t", np.int64), ("x", np.int64), ("y", np.int64), ("p", np.int64)])
+
+
 @checked
 def read_events(source: str | Path | bytes | bytearray | memoryview, format: str) -> NDArray[Any]:
     """The events of a file, or of ``bytes``, as a structured array; see :data:`~spikewire.EVENTS`.
 
-    `format` is one of the laptop program's: ``"es"``, ``"evt2"``, ``"link"``, ``"edvs:e0"`` to ``"edvs:e4"``,
-    ``"eieio"`` or ``"csv"``. Times of 32 bits that wrapped, after 71.6 minutes, go on.
+    `format` is one of the laptop program's: ``"es"``, ``"evt2"``, ``"evt21"``, ``"evt3"``, ``"link"``, ``"edvs:e0"`` to
+    ``"edvs:e4"``, ``"eieio"`` or ``"csv"``. Events of a camera have their row in the field ``y``, after the column ``x``.
+    Times of 32 bits that wrapped, after 71.6 minutes, go on.
 
     >>> import spikewire as sw
     >>> sw.read_events(b"tick,address,polarity\\n1000,3,1\\n", "csv").tolist()
     [(1000, 3, 1)]
     """
     data = bytes(source) if isinstance(source, (bytes, bytearray, memoryview)) else Path(source).read_bytes()
-    ticks, addresses, are_up, _ = _native.read_events(data, format)
-    events = np.empty(len(ticks), dtype=EVENTS)
+    ticks, places, rows, are_up, _ = _native.read_events(data, format)
+    events = np.empty(len(ticks), dtype=EVENTS if rows is None else _PIXELS)
+    if rows is not None:
+        events["y"] = rows
     steps = np.diff(ticks, prepend=ticks[:1]).view(np.int32).astype(np.int64)
     events["t"] = np.cumsum(steps) + (int(ticks[0]) if len(ticks) else 0)
-    events["x"], events["p"] = addresses, are_up
+    events["x"], events["p"] = places, are_up
     return events
 
 
@@ -133,6 +140,8 @@ def read_events(source: str | Path | bytes | bytearray | memoryview, format: str
 def write_events(events: NDArray[Any], format: str, path: str | Path | None = None) -> bytes:
     """Events, a structured array with ``t``, ``x`` and ``p``, as ``bytes`` of a format, and in a file if `path` is given.
 
+    With ``y``, as ``tonic`` and ``expelliarmus`` have it, they are a camera's events, for ``"es"``, ``"evt2"``, ``"evt3"``
+    and ``"csv"``; ``"evt3,width=640,height=480"`` is the size of its picture, if the events do not reach the last pixel.
     ``t`` is in whole µs, in seconds as floats, or ``datetime64`` or ``timedelta64``. Gaps of more than 35 minutes, which no
     format holds, are an error.
 
@@ -145,7 +154,12 @@ def write_events(events: NDArray[Any], format: str, path: str | Path | None = No
     addresses = np.asarray(events["x"])
     if len(addresses) and not (0 <= addresses.min() and addresses.max() < 1 << 16):
         raise Error(f"addresses must be 0 to 65535, but are {addresses.min()} to {addresses.max()}")
-    data, _ = _native.write_events(ticks(events["t"]), addresses.astype(np.uint16), np.asarray(events["p"]) > 0, format)
+    rows = np.asarray(events["y"]) if "y" in (events.dtype.names or ()) else None
+    if rows is not None:
+        if len(rows) and not (0 <= rows.min() and rows.max() < 1 << 16):
+            raise Error(f"rows must be 0 to 65535, but are {rows.min()} to {rows.max()}")
+        rows = rows.astype(np.uint16)
+    data, _ = _native.write_events(ticks(events["t"]), addresses.astype(np.uint16), rows, np.asarray(events["p"]) > 0, format)
     if path is not None:
         Path(path).write_bytes(data)
     return data

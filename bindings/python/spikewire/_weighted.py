@@ -19,6 +19,18 @@ STEPS = ("tbr", "sf", "mw", "sod")
 FILTERS = ("hsa", "t-hsa", "bsa", "sigma-delta", "if", "bernoulli")
 #: Each sub-timestep is a digit.
 DIGITS = ("weighted-phase",)
+#: What a spike means depends on others: these have no values for weights.
+WITHOUT = (
+    "asf",
+    "atbr",
+    "lif",
+    "burst-weighted",
+    "grf-slots",
+    "grf-nonlinear-slots",
+    "rank-order",
+    "latency-phase",
+    "burst",
+)
 
 #: What is left of a response that fades, in parts of its largest value.
 FADED = 1e-9

@@ -151,6 +151,25 @@ def test_events_there_and_back(name, tmp_path):
         sw.write_events(np.array([(0, 1 << 16, 1)], dtype=sw.EVENTS), name)
 
 
+@pytest.mark.parametrize("name", ["es", "evt2", "evt3", "csv"])
+def test_events_of_a_camera_keep_their_rows(name):
+    # Names and types as those of tonic and of expelliarmus.
+    for fields in ("<i2 <i2 <i8 u1", "<i8 <i8 <i8 ?"):
+        x, y, t, p = fields.split()
+        events = np.zeros(1000, dtype=[("x", x), ("y", y), ("t", t), ("p", p)])
+        at = np.arange(1000)
+        events["x"], events["y"], events["t"], events["p"] = at * 7919 % 640, at % 480, at // 4 * 977, at % 3 == 0
+        again = sw.read_events(sw.write_events(events, name), name)
+        assert again.dtype.names == ("t", "x", "y", "p")
+        for field in again.dtype.names:
+            assert np.array_equal(again[field], events[field]), (name, field)
+    with pytest.raises(ValueError, match="events of a camera have columns and rows"):
+        sw.write_events(events, "link")
+    words = np.array([8 << 28, 1 << 28 | 3 << 11 | 32], dtype="<u4").tobytes()
+    with pytest.raises(ValueError, match="rows from 32 on: 1"):
+        sw.read_events(words, "evt2")
+
+
 def test_times_go_on_where_they_wrap():
     events = np.array([(2**32 - 1000, 1, 1), (2**32 + 1000, 1, 0)], dtype=sw.EVENTS)
     assert np.array_equal(sw.read_events(sw.write_events(events, "csv"), "csv"), events)

@@ -294,7 +294,7 @@ impl OnChip for OnController {
                 (done.fired, done.potentials.iter().map(row).collect(), done.operations)
             }
         };
-        Ok(Ran { fired, potentials, clocks, lost: 0 })
+        Ok(Ran { fired, potentials, clocks, lost: 0, clipped: 0 })
     }
 
     fn follow(
