@@ -96,6 +96,13 @@ pub trait Log {
     /// Returns the bytes of the message that [`next`](Self::next) read last.
     fn message(&self) -> &[u8];
 
+    /// Returns the unit of a field's numbers, such as `deg/s`, if the log gives it. `g/2048` is the unit of a sensor's
+    /// counts, of which 2048 are 1 g. `topic` is an index into [`topics`](Self::topics).
+    fn unit(&self, topic: usize, field: &str) -> Option<String> {
+        let _ = (topic, field);
+        None
+    }
+
     /// Returns the faults found so far. Callers may report them, or add further faults. The faults are complete at the
     /// end of the log.
     fn faults(&mut self) -> &mut Faults;

@@ -13,6 +13,7 @@ pub(crate) struct Header {
     pub min_throttle: i32,
     pub min_motor: i32,
     pub battery: i32,
+    pub counts: Counts,
     /// Fields of full frames.
     pub full: Fields,
     /// Fields of difference frames (P-frames), whose values are differences from earlier frames. Names and signs are
@@ -21,6 +22,48 @@ pub(crate) struct Header {
     pub slow: Fields,
     pub gps: Fields,
     pub home: Fields,
+}
+
+/// Number of counts of the sensors in one unit, if the header gives it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Counts {
+    /// Counts of a gyroscope in 1 °/s.
+    per_degree: Option<f64>,
+    /// Counts of an accelerometer in 1 g.
+    per_g: Option<f64>,
+}
+
+impl Counts {
+    fn parse<'a>(get: &impl Fn(&str) -> Option<&'a str>) -> Self {
+        // Ten times finer numbers, of both sensors.
+        let is_fine = get("blackbox_high_resolution").is_some_and(|value| value != "0");
+        let finer = if is_fine { 10.0 } else { 1.0 };
+        // The bits of a number of 32 bits: the size of a count in °/s. Baseflight alone writes it in radians a µs.
+        let degrees = get("gyro_scale").or_else(|| get("gyro.scale")).and_then(|value| {
+            let bits = u32::from_str_radix(value.trim_start_matches("0x"), 16).ok()?;
+            let degrees = f64::from(f32::from_bits(bits));
+            (1e-4..1e4).contains(&degrees).then_some(degrees)
+        });
+        let per_g =
+            get("acc_1G").and_then(|value| value.parse::<u32>().ok()).filter(|own| *own > 0);
+        Self {
+            per_degree: degrees.map(|degrees| finer / degrees),
+            per_g: per_g.map(|counts| finer * f64::from(counts)),
+        }
+    }
+
+    /// Returns the unit of a field of the main loop's frames; `None` if it is no sensor's or the header has no size of a
+    /// count.
+    pub(crate) fn unit(self, field: &str) -> Option<String> {
+        let (base, counts) = match field.split('[').next()? {
+            "gyroADC" | "gyroUnfilt" => ("deg/s", self.per_degree?),
+            "accSmooth" => ("g", self.per_g?),
+            _ => return None,
+        };
+        // The scale has 24 bits: more digits than these are its rounding.
+        let counts = (counts * 1e4).round() / 1e4;
+        Some(if counts == 1.0 { base.to_owned() } else { format!("{base}/{counts}") })
+    }
 }
 
 /// The fields of one kind of frame. Each vector holds one property of all fields. The items with the same index
@@ -80,6 +123,7 @@ impl Header {
             min_throttle: number("minthrottle").unwrap_or(1150) as i32,
             min_motor: number("motorOutput").unwrap_or(0) as i32,
             battery: number("vbatref").unwrap_or(4095) as i32,
+            counts: Counts::parse(&get),
             full,
             changes,
             slow: fields("S")?,
@@ -186,7 +230,29 @@ impl Fields {
 
 #[cfg(test)]
 mod tests {
-    use super::{Fields, Header};
+    use super::{Counts, Fields, Header};
+
+    #[test]
+    fn units_are_those_of_the_head() {
+        let unit = |lines: &[(&str, &str)], field: &str| {
+            let get =
+                |key: &str| lines.iter().find(|(own, _)| *own == key).map(|(_, value)| *value);
+            Counts::parse(&get).unit(field).unwrap_or_default()
+        };
+        let betaflight = [("gyro_scale", "0x3f800000"), ("acc_1G", "2048")];
+        assert_eq!(unit(&betaflight, "gyroADC[0]"), "deg/s");
+        assert_eq!(unit(&betaflight, "accSmooth[2]"), "g/2048");
+        assert_eq!(unit(&betaflight, "motor[0]"), "");
+        assert_eq!(unit(&[], "gyroADC[0]"), "");
+        let fine =
+            [("gyro_scale", "0x3f800000"), ("acc_1G", "2048"), ("blackbox_high_resolution", "1")];
+        assert_eq!(unit(&fine, "gyroUnfilt[1]"), "deg/s/10");
+        assert_eq!(unit(&fine, "accSmooth[0]"), "g/20480");
+        // 16.4 counts in 1 °/s, as older firmware has them.
+        let counts = [("gyro_scale", "3d79c190"), ("acc_1G", "0")];
+        assert_eq!(unit(&counts, "gyroADC[0]"), "deg/s/16.4");
+        assert_eq!(unit(&counts, "accSmooth[0]"), "");
+    }
 
     #[test]
     fn arrays_are_joined() {

@@ -16,7 +16,7 @@ use super::window::{AHEAD, Window};
 use super::{Entry, Log};
 use crate::{Error, Result};
 use encoding::{Fault, Input};
-use header::{Fields, Header};
+use header::{Counts, Fields, Header};
 use std::collections::VecDeque;
 use std::path::Path;
 
@@ -44,6 +44,8 @@ pub(crate) struct Blackbox {
     logs: usize,
     session: Option<Session>,
     topics: Vec<Topic>,
+    /// The sensors' counts of the log that each topic is of.
+    counts: Vec<Counts>,
     message: Vec<u8>,
     /// Messages that are decoded, and are to be returned before any further frame is read.
     decoded: VecDeque<Message>,
@@ -134,6 +136,7 @@ impl Blackbox {
             logs: 0,
             session: None,
             topics: Vec::new(),
+            counts: Vec::new(),
             message: Vec::new(),
             decoded: VecDeque::new(),
             damaged: None,
@@ -179,6 +182,7 @@ impl Blackbox {
             let definition = fields.definition();
             let topic = Topic::new(name(base), String::new(), Dialect::Ros1, &definition);
             self.topics.push(topic);
+            self.counts.push(header.counts);
             self.topics.len() - 1
         };
         let main = add(MAIN, &header.full);
@@ -619,6 +623,10 @@ impl Log for Blackbox {
 
     fn message(&self) -> &[u8] {
         &self.message
+    }
+
+    fn unit(&self, topic: usize, field: &str) -> Option<String> {
+        self.counts.get(topic)?.unit(field)
     }
 
     fn faults(&mut self) -> &mut Faults {

@@ -146,12 +146,29 @@ impl LogList {
         if is_stdin && self.logs.contains(list) {
             bail!("standard input cannot be both the list and a log");
         }
-        let text =
-            if is_stdin { io::read_to_string(io::stdin()) } else { fs::read_to_string(list) };
-        let text = text.with_context(|| list.display().to_string())?;
-        let listed = text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from);
+        let mut bytes = Vec::new();
+        let read = if is_stdin {
+            io::stdin().read_to_end(&mut bytes)
+        } else {
+            fs::File::open(list).and_then(|mut file| file.read_to_end(&mut bytes))
+        };
+        read.with_context(|| list.display().to_string())?;
+        let lines =
+            bytes.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
+        let listed = lines.filter(|line| !line.trim_ascii().is_empty()).map(path_of);
         Ok(self.logs.iter().cloned().chain(listed).collect())
     }
+}
+
+/// Returns the path that these bytes name. On Unix a name may have bytes that are not UTF-8.
+#[cfg(unix)]
+fn path_of(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(<std::ffi::OsStr as std::os::unix::ffi::OsStrExt>::from_bytes(bytes))
+}
+
+#[cfg(not(unix))]
+fn path_of(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(String::from_utf8_lossy(bytes).into_owned())
 }
 
 impl LogOptions {

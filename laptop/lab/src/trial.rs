@@ -5,6 +5,7 @@ use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRat
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
+use crate::unit::known_unit;
 use crate::{Result, Spot};
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
@@ -24,6 +25,8 @@ pub struct Recording {
     pub rate: Option<f64>,
     /// Name of the channel.
     pub name: String,
+    /// Unit of the samples, if the log gives it.
+    pub unit: Option<String>,
     /// Number of samples that were missing or not finite.
     rejected: usize,
     clock: Clock,
@@ -40,7 +43,7 @@ impl Recording {
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
         let (times, notes) = (Vec::new(), Vec::new());
-        Self { values, times, segments, rate, name, rejected: 0, clock, notes }
+        Self { values, times, segments, rate, name, unit: None, rejected: 0, clock, notes }
     }
 
     /// Reads a recording of one channel.
@@ -76,9 +79,9 @@ impl Recording {
         let finite = |row: usize| rows[..row].iter().filter(|row| **row).count();
         let segments = segments.into_iter().map(|own| finite(own.start)..finite(own.end));
         let segments: Vec<Range<usize>> = segments.filter(|own| !own.is_empty()).collect();
-        let channels = all.kept(&rows).into_iter().zip(source.names());
+        let channels = all.kept(&rows).into_iter().zip(source.names()).zip(source.units());
         channels
-            .map(|(values, name)| {
+            .map(|((values, name), unit)| {
                 if values.is_empty() {
                     let kind = TableKind::NoneFinite { samples: rows.len() };
                     return Err(kind.at(input.name()));
@@ -90,6 +93,7 @@ impl Recording {
                     segments: segments.clone(),
                     rate: clock.rate(),
                     name: name.to_owned(),
+                    unit,
                     clock: clock.clone(),
                     notes: source.notes().to_vec(),
                 })
@@ -114,6 +118,7 @@ impl Recording {
             segments: self.segments.clone(),
             rate: self.rate,
             name: self.name.clone(),
+            unit: self.unit.clone(),
             rejected: self.rejected,
             clock: self.clock.clone(),
             notes: self.notes.clone(),
@@ -142,6 +147,11 @@ impl Recording {
     pub fn steady_rate(&self) -> Result<Option<f64>> {
         self.clock.steady_rate().at(|| Spot::Part(self.name.clone()))?;
         Ok(self.rate)
+    }
+
+    /// Returns the unit of the samples, if the log gives it or the channel's name shows it.
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref().or_else(|| known_unit(&self.name))
     }
 
     /// Returns the duration in seconds, if it is known. The unknown time between segments is left out.

@@ -73,7 +73,7 @@ fn spikes(open: &Open, trial: &Trial, choice: &Choice) -> Result<Vec<u8>> {
 /// The table as `spikewire convert --to es` writes it.
 fn event_stream(table: &[u8]) -> Result<Vec<u8>> {
     let reader = Format::Csv.reader("the spikes");
-    let mut stream = Stream::new(reader, Format::EventStream.writer(false), false);
+    let mut stream = Stream::new(reader, Format::EventStream { size: None }.writer(false)?, false);
     let mut file = Vec::new();
     stream.push(table, None, &mut file)?;
     stream.finish(&mut file)?;

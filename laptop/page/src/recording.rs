@@ -9,7 +9,6 @@ use flight_logs::files::{Bytes, lend, take_back};
 use lab::bench::signal::{RATE, Waveform};
 use lab::input::messages::overview;
 use lab::input::{ChannelOptions, InputOptions};
-use lab::look::known_unit;
 use lab::trial::Recording;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -183,7 +182,7 @@ pub(crate) fn load(channel: Channel) -> Result<Value> {
         "rate": recording.rate,
         "uneven": recording.uneven().is_some(),
         "seconds": recording.seconds(),
-        "unit": known_unit(&recording.name),
+        "unit": recording.unit(),
         "notes": notes.collect::<Vec<_>>(),
         "segments": recording.segments.iter().map(|own| own.start).collect::<Vec<_>>(),
     });

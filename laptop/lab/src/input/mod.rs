@@ -227,6 +227,11 @@ pub trait Source {
     /// Returns the channels' names, which are the names of columns or fields. A name may contain commas.
     fn names(&self) -> Vec<&str>;
 
+    /// Returns the unit of each channel, if the recording gives it.
+    fn units(&self) -> Vec<Option<String>> {
+        vec![None; self.names().len()]
+    }
+
     /// Returns the origin of the channels, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
 

@@ -262,6 +262,12 @@ impl Source for Channel {
         self.fields.iter().map(String::as_str).collect()
     }
 
+    fn units(&self) -> Vec<Option<String>> {
+        let topic = self.plans.iter().position(Option::is_some);
+        let unit = |field: &String| topic.and_then(|topic| self.log.unit(topic, field));
+        self.fields.iter().map(unit).collect()
+    }
+
     fn origin(&self) -> &[(&'static str, String)] {
         &self.origin
     }
