@@ -1,11 +1,12 @@
 //! Encodes and decodes recordings in memory, in order to draw and score the results.
 
-use crate::Result;
+use crate::error::At;
 use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRate};
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
 use crate::unit::known_unit;
+use crate::{Result, Spot};
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
@@ -154,7 +155,7 @@ impl Recording {
     /// # Errors
     /// Returns an error that asks for the rate if the times of the recording contradict themselves.
     pub fn steady_rate(&self) -> Result<Option<f64>> {
-        self.clock.steady_rate()?;
+        self.clock.steady_rate().at(|| Spot::Part(self.name.clone()))?;
         Ok(self.rate)
     }
 

@@ -323,7 +323,7 @@ impl Tune {
     /// Returns the text of a flight file (`flight.toml`) with the settings found for each channel.
     ///
     /// # Errors
-    /// Returns an error if the first log has no sample rate, or if the channels cannot share a flight file, for example
+    /// Returns an error if the first log has no sample rate, if its times contradict themselves, or if the channels cannot share a flight file, for example
     /// because two have the same name.
     fn flight(
         &self,
@@ -338,8 +338,10 @@ impl Tune {
             let source = recording.map_or(name, |recording| recording.source.as_str());
             rows.push(TunedChannel { name, source, scheme: *scheme, row });
         }
-        let rate =
-            request.logs.first().and_then(|log| log.first()).and_then(|recording| recording.rate);
+        let rate = match request.logs.first().and_then(|log| log.first()) {
+            Some(recording) => recording.steady_rate()?,
+            None => None,
+        };
         let flight =
             of_rows(&rows, self.sample, rate.context("a flight needs the rate of its log")?)?;
         let comments = rows.iter().flat_map(|channel| channel.row.comments(channel.name));
