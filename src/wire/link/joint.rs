@@ -101,7 +101,7 @@ pub fn join(parts: &mut [&mut dyn Part]) -> Result<Joint, ConfigError> {
         joint.fingerprint = joint.fingerprint.and(part.fingerprint());
     }
     joint.fingerprint = joint.fingerprint.number(parts.len() as u32);
-    for part in parts.iter_mut() {
+    for part in parts {
         part.join(joint);
     }
     Ok(joint)
