@@ -165,7 +165,7 @@ impl Kind {
             return Ok(None);
         }
         let mut start = Vec::new();
-        let read = Bytes::open(path)?.take(dataflash::LOOKED_AT, &mut start);
+        let read = Bytes::open(path)?.take(LOOKED_AT, &mut start);
         let is_named = path.extension().is_some_and(|extension| extension == "ulg");
         match (read, of_start(&start)) {
             (Err(error), _) if is_named => Err(Error::of(path, ErrorKind::Unpack(error))),
@@ -202,6 +202,10 @@ impl Kind {
     }
 }
 
+/// A log must begin within this number of bytes from the start of its file: some loggers write other text first, and
+/// some programs that fetch logs from a controller add or lose bytes.
+const LOOKED_AT: u64 = 8192;
+
 /// Error text for a directory that is not a ROS 2 bag.
 const NO_BAG: &str = "a directory, and no bag of ROS 2, which has a file metadata.yaml";
 
@@ -214,18 +218,18 @@ fn of_start(start: &[u8]) -> Option<Kind> {
         (blackbox::START, Kind::Blackbox),
         (ulog::START, Kind::Ulog),
     ];
-    let kind = kinds.into_iter().find(|(first, _)| start.starts_with(first)).map(|(_, kind)| kind);
-    let looked_into = || {
-        let is_begun = |window: &[u8]| window == dataflash::START;
-        if start.windows(dataflash::START.len()).any(is_begun) {
-            Some(Kind::ArduPilot)
-        } else if dataflash::is_text(start) {
-            Some(Kind::ArduPilotText)
-        } else {
-            mavlink::is_log(start).then_some(Kind::Mavlink)
-        }
-    };
-    kind.or_else(looked_into)
+    if let Some((_, kind)) = kinds.into_iter().find(|(first, _)| start.starts_with(first)) {
+        return Some(kind);
+    }
+    if dataflash::is_binary(start) {
+        Some(Kind::ArduPilot)
+    } else if dataflash::is_text(start) {
+        Some(Kind::ArduPilotText)
+    } else if mavlink::is_log(start) {
+        Some(Kind::Mavlink)
+    } else {
+        blackbox::start(start).map(|_| Kind::Blackbox)
+    }
 }
 
 /// Compiles the examples in the README as doctests.

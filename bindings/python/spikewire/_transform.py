@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from ._scheme import Scheme
+from . import _scheme as _base
+from ._errors import checked
 
 
 class ToSpikes:
     """A transform from samples to spikes, as data sets of torchvision and tonic take them.
 
-    `axis` is the one of time: 0 for (time, channels), as tonic and snnTorch lay out data. The spikes are an array
-    of `dtype`, or a tensor if the samples are one of torch; that array and tensor share their memory.
+    `axis` is the one of time: 0 for (time, channels), as tonic and snnTorch lay out data, and the last one or the rows of
+    a table unless given. The spikes are an array
+    of `dtype`, or a tensor if the samples are one of torch; that array and tensor share their memory. `dtype` may be one of
+    torch, such as ``torch.bfloat16``: then they are a tensor of it.
 
     >>> import numpy as np, spikewire as sw
     >>> transform = sw.ToSpikes(sw.StepForward(threshold=0.5), axis=0)
@@ -24,20 +26,23 @@ class ToSpikes:
            [ 0,  0]], dtype=int8)
     """
 
-    def __init__(self, scheme: Scheme, axis: int = -1, dtype: Any = np.int8):
-        self.scheme: Scheme = scheme
-        self.axis: int = axis
-        self.dtype: np.dtype[Any] = np.dtype(dtype)
+    @checked
+    def __init__(self, scheme: _base.Scheme, axis: int | None = None, dtype: Any = np.int8):
+        self.scheme: _base.Scheme = scheme
+        self.axis: int | None = axis
+        #: Type of the spikes, of NumPy or of torch.
+        self.dtype: Any = dtype if type(dtype).__module__ == "torch" else np.dtype(dtype)
 
     def __call__(self, x: Any) -> Any:
-        is_tensor = type(x).__module__.partition(".")[0] == "torch"
-        samples = x.detach().cpu().numpy() if is_tensor else x
-        spikes = self.scheme.encode(samples, progress=False, axis=self.axis).array.astype(self.dtype, copy=False)
-        if not is_tensor:
-            return spikes
+        spikes = self.scheme.encode(x, progress=False, axis=self.axis).array
+        if isinstance(self.dtype, np.dtype):
+            spikes = spikes.astype(self.dtype, copy=False)
+            if not hasattr(x, "detach"):
+                return spikes
         import torch
 
-        return torch.from_numpy(spikes)
+        tensor = torch.from_numpy(spikes)
+        return tensor if isinstance(self.dtype, np.dtype) else tensor.to(self.dtype)
 
     def __repr__(self) -> str:
-        return f"ToSpikes({self.scheme!r}, axis={self.axis}, dtype={self.dtype.name!r})"
+        return f"ToSpikes({self.scheme!r}, axis={self.axis}, dtype={getattr(self.dtype, 'name', self.dtype)!r})"

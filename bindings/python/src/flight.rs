@@ -1,9 +1,9 @@
 //! A flight's file.
 
 use lab::flight::{Channel, Filter, Flight};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::error::value;
 use crate::values::{Given, keywords};
 
 /// A channel: name, source, unit, counts a unit, keywords of its scheme.
@@ -13,22 +13,22 @@ type Heard = (String, String, String, f64, Vec<(&'static str, Given)>);
 type Filtering = (&'static str, f32, Option<f32>);
 
 /// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, error of the clock in millionths, label,
-/// fingerprint, filter, channels.
+/// fingerprint, filter, channels, parameters that the sample type changes.
 type FlightFields =
-    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>);
+    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>, Vec<String>);
 
 /// Reads a flight's file.
 #[pyfunction]
 pub(crate) fn flight(path: &str) -> PyResult<FlightFields> {
-    let flight = Flight::read(path).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let flight = Flight::read(path).map_err(value)?;
     let filter = flight.filter.map(|own| match own {
         Filter::FirstOrder { corner } => ("first_order", corner, None),
         Filter::LowPass { corner } => ("low_pass", corner, None),
         Filter::Notch { centre, q } => ("notch", centre, Some(q)),
     });
-    let channels = flight.channels.iter().map(|own| {
+    let channels = flight.channels.iter().enumerate().map(|(index, own)| {
         let Channel { name, source, unit, counts, .. } = own.clone();
-        (name, source, unit, counts, keywords(&flight.asked(own)))
+        (name, source, unit, counts, keywords(&flight.asked_as_flown(index)))
     });
     Ok((
         flight.scheme.name,
@@ -40,5 +40,6 @@ pub(crate) fn flight(path: &str) -> PyResult<FlightFields> {
         flight.fingerprint().bits(),
         filter,
         channels.collect(),
+        flight.rounded().iter().map(ToString::to_string).collect(),
     ))
 }

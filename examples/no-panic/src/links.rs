@@ -16,7 +16,7 @@ use embedded_hal::{
 use spikewire::{
     Bank, Bins, Consumer, EventQueue, FromEvents, FromItems, Item, Keyframe, Overflow, Put,
     Readout, Sample, SampleKind, Source, SpscQueue, Tick,
-    link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Session, Transmitter},
+    link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Session, Transmitter, join},
     out::{AsyncSpiSink, Batch, SerialSink, SpiSink},
     temporal::StepForward,
 };
@@ -115,13 +115,19 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     bank.reset_into(tick(), &EVENTS);
 
     let mut events = EVENTS.consumer()?;
-    let described = Transmitter::for_bank(&bank, black_box(1_000), Session::counted(black_box(1)));
+    let session = Session::counted(black_box(1));
+    let described = Transmitter::try_for_bank(&bank, black_box(1_000), session).ok()?;
+    let mut other = black_box(Bank::<_, 2>::new(scheme));
+    let joined =
+        Transmitter::for_banks(&mut [&mut bank, &mut other], black_box(1_000), session).ok()?;
+    hide(joined.foreign());
     let mut transmitter = black_box(described.with_label(black_box("roll")));
     transmitter.observe(tick());
     hide(transmitter.leaps());
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
     let receiver = black_box(Receiver::<_, 3, 0>::per_channel([scheme; 3]));
-    let tolerant = receiver.with_clock_tolerance(black_box(9)).with_label(black_box("roll"));
+    let mut tolerant = receiver.with_clock_tolerance(black_box(9)).with_label(black_box("roll"));
+    hide(join(&mut [&mut tolerant]).is_ok());
     hide(tolerant.fingerprint());
     let mut receiver = black_box(tolerant);
     let mut buffer = black_box([0; 300]);
@@ -226,7 +232,9 @@ fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synap
             let mut spikes = Spikes::<4>::new();
             network.answers(tick(), |event| spikes.push(event))(a);
             hide((network.input(3).is_some(), spikes.as_slice().len()));
-            hide(gated.run(&network.registers()).is_ok());
+            if let Ok(running) = gated.run(&network.registers()) {
+                hide(is_witness_right(running, &network));
+            }
         }
     }
     if let Ok(gated) = chip.gated() {
@@ -253,6 +261,21 @@ fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synap
 fn feed<I: Input>(chip: &mut Running<'_, I, Bus, Bus>) -> bool {
     let Some(mut events) = EVENTS.consumer() else { return false };
     chip.feed(events.waiting(), |_| black_box(I::LEAK_ALL), hide).is_ok()
+}
+
+fn is_witness_right<I: Input>(chip: Running<'_, I, Bus, Bus>, network: &impl Describe<I>) -> bool {
+    let layers = black_box([StepsLayer { neurons: 3, loops: false }]);
+    let steps = black_box(Steps {
+        inputs: 2,
+        has_bias: false,
+        rows: &[1],
+        layers: &layers,
+        rungs: 3,
+        leaks: &[],
+        lift: 0,
+        own_leaks: &[],
+    });
+    chip.check_witness(&steps, network, hide).is_ok()
 }
 
 /// A step in which neurons compare once.

@@ -62,7 +62,11 @@ impl Counts {
         };
         // The scale has 24 bits: more digits than these are its rounding.
         let counts = (counts * 1e4).round() / 1e4;
-        Some(if counts == 1.0 { base.to_owned() } else { format!("{base}/{counts}") })
+        Some(if (counts - 1.0).abs() < f64::EPSILON {
+            base.to_owned()
+        } else {
+            format!("{base}/{counts}")
+        })
     }
 }
 
@@ -75,6 +79,11 @@ pub(crate) struct Fields {
     pub predictors: Vec<i64>,
     pub encodings: Vec<Encoding>,
 }
+
+/// Predictor of a field whose value is the difference from the time of the last frame of the main loop.
+pub(crate) const LAST_TIME: i64 = 10;
+/// Largest number of a predictor that is known.
+const LAST_PREDICTOR: i64 = 11;
 
 /// Largest value that is used for an interval in the header. Larger values are reduced to this one. The bound applies
 /// to the `I interval`, and to the numerator and the denominator of the `P interval`.
@@ -102,7 +111,8 @@ impl Header {
         changes.names.clone_from(&full.names);
         changes.signed.clone_from(&full.signed);
         if changes.encodings.len() != full.names.len() {
-            return Err("frames of changes have other fields than those of all".to_owned());
+            let (changes, full) = (changes.encodings.len(), full.names.len());
+            return Err(format!("frames of changes have {changes} fields, full ones {full}"));
         }
         let logged = match get("P interval")
             .map(|interval| interval.split_once('/').unwrap_or(("1", interval)))
@@ -148,12 +158,30 @@ impl Fields {
             text.parse::<i64>().map_err(|_| format!("`{text}` of a field is no number"))
         };
         let names: Vec<String> = list("name").map(str::to_owned).collect();
+        let field = |index: usize| match get(&format!(
+            "Field {} name",
+            if kind == "P" { "I" } else { kind }
+        )) {
+            Some(names) => names.split(',').nth(index).unwrap_or("?").trim(),
+            None => "?",
+        };
         let predictors: Vec<i64> = list("predictor").map(number).collect::<Result<_, _>>()?;
-        let encodings = list("encoding").map(|text| {
-            Encoding::of(number(text)?).ok_or_else(|| format!("encoding {text} is not known"))
+        let is_known = |predictor: &i64| (0..=LAST_PREDICTOR).contains(predictor);
+        if let Some(odd) = predictors.iter().position(|predictor| !is_known(predictor)) {
+            let (predictor, name) = (predictors[odd], field(odd));
+            return Err(format!(
+                "predictor {predictor} of field `{name}` in frames {kind} is not known"
+            ));
+        }
+        let encodings = list("encoding").enumerate().map(|(index, text)| {
+            let unknown = || {
+                format!("encoding {text} of field `{}` in frames {kind} is not known", field(index))
+            };
+            Encoding::of(number(text)?).ok_or_else(unknown)
         });
         let encodings: Vec<Encoding> = encodings.collect::<Result<_, _>>()?;
         let signed: Vec<bool> = list("signed").map(|text| text == "1").collect();
+        let counts = [names.len(), signed.len(), predictors.len(), encodings.len()];
         let count = encodings.len();
         let is_same = |other: usize| other == count || (kind == "P" && other == 0);
         if predictors.len() != count
@@ -161,7 +189,11 @@ impl Fields {
             || !is_same(signed.len())
             || count > MOST
         {
-            return Err(format!("fields {kind} differ in number from line to line"));
+            let [names, signed, predictors, encodings] = counts;
+            return Err(format!(
+                "fields {kind} differ in number from line to line: {names} names, {signed} signs, {predictors} \
+                 predictors, {encodings} encodings"
+            ));
         }
         Ok(Self { names, signed, predictors, encodings })
     }
@@ -169,6 +201,11 @@ impl Fields {
     /// Returns the index of the field `name`.
     pub(crate) fn index(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|field| field == name)
+    }
+
+    /// Returns whether a field holds the difference from the time of the last frame of the main loop.
+    pub(crate) fn is_relative(&self, index: usize) -> bool {
+        self.predictors.get(index) == Some(&LAST_TIME)
     }
 
     /// Returns the text of a message definition in which each field is an `int64`. Fields `name[0]`, `name[1]` and so
@@ -249,6 +286,9 @@ mod tests {
         lines.push(line("P interval", "1"));
         assert_eq!(Header::parse(&lines).unwrap().skipped(0), 0);
         lines.push(line("Field I encoding", "5"));
-        assert_eq!(Header::parse(&lines).unwrap_err(), "encoding 5 is not known");
+        assert_eq!(
+            Header::parse(&lines).unwrap_err(),
+            "encoding 5 of field `loopIteration` in frames I is not known"
+        );
     }
 }

@@ -5,6 +5,7 @@ use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use flight_logs::{Kind, Packing};
 use lab::dataset::{self, ChannelsOf, Found, Split};
+use lab::flight::Flight;
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
 use std::fs;
 use std::io::{self, BufRead, Cursor, Read};
@@ -50,8 +51,9 @@ pub(crate) struct ChannelOptions {
     )]
     columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: the column
-    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a ROS log: the time at which
-    /// a message was recorded
+    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a log: the sensor's own stamp
+    /// such as `header.stamp`, `timestamp_sample` or `time_boot_ms`, and without one the time at which a message was
+    /// recorded, which is called `recorded`
     #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     time: Option<String>,
     /// Unit of the time column; default: the unit in its name, such as `time (us)` or `stamp_ns`, or else a guess from
@@ -61,6 +63,9 @@ pub(crate) struct ChannelOptions {
     /// Separator of columns: `,` `;` `|` `tab` `space`; default: the one that the header uses
     #[arg(long, help_heading = "Input")]
     delimiter: Option<Delimiter>,
+    /// Line of a table that holds the names of the columns, counted from 1; default: found where it is sure
+    #[arg(long, value_name = "LINE", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Input")]
+    header: Option<u64>,
     /// Topic of a log; `:1` after it selects the second instance of a sensor
     #[arg(long, help_heading = "Input")]
     topic: Option<String>,
@@ -70,7 +75,7 @@ pub(crate) struct ChannelOptions {
     /// Several fields of the topic at once: `gyro_rad[0],gyro_rad[1]`
     #[arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")]
     fields: Vec<String>,
-    /// Sample rate in Hz, for a recording without times
+    /// Sample rate in Hz, for a recording without times, or with times that do not tell it, such as those of arrival
     #[arg(long, value_parser = above_zero, help_heading = "Input")]
     rate: Option<f64>,
     /// Report time steps longer than this multiple of the usual step
@@ -210,7 +215,7 @@ impl ManyChannels {
 }
 
 /// Returns a parser of a unit of time: `s`, `ms`, `us` or `ns`.
-fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
+pub(crate) fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
     PossibleValuesParser::new(["s", "ms", "us", "ns"]).map(|name| match name.as_str() {
         "ms" => TimeUnit::Ms,
         "us" => TimeUnit::Us,
@@ -241,6 +246,7 @@ impl ChannelOptions {
             time: options.time,
             time_unit: options.time_unit,
             delimiter: options.delimiter,
+            header: options.header,
             topic: options.topic,
             field: options.field,
             fields: options.fields,
@@ -251,6 +257,18 @@ impl ChannelOptions {
         };
         input::InputOptions { input: input.to_owned(), channel }
     }
+}
+
+/// Reads a flight file, and prints on standard error the parameters that the sample type changes.
+///
+/// # Errors
+/// Returns an error, with file and line, if the file is not a valid flight.
+pub(crate) fn read_flight(path: &Path) -> Result<Flight> {
+    let flight = Flight::read(path)?;
+    for rounded in flight.rounded() {
+        eprintln!("{}: {rounded}", path.display());
+    }
+    Ok(flight)
 }
 
 /// Temporary copy of standard input; `None` if no copy was needed.

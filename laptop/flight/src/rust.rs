@@ -1,6 +1,6 @@
 //! Generates sender and receiver of a flight in Rust.
 
-use crate::{Flight, FlightError, FlightErrorKind};
+use crate::{Flight, FlightError, FlightErrorKind, escaped};
 use catalogue::run::{Constant, Rust};
 use std::fmt::{Debug, Write};
 
@@ -55,11 +55,13 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         format!("pub const COUNTS: [f64; CHANNELS] = [{counts}];"),
     );
     item("Type of every channel's scheme.", format!("pub type Code = {code};"));
+    let rounded = flight.rounded();
     for (index, (Constant { value, .. }, names)) in statics.iter().enumerate() {
-        let words = format!(
-            "Scheme with the parameters of {}.",
-            names.join(", ").replace(['\n', '\r'], " ")
-        );
+        let mut words = format!("Scheme with the parameters of {}.", escaped(&names.join(", ")));
+        for rounded in rounded.iter().filter(|rounded| names.contains(&rounded.channel.as_str())) {
+            // Writing to a string cannot fail.
+            let _ = write!(words, "\n/// Rounded: {}.", escaped(&rounded.to_string()));
+        }
         item(&words, format!("static SCHEME_{index}: Code = {value};"));
     }
     item(
@@ -95,9 +97,11 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     );
     item(
         "Returns the sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.",
-        "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {\n    \
-             spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint()).with_label(LABEL)\n}"
-            .to_owned(),
+        format!(
+            "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {{\n    \
+             spikewire::link::Transmitter::new(CODING, session).with_addresses(0..={}).with_fingerprint(BANK.fingerprint()).with_label(LABEL)\n}}",
+            channels * flight.neurons() - 1
+        ),
     );
     item(
         "Maximum number of events of a sample that the receiver stores.",

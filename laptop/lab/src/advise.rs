@@ -347,6 +347,7 @@ impl Advice {
         /// Default of the allowed RMSE, as a share of the signal's standard deviation. The share gives a
         /// signal-to-noise ratio of 14 dB.
         const PART: f64 = 0.2;
+        recording.steady_rate()?;
         let look = ChannelSummary::of(recording);
         let objection = look.objection().filter(|_| look.verdict != Verdict::Clipped);
         let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };
@@ -757,7 +758,7 @@ impl Advice {
 pub fn link_bytes(trial: &Trial, rate: f64, keyframe_every: u64) -> Result<f64> {
     let period = (1e6 / rate).round().max(1.0);
     let format: Format = format!("link,period={period}").parse()?;
-    let mut writer = format.writer(true);
+    let mut writer = format.writer(true)?;
     let mut bytes: Vec<u8> = Vec::new();
     let tick = |sample: u64| Tick::from_micros((sample as f64 * period) as u64);
     let (mut next, every) = (0, keyframe_every.max(1));

@@ -1,11 +1,12 @@
 //! Encodes and decodes recordings in memory, in order to draw and score the results.
 
-use crate::Result;
-use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind};
+use crate::error::At;
+use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRate};
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
 use crate::unit::known_unit;
+use crate::{Result, Spot};
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
@@ -19,10 +20,13 @@ pub struct Recording {
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
-    /// Sample rate in Hz, if known.
+    /// Sample rate in Hz, if known: samples through the length without gaps, or the rate that the user gave. What relies
+    /// on the rate asks for [`steady_rate`](Self::steady_rate).
     pub rate: Option<f64>,
     /// Name of the channel.
     pub name: String,
+    /// Name by which the channel is found in the log again: `TOPIC.FIELD`, or `name` in a table.
+    pub source: String,
     /// Unit of the samples, if the log gives it.
     pub unit: Option<String>,
     /// Number of samples that were missing or not finite.
@@ -41,7 +45,9 @@ impl Recording {
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
         let (times, notes) = (Vec::new(), Vec::new());
-        Self { values, times, segments, rate, name, unit: None, rejected: 0, clock, notes }
+        let source = name.clone();
+        let unit = None;
+        Self { values, times, segments, rate, name, source, unit, rejected: 0, clock, notes }
     }
 
     /// Reads a recording of one channel.
@@ -77,6 +83,7 @@ impl Recording {
         let finite = |row: usize| rows[..row].iter().filter(|row| **row).count();
         let segments = segments.into_iter().map(|own| finite(own.start)..finite(own.end));
         let segments: Vec<Range<usize>> = segments.filter(|own| !own.is_empty()).collect();
+        let topic = source.origin().iter().find(|(key, _)| *key == "topic").map(|(_, topic)| topic);
         let channels = all.kept(&rows).into_iter().zip(source.names()).zip(source.units());
         channels
             .map(|((values, name), unit)| {
@@ -91,6 +98,10 @@ impl Recording {
                     segments: segments.clone(),
                     rate: clock.rate(),
                     name: name.to_owned(),
+                    source: match topic {
+                        Some(topic) => format!("{topic}.{name}"),
+                        None => name.to_owned(),
+                    },
                     unit,
                     clock: clock.clone(),
                     notes: source.notes().to_vec(),
@@ -116,6 +127,7 @@ impl Recording {
             segments: self.segments.clone(),
             rate: self.rate,
             name: self.name.clone(),
+            source: self.source.clone(),
             unit: self.unit.clone(),
             rejected: self.rejected,
             clock: self.clock.clone(),
@@ -131,6 +143,20 @@ impl Recording {
     /// Returns the number of samples that were missing or not finite.
     pub fn rejected(&self) -> usize {
         self.rejected
+    }
+
+    /// Returns the two rates of a recording whose times contradict themselves.
+    pub fn uneven(&self) -> Option<UnevenRate> {
+        self.clock.uneven()
+    }
+
+    /// Returns the sample rate in Hz, if it is known, for what must rely on it: a period that is written, or advice.
+    ///
+    /// # Errors
+    /// Returns an error that asks for the rate if the times of the recording contradict themselves.
+    pub fn steady_rate(&self) -> Result<Option<f64>> {
+        self.clock.steady_rate().at(|| Spot::Part(self.name.clone()))?;
+        Ok(self.rate)
     }
 
     /// Returns the unit of the samples, if the log gives it or the channel's name shows it.

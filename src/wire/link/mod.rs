@@ -109,6 +109,7 @@ mod bits;
 mod delta;
 mod error;
 mod frame;
+mod joint;
 mod pace;
 mod reader;
 mod receiver;
@@ -121,7 +122,8 @@ mod writer;
 
 pub use error::LinkError;
 pub use frame::{Events, FrameView, MAX_FRAME, MIN_FRAME};
-pub use pace::CLOCK_TOLERANCE;
+pub use joint::{Joint, Part, join};
+pub use pace::{CLOCK_TOLERANCE, longest_slot};
 pub use reader::{Gap, Reader, Received};
 pub use receiver::Receiver;
 pub use session::Session;

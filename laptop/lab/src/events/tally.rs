@@ -1,5 +1,6 @@
 //! Counts of everything in a stream that is not an event.
 
+use super::EventsKind;
 use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
 use std::fmt;
@@ -13,6 +14,8 @@ pub struct Tally {
     pub is_cut: bool,
     /// Number of ticks of more than 32 bits.
     pub long_ticks: u64,
+    /// Number of events in rows of a camera from 32 on, in a stream whose pixels stand for addresses.
+    pub far_rows: u64,
     /// Counts kept by the reader of link frames; `None` for other formats.
     pub link: Option<LinkTally>,
 }
@@ -30,6 +33,8 @@ pub struct LinkTally {
     pub bad_checksums: u64,
     /// Number of frames that arrived twice.
     pub repeated: u64,
+    /// Number of frames that came after later ones, or from a sender before the present one. They are left out.
+    pub late: u64,
     /// Number of frames in which the sender reports that it lost events before the frame.
     pub after_loss: u64,
     /// Number of times that the sender started or restarted. The start before the first received frame counts only if
@@ -63,6 +68,14 @@ pub struct Held {
     pub contradicted: u64,
 }
 
+impl LinkTally {
+    /// Returns whether frames seem to come from two senders in turn: the reader then follows one of them, and leaves out
+    /// the frames of the other as late.
+    pub fn has_two_senders(&self) -> bool {
+        self.late >= 16 && self.late * 8 > self.frames
+    }
+}
+
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.word(f, quoted)
@@ -84,6 +97,10 @@ impl Worded for Tally {
                 link.keyframes
             )?;
             let rare = [
+                (
+                    link.late,
+                    "frames came late, after later ones or another sender's, and were left out",
+                ),
                 (link.after_loss, "frames before which the sender lost events"),
                 (link.impossible, "frames with events that cannot be"),
                 (link.outside, "events and keyframes at addresses without a decoder"),
@@ -92,8 +109,16 @@ impl Worded for Tally {
             for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
                 writeln!(f, "{count} {what}")?;
             }
+            if link.has_two_senders() {
+                writeln!(
+                    f,
+                    "are there two senders on the line? Frames of two sessions came in turn"
+                )?;
+            }
             let (unused, scheme) = (link.unused_keyframes, spell("scheme"));
-            if unused > 0 {
+            // The fingerprint tells what these only suggest.
+            let is_other = matches!(link.withheld, Some(Withheld::Description { .. }));
+            if unused > 0 && !is_other {
                 let what = "keyframes, which this scheme does not have";
                 writeln!(f, "{unused} {what}: is {scheme} the sender's?")?;
             }
@@ -101,7 +126,7 @@ impl Worded for Tally {
                 writeln!(f, "no value is exact: {why}")?;
             }
             let Held { compared, contradicted } = link.held;
-            if contradicted > 0 {
+            if contradicted > 0 && !is_other {
                 writeln!(
                     f,
                     "{contradicted} of {compared} keyframes contradict the values before them: \
@@ -114,6 +139,10 @@ impl Worded for Tally {
         writeln!(f, "{} bytes skipped", self.skipped)?;
         if self.long_ticks > 0 {
             writeln!(f, "{} ticks kept their low 32 bits", self.long_ticks)?;
+        }
+        if self.far_rows > 0 {
+            EventsKind::FarRows { events: self.far_rows }.word_about(f, spell, None)?;
+            writeln!(f)?;
         }
         if self.is_cut {
             writeln!(f, "the end is cut within an event")?;

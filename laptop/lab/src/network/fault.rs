@@ -147,6 +147,10 @@ kinds! {
             if *has_bias { ", one of them the bias," } else { "" },
             inputs + senders
         ),
+        Spikes { layer: String, inputs: usize, most: usize } => (
+            "{layer} takes spikes of {inputs} inputs and own neurons, and with weights of 8 bits {most} at most; f32 has no \
+             such limit"
+        ),
         Size { inputs: usize, neurons: usize, most: usize } =>
             ("{inputs} inputs and {neurons} neurons, of which {most} are the most"),
         Number { number: f64 } =>
@@ -167,7 +171,8 @@ kinds! {
         SilentInside => ("neurons that never fire must be the last"),
         NoReadout => ("tinyODIN has no outputs that never fire; ReckOn has"),
         NoRoomToCompare => (
-            "the network leaves no room for comparing once a step: one neuron must be free, a row for each layer, and two"
+            "the network leaves no room for comparing once a step: neurons 254 and 255 must be free, a row for each layer, \
+             and two"
         ),
         LateOutputs => ("this chip's outputs come steps later: only tinyODIN answers step by step here"),
         NoBytes => ("a network on the controller is compiled in: there are no bytes to load"),
