@@ -24,6 +24,10 @@ const SLOWEST: f64 = 250.0;
 /// request has a control loop, a scheme whose simulated flights had keyframes keeps the time of those flights instead.
 const KEYFRAMES: f64 = 1.0;
 
+/// Reason that there is no bank, and what helps.
+const NONE: &str = "no scheme suits all channels, for the reasons on their pages; fewer channels, a larger RMSE given for \
+     each, or a recording of livelier flight may help";
+
 /// Number of items in the smallest queue of the example firmware for a flight file. All events of a sample must fit, and
 /// a keyframe of each channel.
 const QUEUE: usize = 256;
@@ -154,18 +158,11 @@ impl BankAdvice {
         if let Some(reason) = &self.unsent {
             return Err(reason.clone());
         }
-        let Some(bank) = self.banks.first() else { return Err(self.none()) };
+        let Some(bank) = self.banks.first() else { return Err(NONE.to_owned()) };
         if !self.left_out.is_empty() {
             return Err(format!("its bank would lack channels: {}", self.reasons.join("; ")));
         }
         Ok(&bank.flight)
-    }
-
-    /// Says that no scheme suits all channels, and what helps.
-    fn none(&self) -> String {
-        "no scheme suits all channels, for the reasons on their pages; fewer channels, a larger RMSE given for each, or a \
-         recording of livelier flight may help"
-            .to_owned()
     }
 
     /// Returns the name of the advised scheme, if there is one.
@@ -238,7 +235,7 @@ impl BankAdvice {
         } else if let Some(reason) = &self.unsent {
             lines.push(format!("none: {reason}"));
         } else {
-            lines.push(format!("none: {}", self.none()));
+            lines.push(format!("none: {NONE}"));
         }
         lines.extend(self.warnings.iter().map(|words| format!("! {words}")));
         if self.is_cut_short {
