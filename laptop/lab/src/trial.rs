@@ -25,6 +25,8 @@ pub struct Recording {
     pub rate: Option<f64>,
     /// Name of the channel.
     pub name: String,
+    /// Name by which the channel is found in the log again: `TOPIC.FIELD`, or `name` in a table.
+    pub source: String,
     /// Unit of the samples, if the log gives it.
     pub unit: Option<String>,
     /// Number of samples that were missing or not finite.
@@ -43,7 +45,9 @@ impl Recording {
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
         let (times, notes) = (Vec::new(), Vec::new());
-        Self { values, times, segments, rate, name, unit: None, rejected: 0, clock, notes }
+        let source = name.clone();
+        let unit = None;
+        Self { values, times, segments, rate, name, source, unit, rejected: 0, clock, notes }
     }
 
     /// Reads a recording of one channel.
@@ -79,6 +83,7 @@ impl Recording {
         let finite = |row: usize| rows[..row].iter().filter(|row| **row).count();
         let segments = segments.into_iter().map(|own| finite(own.start)..finite(own.end));
         let segments: Vec<Range<usize>> = segments.filter(|own| !own.is_empty()).collect();
+        let topic = source.origin().iter().find(|(key, _)| *key == "topic").map(|(_, topic)| topic);
         let channels = all.kept(&rows).into_iter().zip(source.names()).zip(source.units());
         channels
             .map(|((values, name), unit)| {
@@ -93,6 +98,10 @@ impl Recording {
                     segments: segments.clone(),
                     rate: clock.rate(),
                     name: name.to_owned(),
+                    source: match topic {
+                        Some(topic) => format!("{topic}.{name}"),
+                        None => name.to_owned(),
+                    },
                     unit,
                     clock: clock.clone(),
                     notes: source.notes().to_vec(),
@@ -118,6 +127,7 @@ impl Recording {
             segments: self.segments.clone(),
             rate: self.rate,
             name: self.name.clone(),
+            source: self.source.clone(),
             unit: self.unit.clone(),
             rejected: self.rejected,
             clock: self.clock.clone(),
