@@ -346,28 +346,7 @@ fn bank(
         Ok(flight) => flight,
         Err(error) => return Ok(Err(format!("makes no bank: {error}"))),
     };
-    let mut trials = Vec::new();
-    let (mut channels, mut coarser) = (Vec::new(), Vec::new());
-    for (((advice, recording), channel), held_out) in
-        heard.iter().zip(&flight.channels).zip(held_out)
-    {
-        let ready = advice.ready(request, scheme, recording)?;
-        let trial = Trial::new(scheme, &flight.asked(channel), flight.sample, ready.recording())?;
-        let errors = Errors::of(ready.recording(), &trial.decoded);
-        if ready.flown.is_none_or(|(_, flown)| !errors.are_within(flown)) {
-            coarser.push(recording.name.clone());
-        }
-        let asked = channel.asked.iter().map(|(name, value)| (name, value.clone()));
-        channels.push(BankChannel {
-            name: recording.name.clone(),
-            unit: channel.unit.clone(),
-            parameters: brief(&asked.collect::<Vec<_>>()),
-            rmse: errors.rmse,
-            held_out,
-            rmse_of_samples: Errors::of(recording, &trial.decoded).rmse,
-        });
-        trials.push(trial);
-    }
+    let Judged { trials, channels, coarser } = judged(request, scheme, heard, &flight, held_out)?;
     // Channels whose unit is unknown are among the open questions.
     let unknown = |name: &String| {
         heard.iter().any(|(own, _)| own.inertial.is_none() && own.look.name == *name)
@@ -390,6 +369,46 @@ fn bank(
         channels,
         flight,
     })))
+}
+
+/// A bank's channels as they are coded: a trial of each, its words, and the names of those that are coarser than what flew.
+struct Judged {
+    trials: Vec<Trial>,
+    channels: Vec<BankChannel>,
+    coarser: Vec<String>,
+}
+
+/// Codes each channel with a flight's settings, and compares its error with that of the settings that flew.
+fn judged(
+    request: &AdviseRequest,
+    scheme: Scheme,
+    heard: &[(&Advice, &Recording)],
+    flight: &Flight,
+    held_out: Vec<Option<f64>>,
+) -> Result<Judged> {
+    let mut trials = Vec::new();
+    let (mut channels, mut coarser) = (Vec::new(), Vec::new());
+    for (((advice, recording), channel), held_out) in
+        heard.iter().zip(&flight.channels).zip(held_out)
+    {
+        let ready = advice.ready(request, scheme, recording)?;
+        let trial = Trial::new(scheme, &flight.asked(channel), flight.sample, ready.recording())?;
+        let errors = Errors::of(ready.recording(), &trial.decoded);
+        if ready.flown.is_none_or(|(_, flown)| !errors.are_within(flown)) {
+            coarser.push(recording.name.clone());
+        }
+        let asked = channel.asked.iter().map(|(name, value)| (name, value.clone()));
+        channels.push(BankChannel {
+            name: recording.name.clone(),
+            unit: channel.unit.clone(),
+            parameters: brief(&asked.collect::<Vec<_>>()),
+            rmse: errors.rmse,
+            held_out,
+            rmse_of_samples: Errors::of(recording, &trial.decoded).rmse,
+        });
+        trials.push(trial);
+    }
+    Ok(Judged { trials, channels, coarser })
 }
 
 /// Returns the maximum number of events of a sample, over all channels.
