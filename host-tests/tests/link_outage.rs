@@ -403,7 +403,6 @@ impl<'a, P: Storable> World<'a, P> {
             if !is_last_here {
                 continue;
             }
-<<<<<<< HEAD
             while let Some(received) = self.reader.next_frame(&mut bytes) {
                 let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
                     [0, 1].map(|channel| receiver.exact(channel))
@@ -431,11 +430,6 @@ impl<'a, P: Storable> World<'a, P> {
                 if !matches!(P::RECOVERY, Recovery::Keyframe) {
                     self.check_samples(before, after);
                 }
-=======
-            let mut reader = std::mem::take(&mut self.reader);
-            while let Some(received) = reader.next_frame(&mut bytes) {
-                self.hear(&received, unsent);
->>>>>>> dbe29c6d (Tests: take in the place of replace)
             }
         }
         if let Some(second) = self.second.as_mut().filter(|_| is_last_here) {
