@@ -76,7 +76,7 @@ fn each_command_takes_a_side_of_a_data_set() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name).display().to_string();
     logs(&directory.path().join("logs"));
-    ran!("dataset {SF} --rate 200 --test 0.34 {}/?.csv -o {}", at("logs"), at("set"));
+    ran!("dataset {SF} --rate 200 --test 0.5 {}/?.csv -o {}", at("logs"), at("set"));
     for command in [
         format!("score {SF} --rate 200"),
         "info".to_owned(),

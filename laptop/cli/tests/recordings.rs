@@ -68,7 +68,7 @@ fn packets_have_the_rate_of_their_samples() {
     assert!(ran!("{advise} --rate 800 {table}").output.contains("800"));
     let tune = "tune --scheme sf --max-rmse 0.1 --evaluations 3 --emit flight";
     refused(&format!("{tune} {table}"), "", &words);
-    assert!(ran!("{tune} --rate 800 {table}").output.contains("period = 1250\n"));
+    assert!(ran!("{tune} --rate 800 {table}").output.contains("period = 1250 "));
     let (directory, _) = file("unused", "");
     let set = directory.path().join("set").display().to_string();
     ran!("dataset --scheme sf --threshold 0.1 --test 0 {table} -o {set}");
