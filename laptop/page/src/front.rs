@@ -25,7 +25,8 @@ pub(crate) fn front(choice: &Choice, evaluations: usize) -> Result<Value> {
         let tick =
             |done: usize, _: Option<&Scored>| tell(&json!({ "done": done, "total": evaluations }));
         let budget = Budget { evaluations, deadline: None, is_stopped: &|| false, tick: &tick };
-        let found = search(&problem, Method { seed: 1, free_taps: false, is_unchecked: false }, &budget);
+        let found =
+            search(&problem, Method { seed: 1, free_taps: false, is_unchecked: false }, &budget);
         let stride = found.front.len().div_ceil(MOST).max(1);
         let points = found.front.iter().step_by(stride).map(|one| {
             json!({
