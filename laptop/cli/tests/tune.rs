@@ -191,6 +191,24 @@ fn a_setting_at_the_bound_of_its_search_is_reported() {
     assert!(!given.contains("neurons 64 is at the end"), "{given}");
 }
 
+/// Nothing that is held out can show that a step which never doubles falls behind on a steeper flight: settings that double
+/// are taken where they are as good on this one.
+#[test]
+fn a_step_that_doubles_is_taken_where_it_costs_nothing() {
+    let mut seed = 1_u32;
+    let slow = (0..2000).map(|sample| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let noise = (f64::from(seed) / 4_294_967_296.0 - 0.5) * 0.07;
+        2.0 * (f64::from(sample) * 0.01).sin() + noise
+    });
+    let (_directory, path) = file("slow.csv", table(&slow.collect::<Vec<_>>()));
+    let tune = "--rate 200 --scheme asf --hold-out 0 --evaluations 200 --min-efficiency";
+    for efficiency in [70, 75, 80, 85] {
+        let found = row(&format!("{tune} {efficiency} {path}"));
+        assert!(number(&found, "/parameters/doublings") > 0.0, "{efficiency} %: {found:#}");
+    }
+}
+
 #[test]
 fn the_same_seed_gives_the_same_settings() {
     let flight = flight("hexarotor.csv");
