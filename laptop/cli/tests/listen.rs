@@ -431,7 +431,7 @@ fn a_loss_at_the_sender_is_reported() {
 fn settings_that_no_link_can_carry_are_refused() {
     let many = vec!["1"; 257].join(",");
     refused(&format!("listen --scheme sf --thresholds {many}"), "", &["1 to 256 channels"]);
-    let foreign = spikewire_bytes("listen --from es", b"Event Stream\x02\0\0\x01");
+    let foreign = spikewire_bytes("listen --from es", b"Event Stream\x02\0\0\x02");
     assert_eq!(foreign.status, 2);
     assert!(foreign.stderr.contains("generic events"), "{}", foreign.stderr);
 }

@@ -674,8 +674,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             let neurons = scheme.neurons();
             let code: CodeOf<T, N> = self.addresses.code(channel, neurons, 0.into(), events);
             known.value = scheme.decode(&mut known.state, code);
-            let fired = self.addresses.events_of(channel, neurons, events).count();
-            if self.sample.is_whole && code.firings().count() != fired {
+            let fired = number_of(self.addresses.events_of(channel, neurons, events));
+            if self.sample.is_whole && number_of(code.firings()) != fired {
                 // No encoder fires these neurons together: two banks may have the same addresses.
                 self.misfits = self.misfits.saturating_add(1);
                 known.mark_stale();
@@ -690,6 +690,11 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             on_value(channel as u16, tick, known.value);
         }
     }
+}
+
+/// The number of items. `Iterator::count` would have a check for overflow, and with it a panic.
+fn number_of(items: impl Iterator) -> usize {
+    items.fold(0, |number: usize, _| number.wrapping_add(1))
 }
 
 impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Part for Receiver<T, N, EVENTS> {
