@@ -68,6 +68,8 @@ struct World<'a, P: Scheme> {
     /// The numbers of the first frame of the session, and of the last one sent.
     first: u64,
     last: u64,
+    /// What reads every frame that is sent.
+    watch: Reader<MAX_FRAME>,
     /// Whether the reader has heard that first frame.
     is_first_heard: bool,
     now: u64,
@@ -136,6 +138,7 @@ impl<'a, P: Storable> World<'a, P> {
             remainder: 0,
             first: 0,
             last: 0,
+            watch: Reader::new(),
             is_first_heard: false,
             now: 0,
             taken: 0,
@@ -224,6 +227,7 @@ impl<'a, P: Storable> World<'a, P> {
         let bytes = first.next_frame(FromItems([beat].into_iter()), &mut frame).unwrap();
         self.first = FrameView::new(bytes.unwrap()).unwrap().0.number();
         (self.last, self.is_first_heard) = (self.first, false);
+        self.watch = Reader::new();
         self.unsent = None;
         self.claimed = [0; CHANNELS];
     }
@@ -301,7 +305,8 @@ impl<'a, P: Storable> World<'a, P> {
         let mut is_last_here = false;
         let unsent = self.unsent.take().unwrap_or(self.number);
         while let Some(mut bytes) = self.transmitter.next_frame(&mut source, &mut buffer).unwrap() {
-            self.last = FrameView::new(bytes).unwrap().0.number();
+            let mut sent = bytes;
+            self.last = self.watch.next_frame(&mut sent).unwrap().frame.number();
             is_last_here = f64::from(self.random.next_u32()) >= loss * f64::from(u32::MAX);
             if !is_last_here {
                 continue;
@@ -510,7 +515,7 @@ impl Claims {
 }
 
 fn transmitter(period: u32, session: Session, fingerprint: Fingerprint) -> Transmitter {
-    let coding = Coding::for_channels(CHANNELS as u16, period as u16);
+    let coding = Coding::for_channels(CHANNELS as u16, period);
     Transmitter::new(coding, session).with_fingerprint(fingerprint)
 }
 

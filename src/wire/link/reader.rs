@@ -1,6 +1,7 @@
 //! Reader: finds frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
 
-use super::frame::{CHECKSUM, MAGIC};
+use super::frame::{Head, MAGIC, short};
+use super::known::Known;
 use super::time::Time;
 use super::{FrameView, LinkError, MIN_FRAME, session};
 
@@ -57,6 +58,10 @@ pub struct Reader<const N: usize> {
     handed_out: usize,
     /// The sender's last sessions, the present one first.
     sessions: [Run; 4],
+    /// The frame delivered last, from which short ones go on.
+    known: Option<Known>,
+    /// Whether bytes came since then that belong to no frame.
+    is_interrupted: bool,
     /// How many late frames, or frames of earlier sessions, came in a row.
     strays: u16,
     /// The time and the checksum of the frame that was delivered last.
@@ -141,6 +146,8 @@ impl<const N: usize> Reader<N> {
             end: 0,
             handed_out: 0,
             sessions: [Run::NONE; 4],
+            known: None,
+            is_interrupted: false,
             strays: 0,
             time: Time::from_micros(0),
             checksum: 0,
@@ -167,11 +174,21 @@ impl<const N: usize> Reader<N> {
 
     fn next(&mut self, input: &mut &[u8], is_silent: bool) -> Option<Received<'_>> {
         self.start = self.start.wrapping_add(core::mem::take(&mut self.handed_out));
-        let (length, standing, checksum) = self.find(input, is_silent)?;
-        self.handed_out = length;
-        let end = self.start.wrapping_add(length).wrapping_sub(CHECKSUM);
-        let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
+        if self.start == self.end && input.is_empty() {
+            return None;
+        }
+        let (head, standing) = self.find(input, is_silent)?;
+        self.handed_out = head.length();
+        match &mut self.known {
+            Some(known) if head.is_short() => {
+                known.go_to(head.number, head.point);
+            }
+            known => *known = Some(head.known()),
+        }
+        let checksum = head.checksum;
+        let frame = FrameView::with_head(head, self.buffer.get(self.start..self.end)?);
         self.frames = self.frames.saturating_add(1);
+        self.is_interrupted = false;
 
         let next = session::next(frame.number());
         (self.time, self.checksum) = (frame.time(), checksum);
@@ -234,24 +251,29 @@ impl<const N: usize> Reader<N> {
         self.skipped
     }
 
-    /// Finds the next frame to deliver, which then begins at `start`, and returns its length, standing and checksum.
-    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(usize, Standing, u32)> {
+    /// Whether bytes came since the last frame that belong to none: a frame was damaged, or short frames wait for a full
+    /// one, which says what they leave out. Until the next frame, what a receiver calls exact may be out of date.
+    pub const fn is_interrupted(&self) -> bool {
+        self.is_interrupted
+    }
+
+    /// Finds the next frame to deliver, which then begins at `start`, and returns its head and standing.
+    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(Head, Standing)> {
         loop {
             let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
-            let frame = FrameView::new(bytes);
-            match frame {
-                Ok((frame, length)) => {
-                    let checksum = checksum_of(bytes, length);
-                    let counter = match self.standing(&frame, checksum) {
+            match Head::read(bytes, self.known.as_ref()) {
+                Ok(head) => {
+                    let frame = FrameView::with_head(head, bytes);
+                    let counter = match self.standing(&frame, head.checksum) {
                         Standing::Repeated => &mut self.repeated,
                         Standing::Late | Standing::Stray => {
                             self.strays = self.strays.saturating_add(1);
                             &mut self.late
                         }
-                        standing => return Some((length, standing, checksum)),
+                        standing => return Some((head, standing)),
                     };
                     *counter = counter.saturating_add(1);
-                    self.start = self.start.wrapping_add(length);
+                    self.start = self.start.wrapping_add(head.length());
                 }
                 Err(LinkError::Truncated { needed, .. })
                     if needed <= N && (!is_silent || bytes.is_empty()) =>
@@ -265,7 +287,10 @@ impl<const N: usize> Reader<N> {
                     if matches!(error, LinkError::Checksum { .. }) {
                         self.bad_checksums = self.bad_checksums.saturating_add(1);
                     }
-                    let next = bytes.iter().skip(1).position(|&byte| byte == MAGIC);
+                    self.is_interrupted = true;
+                    let is_known = self.known.is_some();
+                    let begins = |&byte: &u8| byte == MAGIC || is_known && short::begins_with(byte);
+                    let next = bytes.iter().skip(1).position(begins);
                     let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
                     self.start = self.start.wrapping_add(skipped);
                     self.skipped = self.skipped.saturating_add(skipped as u32);
@@ -342,10 +367,4 @@ impl<const N: usize> Reader<N> {
         self.end = used.wrapping_add(count);
         *input = rest;
     }
-}
-
-/// The checksum of a frame of this length.
-fn checksum_of(bytes: &[u8], length: usize) -> u32 {
-    let last = bytes.get(length.wrapping_sub(CHECKSUM)..length).and_then(<[u8]>::first_chunk);
-    last.map_or(0, |bytes| u32::from_le_bytes(*bytes))
 }

@@ -48,7 +48,7 @@ impl Transmitter {
     /// this session. It sends the bank's [fingerprint](Bank::fingerprint).
     pub fn for_bank<T: Schemes<N>, const N: usize>(
         bank: &Bank<T, N>,
-        period: u16,
+        period: u32,
         session: Session,
     ) -> Self {
         let coding = Coding::for_channels(bank.addresses(), period);
@@ -65,6 +65,21 @@ impl Transmitter {
     #[must_use]
     pub const fn with_fingerprint(self, fingerprint: Fingerprint) -> Self {
         Self { framer: self.framer.with_fingerprint(fingerprint), ..self }
+    }
+
+    /// Sets after how many µs a frame is full again, 2¹⁹ (0.52 s) by default: so long a receiver that joins, or that
+    /// missed more than short frames can tell, has to wait. Where a frame begins with keyframes it is full after half of
+    /// that. With 0 every frame is full.
+    #[must_use]
+    pub const fn with_full_every(self, micros: u32) -> Self {
+        Self { framer: self.framer.with_full_every(micros), ..self }
+    }
+
+    /// Sends with the first event of an address in a frame the low bits of its step number: see
+    /// [`Coding::step_bits`]. It is set before the first frame.
+    #[must_use]
+    pub const fn with_step_bits(self, step_bits: u8) -> Self {
+        Self { framer: self.framer.with_step_bits(step_bits), ..self }
     }
 
     /// Adds what both ends must have in common beside the schemes, such as names and units of the channels, to the
@@ -114,7 +129,8 @@ impl Transmitter {
         if first.is_after_break() {
             self.framer.mark_loss();
         }
-        let mut frame = self.framer.start(first.item.tick(), buffer)?;
+        let has_keyframes = matches!(first.item, Item::Keyframe(_) | Item::Heartbeat { .. });
+        let mut frame = self.framer.begin(first.item.tick(), has_keyframes, buffer)?;
         append(&mut frame, first.item)?;
         self.held = loop {
             match items.take() {

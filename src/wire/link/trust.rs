@@ -15,8 +15,6 @@ pub(super) struct Trust {
 enum Standing {
     /// Nothing has come yet.
     Unknown,
-    /// The sender has a fingerprint, which has not come yet.
-    Awaited,
     /// The fingerprint of the receiver.
     Same,
     /// Another one.
@@ -62,10 +60,10 @@ impl Trust {
         self.standing = if is_same { Standing::Same } else { Standing::Other(sender) };
     }
 
-    /// A frame has no fingerprint; the sender may have one.
-    pub(super) fn lack(&mut self, is_described: bool) {
+    /// The sender has no fingerprint.
+    pub(super) fn lack(&mut self) {
         if self.standing == Standing::Unknown {
-            self.standing = if is_described { Standing::Awaited } else { Standing::Undescribed };
+            self.standing = Standing::Undescribed;
         }
     }
 
@@ -85,7 +83,6 @@ impl Trust {
         match (self.standing, self.own) {
             (Standing::Other(sender), Some(own)) => Some(Withheld::Description { own, sender }),
             (Standing::Contradicted, _) => Some(Withheld::Contradicted),
-            (Standing::Awaited, _) => Some(Withheld::Unknown),
             _ => None,
         }
     }
