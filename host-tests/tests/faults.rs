@@ -16,9 +16,7 @@ use catalogue::{Channel, Flight, Storable};
 use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-use spikewire::link::{
-    Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter,
-};
+use spikewire::link::{Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter};
 use spikewire::out::{Batch, SerialSink};
 use spikewire::{
     Bank, ConfigError, EventQueue, Item, Overflow, Put, QueueView, Recovery, Sample, Scheme,

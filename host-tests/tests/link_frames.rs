@@ -120,7 +120,8 @@ fn errors_are_told_in_words() {
 
 #[test]
 fn a_frame_says_what_it_holds() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
     let mut buffer = [0; 64];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap();
     assert!(frame.is_empty());
@@ -136,7 +137,8 @@ fn a_frame_says_what_it_holds() {
 
 #[test]
 fn keyframes_can_be_read_as_another_type_of_the_same_width() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
     let mut buffer = [0; 64];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap();
     frame.keyframe(keyframe(0, 0, -2_i16)).unwrap();
@@ -161,7 +163,8 @@ fn a_coding_has_bits_for_its_channels() {
 
 #[test]
 fn a_frame_is_full_where_its_buffer_or_its_length_ends() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
     // The count and type of keyframes, an address, two bytes of a value.
     for (room, fits) in [(5, Err(LinkError::Full)), (6, Ok(()))] {
         let mut buffer = [0; MIN_FRAME + 6];
@@ -179,7 +182,8 @@ fn a_frame_is_full_where_its_buffer_or_its_length_ends() {
 
 /// A frame whose events are these bytes.
 fn with_events(bytes: &[u8]) -> Vec<u8> {
-    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
     let mut buffer = [0; MIN_FRAME];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap().finish().to_vec();
     frame.truncate(MIN_FRAME - 4);
@@ -213,7 +217,8 @@ fn bits_that_code_no_event_are_told_from_the_end() {
 #[test]
 fn events_may_be_earlier_than_their_frame() {
     const MOST: u32 = 1 << 29;
-    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
     let mut buffer = [0; 64];
     let mut frame = framer.start(5_000.into(), &mut buffer).unwrap();
     frame.event(event(4_001, 0, true)).unwrap();
@@ -234,7 +239,8 @@ fn events_may_be_earlier_than_their_frame() {
 
 #[test]
 fn every_error_says_what_is_wrong() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION)).with_full_every(0);
     assert_eq!(framer.start(0.into(), &mut [0; MIN_FRAME - 1]).err(), Some(LinkError::Full));
     let mut buffer = [0; MIN_FRAME];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap();
@@ -513,7 +519,8 @@ fn a_reboot_shows_whatever_is_lost() {
 /// The next frame by its number alone, of 16 bits of which 65 536 lost frames leave none.
 #[test]
 fn an_outage_of_65536_frames_is_a_gap() {
-    let mut framer = Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1), Session::counted(SESSION)).with_full_every(0);
     let mut reader = Reader::<MIN_FRAME>::new();
     for number in 0..200_000_u32 {
         let mut buffer = [0; MIN_FRAME];
@@ -635,7 +642,8 @@ fn the_time_of_a_sender_goes_on() {
 fn a_frame_that_lasts_minutes_is_no_silence() {
     const LONGEST: u32 = 1 << 29;
     const MOST: u32 = 1 << 30;
-    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::random(9)).with_full_every(0);
+    let mut framer =
+        Framer::new(Coding::for_channels(1, 1_000), Session::random(9)).with_full_every(0);
     let mut buffer = [0; 64];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap();
     frame.event(event(LONGEST, 0, true)).unwrap();

@@ -12,7 +12,7 @@ use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::link::{
-    CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Reader, Receiver, Session, Transmitter,
+    CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter,
 };
 use spikewire::{
     Bank, ConfigError, Fingerprint, FromItems, Item, Put, Recovery, Sample, Scheme, Tick,
@@ -311,30 +311,15 @@ impl<'a, P: Storable> World<'a, P> {
             if !is_last_here {
                 continue;
             }
-            while let Some(received) = self.reader.next_frame(&mut bytes) {
-                let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
-                    [0, 1].map(|channel| receiver.exact(channel))
-                };
-                let before = if received.is_after_break() {
-                    self.claimed = [unsent; CHANNELS];
-                    [None; CHANNELS]
-                } else {
-                    exact(&self.receiver)
-                };
-                self.is_first_heard |= received.is_start && received.frame.is_first();
-                let misfits = self.receiver.misfits();
-                let values = &mut self.values;
-                values.clear();
-                let on_value = |channel, tick, value| values.push((channel, tick, value));
-                self.receiver.apply(&received, on_value);
-                let after = exact(&self.receiver);
-                // After a misfit within a long frame, a code may be exact again before the frame ends.
-                let before =
-                    if self.receiver.misfits() == misfits { before } else { [None; CHANNELS] };
-                if !matches!(P::RECOVERY, Recovery::Keyframe) {
-                    self.check_samples(before, after);
-                }
+            let mut reader = std::mem::replace(&mut self.reader, Reader::new());
+            while let Some(received) = reader.next_frame(&mut bytes) {
+                self.hear(&received, unsent);
             }
+            // What cannot be read may look like the beginning of a frame.
+            while let Some(received) = reader.next_after_silence() {
+                self.hear(&received, unsent);
+            }
+            self.reader = reader;
         }
         if is_last_here && matches!(P::RECOVERY, Recovery::Keyframe) {
             let Some(truth) = self.truth.back() else { return };
@@ -343,6 +328,31 @@ impl<'a, P: Storable> World<'a, P> {
                     self.claims.add(value, truth.values[channel]);
                 }
             }
+        }
+    }
+
+    /// The receiver gets a frame with samples from the first unsent one on.
+    fn hear(&mut self, received: &Received<'_>, unsent: u64) {
+        let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
+            [0, 1].map(|channel| receiver.exact(channel))
+        };
+        let before = if received.is_after_break() {
+            self.claimed = [unsent; CHANNELS];
+            [None; CHANNELS]
+        } else {
+            exact(&self.receiver)
+        };
+        self.is_first_heard |= received.is_start && received.frame.is_first();
+        let misfits = self.receiver.misfits();
+        let values = &mut self.values;
+        values.clear();
+        let on_value = |channel, tick, value| values.push((channel, tick, value));
+        self.receiver.apply(received, on_value);
+        let after = exact(&self.receiver);
+        // After a misfit within a long frame, a code may be exact again before the frame ends.
+        let before = if self.receiver.misfits() == misfits { before } else { [None; CHANNELS] };
+        if !matches!(P::RECOVERY, Recovery::Keyframe) {
+            self.check_samples(before, after);
         }
     }
 
@@ -453,8 +463,9 @@ impl<'a, P: Storable> World<'a, P> {
 
     /// The link is whole again for as long as the code needs: then all is known.
     fn whole(&mut self) {
-        // A sender whose first frame was lost tells its fingerprint with every fourth frame at the latest.
-        let samples = 6 * self.beat + self.beside.recovery() + 5;
+        // After a longer outage a receiver waits for a full frame.
+        let full = (1 << 19) / self.period + self.beat;
+        let samples = full + 6 * self.beat + self.beside.recovery() + 5;
         let from = self.truth.len();
         let is_attack = std::mem::take(&mut self.is_attack);
         for sample in 1..=samples {
@@ -516,7 +527,7 @@ impl Claims {
 
 fn transmitter(period: u32, session: Session, fingerprint: Fingerprint) -> Transmitter {
     let coding = Coding::for_channels(CHANNELS as u16, period);
-    Transmitter::new(coding, session).with_fingerprint(fingerprint)
+    Transmitter::new(coding, session).with_fingerprint(fingerprint).with_step_bits(4)
 }
 
 fn bank<'a, P>(scheme: &'a P, start: &[u8], slot_ticks: u32) -> Bank<&'a P, CHANNELS>

@@ -50,8 +50,7 @@ where
     let queue = EventQueue::<256>::new(Overflow::Refuse);
     let mut consumer = queue.consumer().unwrap();
     let mut bank = Bank::<_, CHANNELS>::new(scheme).with_slot_ticks(way.slot_ticks);
-    let mut transmitter =
-        Transmitter::new(Coding::for_channels(8, PERIOD), Session::counted(1));
+    let mut transmitter = Transmitter::new(Coding::for_channels(8, PERIOD), Session::counted(1));
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, CHANNELS, EVENTS>::new(scheme);
     if way.slot_ticks > 0 {
@@ -532,8 +531,7 @@ fn fly<P: Start<Sample = f32>>(
             if let (Some(end), Some(exact)) = (last, receiver.exact(0)) {
                 assert_eq!(end.1, exact);
                 // Where the clock steps, a sample without events is told of where it was due.
-                let is_near =
-                    |tick: Tick| tick.since(end.0).unsigned_abs() <= LATE_PERIOD / 2;
+                let is_near = |tick: Tick| tick.since(end.0).unsigned_abs() <= LATE_PERIOD / 2;
                 let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == end.1);
                 heard.right += usize::from(is_right);
                 heard.wrong += usize::from(!is_right);

@@ -90,6 +90,26 @@ impl Head {
         }
     }
 
+    /// An empty frame after a loss, in the place of one that cannot be read.
+    #[cold]
+    pub(super) fn unread(known: &Known) -> Self {
+        Self {
+            is_short: true,
+            flags: flag::LOST,
+            number: known.number,
+            point: known.point,
+            time: known.point.time,
+            coding: known.coding,
+            fingerprint: known.fingerprint,
+            kind: None,
+            keyframes_at: 0,
+            bits_at: 0,
+            time_bits: 0,
+            end: 0,
+            checksum: 0,
+        }
+    }
+
     pub(super) fn length(&self) -> usize {
         usize::from(self.end).wrapping_add(CHECKSUM)
     }
@@ -109,19 +129,39 @@ impl Head {
         verify(Register::START.after(body), checksum)?;
         let (header, payload) = body.split_first_chunk::<HEADER>().ok_or(LinkError::Header)?;
         let &[
-            _, flags, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, p2, code, step, c0,
-            c1, j0, j1, _,
+            _,
+            flags,
+            n0,
+            n1,
+            n2,
+            n3,
+            n4,
+            n5,
+            t0,
+            t1,
+            t2,
+            t3,
+            t4,
+            t5,
+            p0,
+            p1,
+            p2,
+            code,
+            step,
+            c0,
+            c1,
+            j0,
+            j1,
+            _,
         ] = header;
         let period = NonZeroU32::new(u32::from_le_bytes([p0, p1, p2, 0]));
-        let coding =
-            Coding::from_bytes(period.ok_or(LinkError::Header)?, code, step).ok_or(LinkError::Header)?;
+        let coding = Coding::from_bytes(period.ok_or(LinkError::Header)?, code, step)
+            .ok_or(LinkError::Header)?;
         let count = u32::from(u16::from_le_bytes([c0, c1]));
         let jitter = i64::from(i16::from_le_bytes([j0, j1]));
         let time = Time::from_micros(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, 0, 0]));
-        let point = Point {
-            time: time.before(jitter.cast_unsigned()),
-            count: count & coding.grid_mask(),
-        };
+        let point =
+            Point { time: time.before(jitter.cast_unsigned()), count: count & coding.grid_mask() };
         let (fingerprint, rest) = split_fingerprint(flags, payload).ok_or(LinkError::Header)?;
         let keyframes = Keyframes::read(flags & flag::KEYFRAMES != 0, coding, rest)?;
         let rest_at = body.len().wrapping_sub(rest.len());

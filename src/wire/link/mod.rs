@@ -37,7 +37,7 @@
 //! point of 16 bits with 0 to 16 fraction bits; 18 to 50 are fixed point of 32 bits with 0 to 32 fraction bits; 255 has no
 //! bits, for heartbeats.
 //!
-//! **Full frames** are the first of a session, each with the flag *lost*, and one that comes 2¹⁹ µs (0.52 s) or more after
+//! **Full frames** are the first four of a session, each with the flag *lost*, and one that comes 2¹⁹ µs (0.52 s) or more after
 //! the last full one; half of that if it begins with keyframes or heartbeats. A sender with a fingerprint has it in every
 //! full frame. A frame is full, too, if its point lies more than half of all counts after that of the frame before, or more
 //! than an eighth before it, and if the bits of its time are 32 or more.

@@ -22,6 +22,10 @@ pub struct Received<'a> {
     /// Whether it is the first frame of the sender's session that arrived, also after 2²⁴ lost frames or more; or one of
     /// whose number or time the session's earlier frames say that it is used again.
     pub is_start: bool,
+    /// Whether this stands for bytes of which no frame can be read: a short frame that is damaged, or that goes on from
+    /// one that is missing for too long. Its frame is empty, and has the number and time of the one before. It comes once
+    /// until the next frame, so that no value is called exact meanwhile.
+    pub is_unread: bool,
     /// The frame.
     pub frame: FrameView<'a>,
 }
@@ -60,8 +64,9 @@ pub struct Reader<const N: usize> {
     sessions: [Run; 4],
     /// The frame delivered last, from which short ones go on.
     known: Option<Known>,
-    /// Whether bytes came since then that belong to no frame.
+    /// Whether bytes came since then that belong to no frame, and whether the receiver heard of it.
     is_interrupted: bool,
+    has_told: bool,
     /// How many late frames, or frames of earlier sessions, came in a row.
     strays: u16,
     /// The time and the checksum of the frame that was delivered last.
@@ -128,6 +133,8 @@ enum Standing {
     Late,
     /// A frame of an earlier session.
     Stray,
+    /// No frame can be read.
+    Unread,
 }
 
 impl<const N: usize> Default for Reader<N> {
@@ -148,6 +155,7 @@ impl<const N: usize> Reader<N> {
             sessions: [Run::NONE; 4],
             known: None,
             is_interrupted: false,
+            has_told: false,
             strays: 0,
             time: Time::from_micros(0),
             checksum: 0,
@@ -178,6 +186,10 @@ impl<const N: usize> Reader<N> {
             return None;
         }
         let (head, standing) = self.find(input, is_silent)?;
+        if standing == Standing::Unread {
+            let frame = FrameView::with_head(head, &[]);
+            return Some(Received { gap: None, is_start: false, is_unread: true, frame });
+        }
         self.handed_out = head.length();
         match &mut self.known {
             Some(known) if head.is_short() => {
@@ -188,7 +200,7 @@ impl<const N: usize> Reader<N> {
         let checksum = head.checksum;
         let frame = FrameView::with_head(head, self.buffer.get(self.start..self.end)?);
         self.frames = self.frames.saturating_add(1);
-        self.is_interrupted = false;
+        (self.is_interrupted, self.has_told) = (false, false);
 
         let next = session::next(frame.number());
         (self.time, self.checksum) = (frame.time(), checksum);
@@ -216,7 +228,7 @@ impl<const N: usize> Reader<N> {
         let lost_frames = if let Standing::After(lost) = standing { lost } else { 0 };
         self.lost_frames = self.lost_frames.saturating_add(lost_frames);
         let gap = (lost_frames > 0).then_some(Gap { lost_frames });
-        Some(Received { gap, is_start, frame })
+        Some(Received { gap, is_start, is_unread: false, frame })
     }
 
     /// Number of frames that arrived whole.
@@ -252,7 +264,7 @@ impl<const N: usize> Reader<N> {
     }
 
     /// Whether bytes came since the last frame that belong to none: a frame was damaged, or short frames wait for a full
-    /// one, which says what they leave out. Until the next frame, what a receiver calls exact may be out of date.
+    /// one, which says what they leave out.
     pub const fn is_interrupted(&self) -> bool {
         self.is_interrupted
     }
@@ -288,12 +300,20 @@ impl<const N: usize> Reader<N> {
                         self.bad_checksums = self.bad_checksums.saturating_add(1);
                     }
                     self.is_interrupted = true;
+                    let is_short = bytes.first().is_some_and(|&first| short::begins_with(first));
                     let is_known = self.known.is_some();
                     let begins = |&byte: &u8| byte == MAGIC || is_known && short::begins_with(byte);
                     let next = bytes.iter().skip(1).position(begins);
                     let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
                     self.start = self.start.wrapping_add(skipped);
                     self.skipped = self.skipped.saturating_add(skipped as u32);
+                    if let Some(known) = &self.known
+                        && is_short
+                        && !self.has_told
+                    {
+                        self.has_told = true;
+                        return Some((Head::unread(known), Standing::Unread));
+                    }
                 }
             }
         }

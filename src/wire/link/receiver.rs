@@ -497,11 +497,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// Takes an event of a code that takes each event by itself.
     #[inline]
-    fn step_event(
-        &mut self,
-        event: Event,
-        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
-    ) {
+    fn step_event(&mut self, event: Event, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
         let address = usize::from(event.address.wrapping_sub(self.addresses.first));
         let neurons = self.neurons();
         let channel = address / neurons;

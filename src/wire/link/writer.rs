@@ -142,11 +142,16 @@ pub struct Framer {
     /// The tick of the last full frame.
     full_at: Tick,
     full_every: u32,
+    /// How many further frames are full, as the first of a session may be lost.
+    full_ahead: u8,
     steps: Steps,
 }
 
 /// A frame is full that comes this many µs (0.52 s) after the last full one, or later.
 const FULL_EVERY: u32 = 1 << 19;
+
+/// So many frames are full at the beginning of a session.
+const FULL_FIRST: u8 = 4;
 
 impl Framer {
     /// A framer before the first frame of this session.
@@ -162,6 +167,7 @@ impl Framer {
             known: Known::nothing(coding),
             full_at: Tick::from_micros(0),
             full_every: FULL_EVERY,
+            full_ahead: FULL_FIRST,
             steps: Steps::ZERO,
         }
     }
@@ -286,7 +292,10 @@ impl Framer {
         let point = before.later(steps, self.coding);
         let since_full = i64::from(tick.since(self.full_at));
         let every = if has_keyframes { self.full_every / 2 } else { self.full_every };
-        let is_due = self.flags & flag::LOST != 0 || every == 0 || since_full >= i64::from(every);
+        let is_due = self.full_ahead > 0
+            || self.flags & flag::LOST != 0
+            || every == 0
+            || since_full >= i64::from(every);
         if !is_due && self.known.can_tell(steps) {
             let time = ShortTime { count: point.count, jitter };
             let mut lead = Word::default();
@@ -321,8 +330,8 @@ impl Framer {
         let [j0, j1] = jitter.unwrap_or(0).to_le_bytes();
         bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
         let _ = bytes.put(&[
-            MAGIC, 0, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, p2, code, step, c0, c1,
-            j0, j1, 0,
+            MAGIC, 0, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, p2, code, step, c0,
+            c1, j0, j1, 0,
         ]);
         let mut flags = self.flags;
         if let Some(fingerprint) = self.fingerprint {
@@ -524,7 +533,8 @@ impl<'a> FrameWriter<'_, 'a> {
         }
         let (from, register) = if *is_short {
             let length = bytes.written().saturating_sub(short::HEADER) as u8;
-            let first = if self.keyframes > 0 { short::MAGIC | short::KEYFRAMES } else { short::MAGIC };
+            let first =
+                if self.keyframes > 0 { short::MAGIC | short::KEYFRAMES } else { short::MAGIC };
             let from = if length > short::LENGTH {
                 bytes.replace(0, first | short::LENGTH);
                 bytes.replace(1, length);
@@ -540,8 +550,8 @@ impl<'a> FrameWriter<'_, 'a> {
             bytes.replace(FLAGS_AT, VERSION << 4 | self.flags);
             bytes.replace(LENGTH_AT, bytes.written().saturating_sub(HEADER) as u8);
             framer.full_at = self.tick;
-            framer.known =
-                Known::new(framer.coding, framer.fingerprint, framer.number, self.point);
+            framer.full_ahead = framer.full_ahead.saturating_sub(1);
+            framer.known = Known::new(framer.coding, framer.fingerprint, framer.number, self.point);
             (0, Register::START)
         };
         let checksum = register.after(bytes.slice_from(from)).checksum();
