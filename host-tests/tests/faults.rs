@@ -682,6 +682,10 @@ impl<'a, P: Storable> World<'a, P> {
                 }
                 continue;
             };
+            if received.is_unread {
+                self.receiver.apply(&received, |_, _, _| ());
+                continue;
+            }
             let session = self.check_frame(&received);
             let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
                 [0, 1].map(|channel| receiver.exact(channel))

@@ -1,7 +1,7 @@
 //! Short frames: a writer and a reader written from the specification alone give and take the same bytes, with frames
 //! lost between; and step codes that heal after any loss that their step numbers tell apart.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 
 use proptest::prelude::*;
 use spikewire::link::{
@@ -731,5 +731,58 @@ fn slow_senders_have_a_period() {
             assert_eq!(received.frame.period().get(), expected);
             assert_eq!(received.frame.tick(), tick);
         }
+    }
+}
+
+/// Events wait for others as long as they may, in their queue; keyframes and losses take them along at once.
+#[test]
+fn events_gather_in_a_frame() {
+    let send = |gathering: u32| {
+        let coding = Coding::for_channels(2, 1_000);
+        let mut link = Transmitter::new(coding, Session::counted(1)).with_gathering(gathering);
+        let (mut reader, mut items) = (Reader::<MAX_FRAME>::new(), VecDeque::new());
+        let (mut frames, mut bytes, mut latest, mut events) = (0, 0, 0, 0);
+        for number in 0..1_000_u32 {
+            let now = Tick::from(number * 1_000);
+            items.push_back(Item::from(Event { tick: now, address: 1, polarity: Polarity::Up }));
+            let mut buffer = [0; MAX_FRAME];
+            loop {
+                link.observe(now);
+                let source = FromItems(std::iter::from_fn(|| items.pop_front()));
+                let Some(mut frame) = link.next_frame(source, &mut buffer).unwrap() else { break };
+                frames += 1;
+                bytes += frame.len();
+                let received = reader.next_frame(&mut frame).unwrap();
+                latest = latest.max(now.since(received.frame.tick()));
+                events += received.frame.events().count();
+            }
+        }
+        (frames, bytes, latest, events)
+    };
+    assert_eq!(send(0), (1_000, 9_120, 0, 1_000));
+    assert_eq!(send(20_000), (47, 1_310, 20_000, 987));
+}
+
+#[test]
+fn what_must_not_wait_does_not() {
+    let coding = Coding::for_channels(2, 1_000);
+    let tick = Tick::from(5_000);
+    let event = Item::from(Event { tick, address: 1, polarity: Polarity::Up });
+    let after_loss = Taken { lost: 1, item: event };
+    for (first, waits) in [
+        (Taken::whole(event), true),
+        (after_loss, false),
+        (Keyframe::new(tick, 1, 0_i16).into(), false),
+        (Item::Break(tick).into(), false),
+    ] {
+        let mut link = Transmitter::new(coding, Session::counted(1)).with_gathering(10_000);
+        link.observe(tick);
+        let mut buffer = [0; MAX_FRAME];
+        let mut next = |items: Option<Taken>, now: u32| {
+            link.observe(Tick::from(now));
+            link.next_frame(FromItems(items.into_iter()), &mut buffer).unwrap().is_some()
+        };
+        assert_eq!(next(Some(first), 14_999), !waits);
+        assert_eq!(next(None, 15_000), waits);
     }
 }

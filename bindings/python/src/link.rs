@@ -179,7 +179,7 @@ impl Build<'_> {
             bail!("{slots} sub-timesteps do not fit into {period} µs");
         }
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
-        let coding = Coding::for_channels((CHANNELS * neurons) as u16, *period);
+        let coding = Coding::for_channels((CHANNELS * neurons) as u16, (*period).into());
         let one = sample.one();
         let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
         let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;

@@ -240,6 +240,10 @@ where
         let mut input = &stream[..];
         while let Some(received) = reader.next_frame(&mut input) {
             let number = received.frame.number();
+            if received.is_unread {
+                receiver.apply(&received, |_, _, _| ());
+                continue;
+            }
             let (session, held) = *sent.get(&number).expect("no frame is invented");
             let gap = received.gap.map_or(0, |gap| u64::from(gap.lost_frames));
             if !received.is_start {
@@ -316,6 +320,9 @@ fn read<const N: usize>(input: &[u8], cut: usize) -> (Vec<Vec<u8>>, [u32; 6]) {
     let mut frames = Vec::new();
     for mut piece in input.chunks(cut) {
         while let Some(received) = reader.next_frame(&mut piece) {
+            if received.is_unread {
+                continue;
+            }
             let frame = &received.frame;
             let told = (
                 frame.number(),

@@ -41,6 +41,10 @@ pub struct Transmitter {
     framer: Framer,
     /// An item that was taken from the source and is in no frame yet.
     held: Option<Taken>,
+    /// For how many µs an event may wait for others.
+    gathering: u32,
+    /// The last time that it was told.
+    now: Tick,
 }
 
 impl Transmitter {
@@ -58,7 +62,8 @@ impl Transmitter {
     /// A transmitter before the first frame of this session, without a fingerprint: a receiver cannot tell whether it has
     /// the sender's schemes, except by keyframes that contradict it.
     pub const fn new(coding: Coding, session: Session) -> Self {
-        Self { framer: Framer::new(coding, session), held: None }
+        let now = Tick::from_micros(0);
+        Self { framer: Framer::new(coding, session), held: None, gathering: 0, now }
     }
 
     /// Sends this fingerprint: that of the bank, or of several banks on one link, each [and](Fingerprint::and) the next.
@@ -82,6 +87,25 @@ impl Transmitter {
         Self { framer: self.framer.with_step_bits(step_bits), ..self }
     }
 
+    /// Lets events wait for others up to so many µs, so that one frame has what several would have: each frame less saves
+    /// 8 bytes or so, and values at the far end are up to so much later. By default events go at once.
+    ///
+    /// [`next_frame`](Self::next_frame) returns `None` while they wait, and they stay in their queue, which must have room
+    /// for them. How long they have waited is known by [`observe`](Self::observe) alone, which must be called at each
+    /// turn. A keyframe or a break does not wait, but for the events before it.
+    #[must_use]
+    pub const fn with_gathering(self, micros: u32) -> Self {
+        Self { gathering: micros, ..self }
+    }
+
+    /// Whether this item, the next one, waits for others.
+    #[inline]
+    fn gathers(&self, first: Taken) -> bool {
+        let Item::Event(event) = first.item else { return false };
+        let waited = i64::from(self.now.since(event.tick));
+        self.gathering > 0 && first.lost == 0 && waited < i64::from(self.gathering)
+    }
+
     /// Adds what both ends must have in common beside the schemes, such as names and units of the channels, to the
     /// [fingerprint](Fingerprint::labelled). Without a fingerprint it does nothing.
     #[must_use]
@@ -96,6 +120,7 @@ impl Transmitter {
     /// (17.9 minutes): call it at each turn of the main loop, for example. A [heartbeat](Item::Heartbeat) a second
     /// does as well.
     pub fn observe(&mut self, now: Tick) {
+        self.now = now;
         self.framer.observe(now);
     }
 
@@ -126,6 +151,9 @@ impl Transmitter {
     ) -> Result<Option<&'a [u8]>, LinkError> {
         let Some(first) = self.held.take().or_else(|| items.take()) else { return Ok(None) };
         self.held = Some(first);
+        if self.gathers(first) {
+            return Ok(None);
+        }
         if first.is_after_break() {
             self.framer.mark_loss();
         }
