@@ -5,11 +5,12 @@ use std::collections::{HashMap, VecDeque};
 
 use proptest::prelude::*;
 use spikewire::link::{
-    Coding, FrameView, Framer, LinkError, MAX_FRAME, Reader, Receiver, Session, Transmitter,
+    Coding, FrameView, Framer, LinkError, MAX_FRAME, Reader, Received, Receiver, Session,
+    Transmitter,
 };
 use spikewire::temporal::{SendOnDelta, StepForward};
 use spikewire::{
-    Code, Event, Fingerprint, FromItems, Item, Keyframe, NeuronSpike, Polarity, Sample, Scheme,
+    Code, Event, Fingerprint, FromItems, Item, Keyframe, NeuronSpike, Polarity, Sample, Scheme, Taken,
     Tick,
 };
 
@@ -486,23 +487,43 @@ proptest! {
             if let Some((_, expected)) = &expected {
                 prop_assert_eq!(expected, &meant);
             }
-            let mut bytes = bytes;
-            let received = reader.next_frame(&mut bytes);
-            prop_assert!(bytes.is_empty());
-            let received = received.filter(|received| !received.is_unread);
-            prop_assert_eq!(received.is_some(), expected.is_some());
-            if let (Some(received), Some((number, meant))) = (received, expected) {
-                let frame = received.frame;
-                prop_assert_eq!((frame.number(), frame.micros()), (number, meant.time));
-                let keyframes = frame.keyframes().map(Item::Keyframe);
-                let read: Vec<Item> = keyframes.chain(frame.events().map(Item::Event)).collect();
-                let sent: Vec<Item> =
-                    items(&meant).into_iter().filter(|item| !matches!(item, Item::Break(_))).collect();
-                prop_assert_eq!(read, sent);
-                prop_assert_eq!(frame.is_after_loss(), meant.is_lost);
+            let (mut bytes, mut read) = (bytes, Vec::new());
+            while let Some(received) = reader.next_frame(&mut bytes) {
+                read.extend(heard(&received));
             }
+            // What cannot be read may look like the beginning of a longer frame.
+            while let Some(received) = reader.next_after_silence() {
+                read.extend(heard(&received));
+            }
+            let expected = expected.map(|(number, meant)| Heard {
+                number,
+                time: meant.time,
+                is_lost: meant.is_lost,
+                items: items(&meant).into_iter().filter(|item| !matches!(item, Item::Break(_))).collect(),
+            });
+            prop_assert_eq!(read, Vec::from_iter(expected));
         }
     }
+}
+
+/// A frame as the crate reads it.
+#[derive(Debug, PartialEq)]
+struct Heard {
+    number: u64,
+    time: u64,
+    is_lost: bool,
+    items: Vec<Item>,
+}
+
+fn heard(received: &Received<'_>) -> Option<Heard> {
+    let frame = received.frame;
+    let keyframes = frame.keyframes().map(Item::Keyframe);
+    (!received.is_unread).then(|| Heard {
+        number: frame.number(),
+        time: frame.micros(),
+        is_lost: frame.is_after_loss(),
+        items: keyframes.chain(frame.events().map(Item::Event)).collect(),
+    })
 }
 
 /// A line with one sender, whose frames are lost on demand.
@@ -759,7 +780,7 @@ fn events_gather_in_a_frame() {
         }
         (frames, bytes, latest, events)
     };
-    assert_eq!(send(0), (1_000, 9_120, 0, 1_000));
+    assert_eq!(send(0), (1_000, 9_100, 0, 1_000));
     assert_eq!(send(20_000), (47, 1_310, 20_000, 987));
 }
 
