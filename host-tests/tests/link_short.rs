@@ -781,7 +781,7 @@ fn events_gather_in_a_frame() {
         (frames, bytes, latest, events)
     };
     assert_eq!(send(0), (1_000, 9_100, 0, 1_000));
-    assert_eq!(send(20_000), (47, 1_310, 20_000, 987));
+    assert_eq!(send(20_000), (47, 1_369, 20_000, 987));
 }
 
 #[test]
