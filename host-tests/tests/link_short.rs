@@ -10,8 +10,8 @@ use spikewire::link::{
 };
 use spikewire::temporal::{SendOnDelta, StepForward};
 use spikewire::{
-    Code, Event, Fingerprint, FromItems, Item, Keyframe, NeuronSpike, Polarity, Sample, Scheme, Taken,
-    Tick,
+    Code, Event, Fingerprint, FromItems, Item, Keyframe, NeuronSpike, Polarity, Sample, Scheme,
+    Taken, Tick,
 };
 
 const NUMBERS: u64 = 1 << 48;

@@ -9,6 +9,7 @@ mod heapless;
 mod interleaving;
 mod link_description;
 mod link_drift;
+mod link_ends;
 mod link_frames;
 mod link_loss;
 mod link_outage;

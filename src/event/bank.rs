@@ -5,6 +5,8 @@ use core::fmt;
 use super::address::addressed;
 use super::schemes::{CodeOf, EncoderStateOf, SampleOf, States};
 use super::{Event, Item, Keyframe, Put, Schemes, Tick};
+#[cfg(feature = "link")]
+use crate::Recovery;
 use crate::num::{Bands, Quiet};
 use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Output, Sample, Scheme, Start};
 
@@ -92,7 +94,8 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
     }
 
     addressed! {
-        /// Sets the first address, 0 by default, so that several banks can share a queue.
+        /// Sets the first address, 0 by default, so that several banks can share a queue. Banks that share a link are
+        /// joined by `Transmitter::for_banks`, which sets it.
         first_address;
         /// Sets the length of a sub-timestep in microseconds. By default it is 0: all events of a sample have its tick.
         slot_ticks;
@@ -268,11 +271,35 @@ impl<T: Schemes<N>, const N: usize> Bank<T, N> {
         self.quiet = Bands::NONE;
     }
 
-    /// How many addresses the channels take, up to 65 535.
+    /// How many addresses the channels take.
     #[cfg(feature = "link")]
-    pub(crate) fn addresses(&self) -> u16 {
-        let neurons = T::each(&self.channels).map(|(scheme, _)| scheme.neurons());
-        u16::try_from(neurons.sum::<usize>()).unwrap_or(u16::MAX)
+    pub(crate) fn addresses(&self) -> usize {
+        T::each(&self.channels).map(|(scheme, _)| scheme.neurons()).fold(0, usize::saturating_add)
+    }
+
+    #[cfg(feature = "link")]
+    pub(crate) fn first_address(&self) -> u16 {
+        self.first_address
+    }
+
+    #[cfg(feature = "link")]
+    pub(crate) fn set_first_address(&mut self, first_address: u16) {
+        self.first_address = first_address;
+    }
+
+    /// Checks that a bank may be sampled every `period` µs: that its filters are made for this rate, and that a sample's
+    /// sub-timesteps, where they matter, are over when the next is taken.
+    #[cfg(feature = "link")]
+    pub(crate) fn check_period(&self, period: u32) -> Result<(), ConfigError> {
+        let period = period.max(1);
+        for (scheme, _) in T::each(&self.channels) {
+            scheme.check_period(period)?;
+            if CodeOf::<T, N>::SLOTS > 1 && T::Scheme::RECOVERY != Recovery::Keyframe {
+                let length = scheme.slots() as f64 * f64::from(self.slot_ticks);
+                crate::error::within("time of all sub-timesteps", length, 0.0, period as f32)?;
+            }
+        }
+        Ok(())
     }
 
     /// The fingerprint of the channels' schemes, the sample type, the addresses and the sub-timesteps, for

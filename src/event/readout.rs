@@ -42,6 +42,22 @@ pub(crate) struct Addresses {
 }
 
 impl Addresses {
+    /// The first address of a channel of this many neurons.
+    fn first_of(self, channel: usize, neurons: usize) -> u16 {
+        self.first.wrapping_add(channel.wrapping_mul(neurons) as u16)
+    }
+
+    /// The events of a channel of this many neurons.
+    pub(crate) fn events_of(
+        self,
+        channel: usize,
+        neurons: usize,
+        events: &[Event],
+    ) -> impl Iterator<Item = &Event> {
+        let first = self.first_of(channel, neurons);
+        events.iter().filter(move |event| usize::from(event.address.wrapping_sub(first)) < neurons)
+    }
+
     /// The code of a channel of this many neurons, from the events of a sample at this tick.
     pub(crate) fn code<C: Code>(
         self,
@@ -50,12 +66,8 @@ impl Addresses {
         tick: Tick,
         events: &[Event],
     ) -> C {
-        let first = self.first.wrapping_add(channel.wrapping_mul(neurons) as u16);
-        // A code leaves out the neurons that it does not have.
-        let is_ours = |event: &Event| {
-            neurons == C::NEURONS || usize::from(event.address.wrapping_sub(first)) < neurons
-        };
-        C::assemble(events.iter().filter(|event| is_ours(event)).filter_map(|event| {
+        let first = self.first_of(channel, neurons);
+        C::assemble(self.events_of(channel, neurons, events).filter_map(|event| {
             let since = event.tick.since(tick).max(0) as u32;
             let slot = since.checked_div(self.slot_ticks).unwrap_or(0);
             Some(NeuronSpike {

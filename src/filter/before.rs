@@ -1,8 +1,9 @@
 //! A filter and the scheme that encodes what it lets through.
 
 use super::Filter;
+use crate::error::within;
 use crate::num::Arithmetic;
-use crate::{Destination, Fingerprint, Recovery, Scheme, Start};
+use crate::{ConfigError, Destination, Fingerprint, Recovery, Scheme, Start};
 
 /// A filter before a scheme: a [`Scheme`] that encodes the filtered samples. Its decoder is the scheme's own. A link's
 /// receiver takes the same constant as its sender all the same, since the filter is part of the
@@ -174,6 +175,15 @@ impl<F: Filter, P: Scheme<Sample = F::Sample>> Scheme for Filtered<F, P> {
 
     fn holds_keyframes(&self) -> bool {
         self.scheme.holds_keyframes()
+    }
+
+    /// The rate of the filter may differ from that of the samples by a twentieth, as a sensor's from its data sheet.
+    fn check_period(&self, period: u32) -> Result<(), ConfigError> {
+        if let Some(rate) = self.filter.rate() {
+            let sampled = 1_000_000.0 / period.max(1) as f32;
+            within("rate of the filter", rate.into(), sampled * 0.95, sampled * 1.05)?;
+        }
+        self.scheme.check_period(period)
     }
 
     fn neurons(&self) -> usize {

@@ -11,7 +11,7 @@ use crate::{ConfigError, Fingerprint, Sample, Scheme};
 /// - **Response:** one pole, as Betaflight's PT1 and PX4's alpha filter, but with -3 dB exactly at the corner.
 /// - **Corner:** 0.001 to 0.49 of the rate.
 /// - **Delay:** at DC `1 / gain - 1` samples: 3.1 ms with 40 Hz at 500 samples a second.
-/// - **Memory:** 4 bytes; a state 4 in `f32`, 8 in fixed point.
+/// - **Memory:** 8 bytes; a state 4 in `f32`, 8 in fixed point.
 /// - **Work:** in `f32` one product and two sums a sample.
 ///
 /// # Operations
@@ -30,6 +30,7 @@ use crate::{ConfigError, Fingerprint, Sample, Scheme};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstOrder<S: Sample> {
     gain: S::Coefficient,
+    rate: f32,
 }
 
 impl<S: Sample> FirstOrder<S> {
@@ -48,7 +49,7 @@ impl<S: Sample> FirstOrder<S> {
     /// Returns an error if the rate is not above 0, or the corner is not within 0.001 to 0.49 of it.
     pub const fn try_low_pass(corner: f32, rate: f32) -> Result<Self, ConfigError> {
         tri!(check("corner", corner, rate));
-        Ok(Self { gain: first_order::<S>(corner, rate) })
+        Ok(Self { gain: first_order::<S>(corner, rate), rate })
     }
 
     /// A scheme that encodes what this filter lets through.
@@ -104,6 +105,10 @@ impl<S: Sample> Filter for FirstOrder<S> {
     ) -> usize {
         S::first_slice(self.gain, &mut state.0, samples, outputs);
         samples.len().min(outputs.len())
+    }
+
+    fn rate(&self) -> Option<f32> {
+        Some(self.rate)
     }
 
     fn delay(&self) -> f32 {

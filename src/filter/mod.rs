@@ -77,6 +77,11 @@ pub trait Filter {
         samples.len().min(outputs.len())
     }
 
+    /// The rate of the samples that it is made for, in Hz; `None` if it suits any.
+    fn rate(&self) -> Option<f32> {
+        None
+    }
+
     /// By how many samples a slow signal comes late: the group delay at DC. Over the rate, it is the time that a control
     /// loop waits.
     fn delay(&self) -> f32;

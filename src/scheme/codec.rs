@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use super::code::{Code, Destination, Output};
-use crate::{Fingerprint, Sample};
+use crate::{ConfigError, Fingerprint, Sample};
 
 /// A coding scheme: checked parameters as plain data, in a `const` or a `static`.
 ///
@@ -150,6 +150,14 @@ pub trait Scheme: Sized {
     /// shows that sender and receiver have other schemes.
     fn holds_keyframes(&self) -> bool {
         false
+    }
+
+    /// Checks that its parameters are those for a sample every `period` µs, such as the corner of a filter before it.
+    ///
+    /// # Errors
+    /// Returns an error that names the parameter.
+    fn check_period(&self, _period: u32) -> Result<(), ConfigError> {
+        Ok(())
     }
 
     /// How many neurons a channel has. Channels of one bank, readout or receiver have the same number.

@@ -41,6 +41,7 @@ use crate::{Sample, SampleKind};
 /// - **A bank** is the sample type as a number ([`SampleKind::to_byte`]), the first address and the length of a
 ///   sub-timestep in µs as numbers, for each channel the fingerprint of its scheme as a number, and how many channels
 ///   there are as a number.
+/// - **Joined banks** are the text `Joint`, the fingerprint of each bank as a number, and how many banks there are as a number.
 /// - **A label**, of which both ends only need to have the same, is a text. A bank with a label has the bank's
 ///   fingerprint, continued with that of the label as a number.
 ///

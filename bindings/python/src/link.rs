@@ -8,7 +8,10 @@ use catalogue::for_sample_type;
 use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
-use spikewire::link::{Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter};
+use spikewire::link::{
+    CLOCK_TOLERANCE, Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter,
+    longest_slot,
+};
 use spikewire::{Bank, Fingerprint, FromItems, Item, Recovery, Sample, Scheme, Spike, Tick};
 
 use crate::coder::Coder;
@@ -174,9 +177,16 @@ impl Build<'_> {
         }
         let slots = schemes.iter().map(|own| own.slots()).max().unwrap_or(1);
         let is_slotted = P::RECOVERY != Recovery::Keyframe && slots > 1;
-        let slot_ticks = if is_slotted { u32::from(*period) / slots as u32 } else { 0 };
-        if is_slotted && slot_ticks == 0 {
-            bail!("{slots} sub-timesteps do not fit into {period} µs");
+        let slots = slots as u32;
+        let slot_ticks =
+            if is_slotted { longest_slot(slots, (*period).into(), CLOCK_TOLERANCE) } else { 0 };
+        if is_slotted
+            && (slot_ticks == 0
+                || slot_ticks > longest_slot(slots, (*period).into(), clock_tolerance))
+        {
+            bail!(
+                "{slots} sub-timesteps do not fit into {period} µs with a clock tolerance of {clock_tolerance} ppm"
+            );
         }
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
         let coding = Coding::for_channels((CHANNELS * neurons) as u16, (*period).into());

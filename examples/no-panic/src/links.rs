@@ -16,7 +16,7 @@ use embedded_hal::{
 use spikewire::{
     Bank, Bins, Consumer, EventQueue, FromEvents, FromItems, Item, Keyframe, Overflow, Put,
     Readout, Sample, SampleKind, Source, SpscQueue, Tick,
-    link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Session, Transmitter},
+    link::{Coding, FrameView, Framer, MAX_FRAME, Reader, Receiver, Session, Transmitter, join},
     out::{AsyncSpiSink, Batch, SerialSink, SpiSink},
     temporal::StepForward,
 };
@@ -115,13 +115,19 @@ fn framed<S: Sample>(scheme: &'static StepForward<S>) -> Option<()> {
     bank.reset_into(tick(), &EVENTS);
 
     let mut events = EVENTS.consumer()?;
-    let described = Transmitter::for_bank(&bank, black_box(1_000), Session::counted(black_box(1)));
+    let session = Session::counted(black_box(1));
+    let described = Transmitter::try_for_bank(&bank, black_box(1_000), session).ok()?;
+    let mut other = black_box(Bank::<_, 2>::new(scheme));
+    let joined =
+        Transmitter::for_banks(&mut [&mut bank, &mut other], black_box(1_000), session).ok()?;
+    hide(joined.foreign());
     let mut transmitter = black_box(described.with_label(black_box("roll")));
     transmitter.observe(tick());
     hide(transmitter.leaps());
     let mut reader = black_box(Reader::<MAX_FRAME>::new());
     let receiver = black_box(Receiver::<_, 3, 0>::per_channel([scheme; 3]));
-    let tolerant = receiver.with_clock_tolerance(black_box(9)).with_label(black_box("roll"));
+    let mut tolerant = receiver.with_clock_tolerance(black_box(9)).with_label(black_box("roll"));
+    hide(join(&mut [&mut tolerant]).is_ok());
     hide(tolerant.fingerprint());
     let mut receiver = black_box(tolerant);
     let mut buffer = black_box([0; 300]);

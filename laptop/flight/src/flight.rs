@@ -3,7 +3,7 @@
 use crate::{Filter, Filtering, FlightError, FlightErrorKind};
 use catalogue::run::{Asked, Error, Known, RunTime, SampleType, Settings, Value, Visit};
 use catalogue::{Info, Kind, Parameter, for_sample_type};
-use spikewire::link::Coding;
+use spikewire::link::{CLOCK_TOLERANCE, Coding, longest_slot};
 use spikewire::{Fingerprint, Sample, Scheme};
 use std::collections::BTreeSet;
 use std::num::NonZeroU16;
@@ -138,7 +138,8 @@ impl Flight {
         Ok(flight)
     }
 
-    /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, and that a sub-timestep takes at least 1 µs.
+    /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, that a sub-timestep takes at least 1 µs, and that a
+    /// receiver can tell sub-timesteps apart with a clock as fast as its tolerance allows.
     fn check_bank(&self) -> Result<(), FlightError> {
         let shape = |settings: &Settings| -> Vec<String> {
             let parameters =
@@ -152,12 +153,22 @@ impl Flight {
             let error = FlightError::new("parameters", FlightErrorKind::NotOneBank);
             return Err(error.of_channel(index));
         }
-        let (slots, period) = (self.slots(), f64::from(self.period.get()));
-        if self.is_slotted() && slots as f64 > period {
-            let kind = FlightErrorKind::Range { given: slots as f64, min: 1.0, max: period };
+        let slots = self.slots() as u32;
+        if self.is_slotted() && !self.has_room(slots) {
+            let mut most = slots;
+            while most > 1 && !self.has_room(most) {
+                most -= 1;
+            }
+            let kind = FlightErrorKind::Range { given: slots.into(), min: 1.0, max: most.into() };
             return Err(FlightError::new("slots", kind));
         }
         Ok(())
+    }
+
+    /// Returns whether a sample has time for so many sub-timesteps.
+    fn has_room(&self, slots: u32) -> bool {
+        let length = longest_slot(slots, self.period.get().into(), CLOCK_TOLERANCE);
+        length > 0 && length <= longest_slot(slots, self.period.get().into(), self.clock_ppm)
     }
 
     /// Returns the scheme of all channels, in the form that runs on the laptop.
@@ -234,9 +245,13 @@ impl Flight {
         !self.scheme.has_first_value() && self.slots() > 1
     }
 
-    /// Returns the length of a sub-timestep in µs, or 0 if the scheme has no sub-timesteps.
+    /// Returns the length of a sub-timestep in µs, or 0 if the scheme has no sub-timesteps: the longest that leaves room for a
+    /// clock that is 2 % fast.
     pub fn slot_ticks(&self) -> u32 {
-        if self.is_slotted() { u32::from(self.period.get()) / self.slots() as u32 } else { 0 }
+        if !self.is_slotted() {
+            return 0;
+        }
+        longest_slot(self.slots() as u32, self.period.get().into(), CLOCK_TOLERANCE)
     }
 
     /// Returns the period and each channel's name, unit and counts as one text. The text is part of the

@@ -95,9 +95,11 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     );
     item(
         "Returns the sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.",
-        "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {\n    \
-             spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint()).with_label(LABEL)\n}"
-            .to_owned(),
+        format!(
+            "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {{\n    \
+             spikewire::link::Transmitter::new(CODING, session).with_addresses(0..={}).with_fingerprint(BANK.fingerprint()).with_label(LABEL)\n}}",
+            channels * flight.neurons() - 1
+        ),
     );
     item(
         "Maximum number of events of a sample that the receiver stores.",

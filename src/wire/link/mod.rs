@@ -144,6 +144,7 @@ mod crc;
 mod delta;
 mod error;
 mod frame;
+mod joint;
 mod known;
 mod pace;
 mod reader;
@@ -158,7 +159,8 @@ mod writer;
 
 pub use error::LinkError;
 pub use frame::{Events, FrameView, MAX_FRAME, MIN_FRAME};
-pub use pace::CLOCK_TOLERANCE;
+pub use joint::{Joint, Part, join};
+pub use pace::{CLOCK_TOLERANCE, longest_slot};
 pub use reader::{Gap, Reader, Received};
 pub use receiver::Receiver;
 pub use session::Session;

@@ -41,11 +41,11 @@ impl Received<'_> {
 /// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
 ///
 /// - **Order:** a frame that was already delivered, or that comes up to 65 536 frames late, is left out. So is a late
-///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen such frames in a row
-///   show that their session goes on, and the sixteenth counts as a start.
+///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen late frames in a row show
+///   that their session goes on or is used again, and the sixteenth counts as a start.
 /// - **A session that is used again**, as where a sender's supply fails before its start was counted, begins anew where it
-///   shows: by another first frame, by other bytes of the frame delivered last, by a time that goes back by more than
-///   65.5 ms while numbers rise or the other way round, or by 256 late frames in a row.
+///   shows: by another first frame than that delivered, or one that comes more than sixteen frames late, by other bytes of the frame delivered last, by a time that goes
+///   back by more than 65.5 ms while numbers rise or the other way round, or by sixteen late frames in a row.
 /// - **Memory:** `N + 152` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
@@ -91,11 +91,9 @@ const LONGEST_GAP: i64 = 1 << 24;
 /// session has delivered as many.
 const OVERLAP: u16 = 256;
 
-/// Number of frames of earlier sessions in a row from which on they are not late: the present session was the late one.
+/// Number of late frames in a row from which on they are not late: the present session was the late one, or its frames
+/// are those of another start.
 const RETURN: u16 = 16;
-
-/// Number of late frames in a row from which on they are not late: their session is used again.
-const USED_AGAIN: u16 = 256;
 
 /// How far the times of frames may be out of their order, in µs.
 const DISORDER: i64 = 1 << 16;
@@ -328,7 +326,7 @@ impl<const N: usize> Reader<N> {
             // The first frame of the present session once more, or late; or of another start with the same session.
             let is_known = match present.first {
                 Some(first) => first == checksum,
-                None => since <= DISORDER,
+                None => since <= DISORDER && ahead.is_some_and(|ahead| ahead >= -i64::from(RETURN)),
             };
             match ahead {
                 Some(-1) if is_known => return Standing::Repeated,
@@ -341,11 +339,9 @@ impl<const N: usize> Reader<N> {
                 -1 if checksum == self.checksum => return Standing::Repeated,
                 -1 => return Standing::First,
                 BEFORE..0 => {
-                    let is_late = since <= DISORDER && self.strays < USED_AGAIN - 1;
+                    let is_late = since <= DISORDER && self.strays < RETURN - 1;
                     return if is_late { Standing::Late } else { Standing::First };
                 }
-                // After so many late frames the next one may be of another start.
-                0 if self.strays >= RETURN => return Standing::First,
                 0..LONGEST_GAP => {
                     let is_later = since >= -DISORDER;
                     return if is_later { Standing::After(ahead as u32) } else { Standing::First };

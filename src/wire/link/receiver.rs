@@ -3,11 +3,11 @@
 use core::fmt;
 
 use super::delta::Numbered;
-use super::pace::{CLOCK_TOLERANCE, Elapsed, Pace};
+use super::pace::{CLOCK_TOLERANCE, Elapsed, Pace, slots_fit};
 use super::steps::Steps;
 use super::time::Time;
 use super::trust::Trust;
-use super::{Received, Withheld};
+use super::{Joint, Part, Received, Withheld};
 use crate::event::{
     Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick, addressed,
     bank_fingerprint,
@@ -36,19 +36,22 @@ use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Polarity, Recovery, Sam
 ///   estimate fades.
 /// - **Codes with sub-timesteps** need the sender's [`with_slot_ticks`](Self::with_slot_ticks), and a
 ///   [heartbeat](crate::Item::Heartbeat) after each loss, which says when a sample was taken: no value is decoded before.
-///   The sender must take a sample every period, as long as all sub-timesteps or longer, with a jitter of each tick of at
-///   most an eighth of a sub-timestep.
+///   The sender must take a sample every period, with a jitter of each tick of at most an eighth of a sub-timestep. A period
+///   less the clock's tolerance is as long as all sub-timesteps or longer; at most half a sub-timestep may be missing: see
+///   [`longest_slot`](super::longest_slot).
 ///
 /// **Time:** however long a link is down, or a sender at rest, a frame's time says how many samples have passed. The
 /// sender must know it: see [`Transmitter::observe`](super::Transmitter::observe). A time that goes back, or that lies
 /// between two samples, withholds every value of a code that counts samples. The samples' clock may run slow or fast by the
-/// [tolerance](Self::with_clock_tolerance): where samples can then not be counted for certain, values are withheld.
+/// [tolerance](Self::with_clock_tolerance), and change within it at any time: where samples can then not be counted for
+/// certain, values are withheld.
 ///
 /// **Identity:** a receiver compares the sender's [fingerprint](Fingerprint) with that of its own schemes, and calls no
 /// value exact if they differ or none has come yet. A sender without fingerprint is believed until a keyframe contradicts
-/// the exact value before it.
+/// the exact value before it. If a sender with the same fingerprint contradicts itself, 256 keyframes must agree before it is
+/// believed again. Receivers of banks that share a link are [joined](super::join).
 ///
-/// - **Memory:** on a 32-bit part about 104 bytes; per channel the decoder's state, a sample and 8 bytes; and 8 bytes
+/// - **Memory:** on a 32-bit part about 120 bytes; per channel the decoder's state, a sample and 8 bytes; and 8 bytes
 ///   for each of `EVENTS`, the most events that one sample has over all channels. Codes of [`Recovery::Keyframe`] need
 ///   none of these: 0.
 /// - **Latency:** none for codes of [`Recovery::Keyframe`]; for others until the sample is over.
@@ -63,6 +66,8 @@ use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Polarity, Recovery, Sam
 pub struct Receiver<T: Schemes<N>, const N: usize, const EVENTS: usize = 32> {
     channels: T::Channels<Channel<DecoderStateOf<T, N>, SampleOf<T, N>>>,
     addresses: Addresses,
+    /// How many addresses the joined receivers have, from 0 on; 0 of one by itself.
+    joined: u32,
     /// How many sub-timesteps a sample has, in the channel with most; 1 where they do not matter.
     slots: u32,
     /// From so many samples without events on, further ones change no channel; 0 where samples need not be counted.
@@ -171,6 +176,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         Self {
             channels,
             addresses,
+            joined: 0,
             slots,
             settled,
             sample,
@@ -193,7 +199,10 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// Sets by how many millionths the time from sample to sample may differ from the link's period, in ticks of the
     /// sender; 20 000 (2 %) by default, for a sensor that takes samples by its own clock. 0 is a timer of the clock that the
-    /// ticks come from. The receiver measures the time, too: after a few dozen samples it is known better than this.
+    /// ticks come from. Within the tolerance the clock may change at any time. Samples of a silence are thus counted while the
+    /// most that drift and jitter make of it stays below three eighths of a period: 18 samples of 2 % without jitter, 6 with
+    /// all of it. Sub-timesteps are told apart by the time that the receiver measures; while it does, over some 200 samples,
+    /// the clock may change by a 128th of the tolerance (156 millionths of 2 %).
     #[must_use]
     pub const fn with_clock_tolerance(mut self, millionths: u32) -> Self {
         self.sample.pace = self.sample.pace.with_tolerance(millionths);
@@ -217,10 +226,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
 
     /// The fingerprint that the sender must have.
     pub fn fingerprint(&self) -> Fingerprint {
-        self.trust.own(|| {
-            let schemes = T::each(&self.channels).map(|(scheme, _)| scheme);
-            bank_fingerprint(schemes, self.addresses.first, self.addresses.slot_ticks)
-        })
+        self.trust.own(|| Part::fingerprint(self))
     }
 
     /// Decodes a frame, and passes the channel, tick and new value of each keyframe, event or sample to `on_value`, in
@@ -239,9 +245,14 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         let unit = if self.has_slots() { self.addresses.slot_ticks.max(1) } else { period };
         self.sample.pace.set(period, unit);
         let step_mask = frame.step_mask();
+        // A bank's keyframes come by rising address: one that does not rise is another bank's, or the same once more.
+        let mut highest = None;
         for (keyframe, number) in frame.numbered_keyframes() {
-            let number = (step_mask > 0 && Steps::has(keyframe.address)).then_some(number);
-            self.keyframe(frame.time(), keyframe, number, &mut on_value);
+            let is_again = highest.is_some_and(|highest| keyframe.address <= highest);
+            if self.keyframe(frame.time(), keyframe, is_again, &mut on_value) {
+                highest = highest.max(Some(keyframe.address));
+                self.number(keyframe.address, step_mask, number);
+            }
         }
         for address in frame.heartbeats() {
             self.heartbeat(frame.time(), address, &mut on_value);
@@ -280,9 +291,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
     /// 2³¹ µs (35.8 minutes) after the last event or call. Codes of [`Recovery::Keyframe`] do not need this.
     pub fn advance(&mut self, now: Tick, mut on_value: impl FnMut(u16, Tick, SampleOf<T, N>)) {
         if let Some(time) = self.sample.time {
-            let half = i64::from(self.sample.pace.unit() / 2);
-            let since = time.nearest(now).since(time).saturating_add(half).max(0);
-            self.finish(self.sample.pace.samples(since.cast_unsigned()), &mut on_value);
+            let samples = self.sample.pace.over(time.nearest(now).since(time));
+            self.finish(samples, &mut on_value);
         }
     }
 
@@ -307,8 +317,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             }
             self.sample.time = None;
             self.sample.count = 0;
-            self.sample.is_clock_lost = false;
         }
+        self.sample.is_clock_lost = false;
         if is_start {
             self.sample.pace.forget();
             T::each_mut(&mut self.channels).for_each(|(_, channel)| channel.step = None);
@@ -338,38 +348,40 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             Recovery::Fading(_) if doubt.is_none() => Withheld::Always,
             _ if self.has_slots() && slot_ticks == 0 => Withheld::SlotTicks,
             _ if self.is_blind() && pace.period() > 1 => {
-                Withheld::Slots { slots: self.slots, slot_ticks, period: pace.period() }
+                Withheld::Slots { slots: self.slots, slot_ticks, period: pace.shortest_period() }
             }
             _ if let Some(doubt) = doubt => doubt,
             _ if channel.is_exact => return None,
+            _ if is_clock_lost => Withheld::Clock,
             Recovery::Keyframe | Recovery::TimedKeyframe(_) => Withheld::Keyframe,
-            _ if self.has_slots() && is_clock_lost => Withheld::Clock,
             _ if self.has_slots() && time.is_none() => Withheld::Heartbeat,
             Recovery::Samples(needed) => Withheld::Samples(needed.saturating_sub(channel.whole)),
             Recovery::Spike | Recovery::Fading(_) => Withheld::Spike,
         })
     }
 
-    /// Number of events and keyframes whose address belongs to no channel.
+    /// Number of events, keyframes and heartbeats whose address belongs to no channel of this receiver, nor of those that it is
+    /// [joined](super::join) with.
     pub const fn outside(&self) -> u32 {
         self.outside
     }
 
     /// Number of things that do not fit the schemes: keyframes of another sample type or for a code without keyframes;
     /// frames with bits that code no event; events beyond the `EVENTS` of a sample, after their sample was over, or in
-    /// none of its sub-timesteps; ticks that go back, or lie between two samples, of a code that counts samples.
+    /// none of its sub-timesteps; samples with events that are no code; ticks that go back, or lie between two samples, of a
+    /// code that counts samples.
     pub const fn misfits(&self) -> u32 {
         self.misfits
     }
 
     /// Number of keyframes of codes whose decoders [hold](Scheme::holds_keyframes) what a keyframe says, after a value
-    /// without a loss.
+    /// without a loss; and of those that come once more in a frame.
     pub const fn compared(&self) -> u32 {
         self.compared
     }
 
-    /// Number of [those](Self::compared) that had another value: the sender has other schemes or parameters, or lost items
-    /// without telling.
+    /// Number of [those](Self::compared) that had another value: the sender has other schemes or parameters, banks that share
+    /// addresses, or lost items without telling.
     pub const fn contradicted(&self) -> u32 {
         self.contradicted
     }
@@ -386,38 +398,46 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         CodeOf::<T, N>::SLOTS > 1 && self.slots > 1
     }
 
-    /// Whether all sub-timesteps of a sample are over when the next begins.
-    fn slots_fit(&self) -> bool {
-        let length = u64::from(self.slots).wrapping_mul(self.addresses.slot_ticks.into());
-        length <= u64::from(self.sample.pace.period())
+    /// Counts an address that belongs to no channel.
+    fn pass_by(&mut self, address: u16) {
+        let is_outside = u32::from(address) >= self.joined;
+        self.outside = self.outside.saturating_add(is_outside.into());
     }
 
     /// Whether the code tells values by sub-timesteps that are not known.
     fn is_blind(&self) -> bool {
-        self.has_slots() && (self.addresses.slot_ticks == 0 || !self.slots_fit())
+        if !self.has_slots() {
+            return false;
+        }
+        let Addresses { slot_ticks, .. } = self.addresses;
+        let pace = &self.sample.pace;
+        slot_ticks == 0 || !slots_fit(self.slots, slot_ticks, pace.period(), pace.tolerance())
     }
 
+    /// Takes a keyframe, the second one of its address in the frame if `is_again`. Returns whether it has a channel.
     fn keyframe(
         &mut self,
         time: Time,
         keyframe: Keyframe,
-        number: Option<u8>,
+        is_again: bool,
         on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
-    ) {
+    ) -> bool {
         let address = usize::from(keyframe.address.wrapping_sub(self.addresses.first));
         let channel = address / self.neurons();
         if channel < N && matches!(T::Scheme::RECOVERY, Recovery::TimedKeyframe(_)) {
             self.sample_taken(time, on_value);
         }
         let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) else {
-            self.outside = self.outside.saturating_add(1);
-            return;
+            self.pass_by(keyframe.address);
+            return false;
         };
         match keyframe.value::<SampleOf<T, N>>() {
             Some(value) if Self::HAS_KEYFRAMES => {
-                if known.is_exact && scheme.holds_keyframes() {
+                if known.is_exact && (is_again || scheme.holds_keyframes()) {
                     self.compared = self.compared.saturating_add(1);
-                    if value.to_bits32() != known.value.to_bits32() {
+                    if value.to_bits32() == known.value.to_bits32() {
+                        self.trust.agree();
+                    } else {
                         self.contradicted = self.contradicted.saturating_add(1);
                         self.trust.contradict();
                     }
@@ -425,11 +445,11 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
                 scheme.resync(&mut known.state, value);
                 known.value = value;
                 known.is_exact = true;
-                known.step = number;
                 on_value(channel as u16, keyframe.tick, value);
             }
             _ => self.misfits = self.misfits.saturating_add(1),
         }
+        true
     }
 
     fn heartbeat(
@@ -438,11 +458,20 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         address: u16,
         on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
     ) {
-        let address = usize::from(address.wrapping_sub(self.addresses.first));
-        if address >= N * self.neurons() {
-            self.outside = self.outside.saturating_add(1);
+        let place = usize::from(address.wrapping_sub(self.addresses.first));
+        if place >= N * self.neurons() {
+            self.pass_by(address);
         } else if T::Scheme::RECOVERY != Recovery::Keyframe {
             self.sample_taken(time, on_value);
+        }
+    }
+
+    /// Goes on from the step number of a keyframe.
+    fn number(&mut self, address: u16, mask: u8, number: u8) {
+        let channel = address.wrapping_sub(self.addresses.first);
+        let is_there = mask > 0 && Steps::has(address) && self.neurons() == 1;
+        if let Some((_, known)) = T::each_mut(&mut self.channels).nth(channel.into()) {
+            known.step = is_there.then_some(number & mask);
         }
     }
 
@@ -487,7 +516,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         let address = usize::from(event.address.wrapping_sub(self.addresses.first));
         let neurons = self.neurons();
         if address >= N * neurons {
-            self.outside = self.outside.saturating_add(1);
+            self.pass_by(event.address);
         } else if T::Scheme::RECOVERY == Recovery::Keyframe {
             self.step_event(event, on_value);
         } else {
@@ -614,9 +643,10 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if !is_misfit {
             self.sample.pace = pace;
         }
+        self.sample.is_clock_lost = !is_misfit;
         if !is_misfit && self.has_slots() {
             // From the last heartbeat to the next the pace can still be measured.
-            (self.sample.time, self.sample.is_clock_lost) = (time, true);
+            self.sample.time = time;
         }
         None
     }
@@ -656,6 +686,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
                 }
                 Elapsed::Unknown => {
                     self.lose_time(false, on_value);
+                    self.sample.pace.begin();
                 }
                 Elapsed::Settled { .. } | Elapsed::Samples { .. } | Elapsed::Misfit => {
                     self.lose_time(true, on_value);
@@ -696,10 +727,15 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         let events = self.sample.events.get(..self.sample.count).unwrap_or_default();
         let tick = time.tick();
         for (channel, (scheme, known)) in (0..N).zip(T::each_mut(&mut self.channels)) {
-            let code: CodeOf<T, N> =
-                self.addresses.code(channel, scheme.neurons(), 0.into(), events);
+            let neurons = scheme.neurons();
+            let code: CodeOf<T, N> = self.addresses.code(channel, neurons, 0.into(), events);
             known.value = scheme.decode(&mut known.state, code);
-            if self.sample.is_whole {
+            let fired = self.addresses.events_of(channel, neurons, events).count();
+            if self.sample.is_whole && code.firings().count() != fired {
+                // No encoder fires these neurons together: two banks may have the same addresses.
+                self.misfits = self.misfits.saturating_add(1);
+                known.mark_stale();
+            } else if self.sample.is_whole {
                 known.whole = known.whole.saturating_add(1);
                 known.is_exact |= match scheme.recovery() {
                     Recovery::Samples(needed) => known.whole >= needed,
@@ -709,6 +745,26 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             }
             on_value(channel as u16, tick, known.value);
         }
+    }
+}
+
+impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Part for Receiver<T, N, EVENTS> {
+    fn addresses(&self) -> usize {
+        N.wrapping_mul(self.neurons())
+    }
+
+    fn set_first_address(&mut self, first_address: u16) {
+        self.addresses.first = first_address;
+    }
+
+    fn fingerprint(&self) -> Fingerprint {
+        let schemes = T::each(&self.channels).map(|(scheme, _)| scheme);
+        bank_fingerprint(schemes, self.addresses.first, self.addresses.slot_ticks)
+    }
+
+    fn join(&mut self, joint: Joint) {
+        self.joined = joint.addresses();
+        self.trust = self.trust.with_joint(joint.fingerprint());
     }
 }
 

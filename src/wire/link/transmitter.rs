@@ -1,9 +1,12 @@
 //! Transmitter: turns items into frames, in their order.
 
-use super::{Coding, FrameWriter, Framer, LinkError, Session};
-use crate::Fingerprint;
+use core::ops::RangeInclusive;
+
+use super::{Coding, FrameWriter, Framer, LinkError, Part, Session, join};
+use crate::error::unwrap;
 use crate::event::{Bank, Item, Schemes, Source, Taken, Tick};
 use crate::wire::Batch;
+use crate::{ConfigError, Fingerprint};
 
 /// Takes items from a source and turns them into frames, in their order.
 ///
@@ -16,7 +19,9 @@ use crate::wire::Batch;
 ///   into any frame 0.52 s or more after the last one that had it: a byte a frame on average at most, or 8 bytes a second
 ///   where there are fewer than 8 frames a second. A [`Receiver`](super::Receiver) with other schemes then calls no value
 ///   exact.
-/// - **Memory:** 56 bytes on a 32-bit part.
+/// - **Addresses:** items of addresses that are not its banks' are refused, and counted as [foreign](Self::foreign). Banks
+///   that share a link are joined by [`for_banks`](Self::for_banks).
+/// - **Memory:** 64 bytes on a 32-bit part.
 ///
 /// ```
 /// use spikewire::{Bank, Event, FromEvents, Polarity, Tick, temporal::StepForward};
@@ -41,32 +46,85 @@ pub struct Transmitter {
     framer: Framer,
     /// An item that was taken from the source and is in no frame yet.
     held: Option<Taken>,
-    /// For how many µs an event may wait for others.
-    gathering: u32,
-    /// The last time that it was told.
-    now: Tick,
+    gathering: Gathering,
+    /// The first address of its banks, and how far the last one lies from it.
+    first_address: u16,
+    span: u16,
+    foreign: u32,
 }
 
 impl Transmitter {
     /// A transmitter for the items of this bank, sampled every `period` µs (0 counts as 1), before the first frame of
-    /// this session. It sends the bank's [fingerprint](Bank::fingerprint).
+    /// this session. It sends the bank's [fingerprint](Bank::fingerprint). If another bank shares the link, use
+    /// [`for_banks`](Self::for_banks).
+    ///
+    /// # Panics
+    /// Panics if the bank's sub-timesteps do not fit into the period, or a filter is one for another rate.
+    #[track_caller]
     pub fn for_bank<T: Schemes<N>, const N: usize>(
         bank: &Bank<T, N>,
         period: u32,
         session: Session,
     ) -> Self {
-        let coding = Coding::for_channels(bank.addresses(), period);
-        Self::new(coding, session).with_fingerprint(bank.fingerprint())
+        unwrap(Self::try_for_bank(bank, period, session))
     }
 
-    /// A transmitter before the first frame of this session, without a fingerprint: a receiver cannot tell whether it has
-    /// the sender's schemes, except by keyframes that contradict it.
+    /// A transmitter as [`for_bank`](Self::for_bank) makes it.
+    ///
+    /// # Errors
+    /// Returns an error if the bank's sub-timesteps do not fit into the period, or a filter is one for another rate.
+    pub fn try_for_bank<T: Schemes<N>, const N: usize>(
+        bank: &Bank<T, N>,
+        period: u32,
+        session: Session,
+    ) -> Result<Self, ConfigError> {
+        bank.check_period(period)?;
+        let (first, count) = (bank.first_address(), bank.addresses().max(1));
+        let last = first.saturating_add(count.saturating_sub(1) as u16);
+        let coding = Coding::for_channels(u16::try_from(count).unwrap_or(u16::MAX), period);
+        let transmitter = Self::new(coding, session).with_addresses(first..=last);
+        Ok(transmitter.with_fingerprint(bank.fingerprint()))
+    }
+
+    /// A transmitter for the items of these banks, all sampled every `period` µs (0 counts as 1), before the first frame of
+    /// this session. It [joins](join) them: each gets the addresses after those of the bank before, whatever its
+    /// first address was. Call it before they encode.
+    ///
+    /// # Errors
+    /// Returns an error if there is no bank, if they take more than 65 536 addresses, if a bank's sub-timesteps do not fit
+    /// into the period, or if a filter is one for another rate.
+    pub fn for_banks(
+        banks: &mut [&mut dyn Part],
+        period: u32,
+        session: Session,
+    ) -> Result<Self, ConfigError> {
+        for bank in &*banks {
+            bank.check_period(period)?;
+        }
+        let joint = join(banks)?;
+        let last = joint.addresses().saturating_sub(1) as u16;
+        let channels = u16::try_from(joint.addresses()).unwrap_or(u16::MAX);
+        let transmitter = Self::new(Coding::for_channels(channels, period), session);
+        Ok(transmitter.with_addresses(0..=last).with_fingerprint(joint.fingerprint()))
+    }
+
+    /// A transmitter before the first frame of this session, for any address and without a fingerprint: a receiver cannot
+    /// tell whether it has the sender's schemes, except by keyframes that contradict it.
     pub const fn new(coding: Coding, session: Session) -> Self {
-        let now = Tick::from_micros(0);
-        Self { framer: Framer::new(coding, session), held: None, gathering: 0, now }
+        let framer = Framer::new(coding, session);
+        let gathering = Gathering { micros: 0, now: Tick::from_micros(0) };
+        Self { framer, held: None, gathering, first_address: 0, span: u16::MAX, foreign: 0 }
     }
 
-    /// Sends this fingerprint: that of the bank, or of several banks on one link, each [and](Fingerprint::and) the next.
+    /// Sets the addresses of its banks: items of others are refused, and counted as [foreign](Self::foreign).
+    #[must_use]
+    pub const fn with_addresses(self, addresses: RangeInclusive<u16>) -> Self {
+        let first_address = *addresses.start();
+        let span = addresses.end().saturating_sub(first_address);
+        Self { first_address, span, ..self }
+    }
+
+    /// Sends this fingerprint: that of the bank, of several [joined](join) banks, or of a whole flight.
     #[must_use]
     pub const fn with_fingerprint(self, fingerprint: Fingerprint) -> Self {
         Self { framer: self.framer.with_fingerprint(fingerprint), ..self }
@@ -95,15 +153,7 @@ impl Transmitter {
     /// turn. A keyframe or a break does not wait, but for the events before it.
     #[must_use]
     pub const fn with_gathering(self, micros: u32) -> Self {
-        Self { gathering: micros, ..self }
-    }
-
-    /// Whether this item, the next one, waits for others.
-    #[inline]
-    fn gathers(&self, first: Taken) -> bool {
-        let Item::Event(event) = first.item else { return false };
-        let waited = i64::from(self.now.since(event.tick));
-        self.gathering > 0 && first.lost == 0 && waited < i64::from(self.gathering)
+        Self { gathering: Gathering { micros, ..self.gathering }, ..self }
     }
 
     /// Adds what both ends must have in common beside the schemes, such as names and units of the channels, to the
@@ -120,7 +170,7 @@ impl Transmitter {
     /// (17.9 minutes): call it at each turn of the main loop, for example. A [heartbeat](Item::Heartbeat) a second
     /// does as well.
     pub fn observe(&mut self, now: Tick) {
-        self.now = now;
+        self.gathering.now = now;
         self.framer.observe(now);
     }
 
@@ -128,6 +178,13 @@ impl Transmitter {
     /// frame then has the flag *lost*. A silence of about 2³² µs, or of a multiple, is not noticed.
     pub const fn leaps(&self) -> u32 {
         self.framer.leaps()
+    }
+
+    /// How many items had an address that is not its banks': another bank puts into the same queue that is not
+    /// [joined](Self::for_banks). They were refused. Two banks with the same addresses cannot be told apart here; a receiver
+    /// notices by their keyframes.
+    pub const fn foreign(&self) -> u32 {
+        self.foreign
     }
 
     /// Writes the next frame, with as many items as there are and fit; `None` if there is none. Call it until it
@@ -149,9 +206,15 @@ impl Transmitter {
         items: &mut impl Source,
         buffer: &'a mut [u8],
     ) -> Result<Option<&'a [u8]>, LinkError> {
+        let mut items = Banks {
+            items,
+            first_address: self.first_address,
+            span: self.span,
+            foreign: &mut self.foreign,
+        };
         let Some(first) = self.held.take().or_else(|| items.take()) else { return Ok(None) };
         self.held = Some(first);
-        if self.gathers(first) {
+        if self.gathering.delays(first) {
             return Ok(None);
         }
         if first.is_after_break() {
@@ -167,6 +230,54 @@ impl Transmitter {
             }
         };
         Ok(Some(frame.finish()))
+    }
+}
+
+/// The items of a transmitter's banks.
+struct Banks<'a, T> {
+    items: &'a mut T,
+    first_address: u16,
+    span: u16,
+    foreign: &'a mut u32,
+}
+
+impl<T: Source> Source for Banks<'_, T> {
+    #[inline]
+    fn take(&mut self) -> Option<Taken> {
+        loop {
+            let taken = self.items.take()?;
+            let address = match taken.item {
+                Item::Event(event) => event.address,
+                Item::Keyframe(keyframe) => keyframe.address,
+                Item::Heartbeat { address, .. } => address,
+                Item::Break(_) => return Some(taken),
+            };
+            if address.wrapping_sub(self.first_address) <= self.span {
+                return Some(taken);
+            }
+            *self.foreign = self.foreign.saturating_add(1);
+            // Those that were lost before it may be the banks' own.
+            if taken.lost > 0 {
+                return Some(Taken { item: Item::Break(taken.item.tick()), ..taken });
+            }
+        }
+    }
+}
+
+/// For how many µs an event may wait for others, and the last time that is known.
+#[derive(Clone, Copy, Debug)]
+struct Gathering {
+    micros: u32,
+    now: Tick,
+}
+
+impl Gathering {
+    /// Whether this item, the next one, waits for others.
+    #[inline]
+    fn delays(self, first: Taken) -> bool {
+        let Item::Event(event) = first.item else { return false };
+        let waited = i64::from(self.now.since(event.tick));
+        self.micros > 0 && first.lost == 0 && waited < i64::from(self.micros)
     }
 }
 

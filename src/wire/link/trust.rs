@@ -7,9 +7,16 @@ use crate::Fingerprint;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trust {
     own: Option<Fingerprint>,
+    /// That of all receivers which are joined.
+    joint: Option<Fingerprint>,
     label: Option<Fingerprint>,
     standing: Standing,
+    /// How many keyframes must agree before a sender with the same fingerprint is believed again.
+    to_agree: u16,
 }
+
+/// So many keyframes must agree after each that contradicted.
+const AGREE: u16 = 256;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Standing {
@@ -26,7 +33,8 @@ enum Standing {
 }
 
 impl Trust {
-    pub(super) const NONE: Self = Self { own: None, label: None, standing: Standing::Unknown };
+    pub(super) const NONE: Self =
+        Self { own: None, joint: None, label: None, standing: Standing::Unknown, to_agree: 0 };
 
     pub(super) const fn with_own(self, own: Fingerprint) -> Self {
         Self { own: Some(own), ..self }
@@ -36,22 +44,27 @@ impl Trust {
         Self { label: Some(Fingerprint::new(label)), own: None, ..self }
     }
 
+    pub(super) const fn with_joint(self, joint: Fingerprint) -> Self {
+        Self { joint: Some(joint), own: None, ..self }
+    }
+
     pub(super) const fn has_own(&self) -> bool {
         self.own.is_some()
     }
 
-    /// The receiver's own fingerprint: the one that it was given, or this one with its label.
+    /// The receiver's own fingerprint: the one that it was given, or that of all joined receivers or this one, with its
+    /// label.
     pub(super) fn own(&self, schemes: impl FnOnce() -> Fingerprint) -> Fingerprint {
-        match (self.own, self.label) {
-            (Some(own), _) => own,
-            (None, None) => schemes(),
-            (None, Some(label)) => schemes().and(label),
+        if let Some(own) = self.own {
+            return own;
         }
+        let joint = self.joint.unwrap_or_else(schemes);
+        self.label.map_or(joint, |label| joint.and(label))
     }
 
     /// A sender has started.
     pub(super) fn begin(&mut self) {
-        self.standing = Standing::Unknown;
+        (self.standing, self.to_agree) = (Standing::Unknown, 0);
     }
 
     /// The sender has this fingerprint.
@@ -67,15 +80,22 @@ impl Trust {
         }
     }
 
-    /// A keyframe contradicted an exact value. With the same fingerprint, items were lost without a word.
+    /// A keyframe contradicted an exact value. With the same fingerprint, items were lost without a word, or another bank
+    /// has the same addresses.
     pub(super) fn contradict(&mut self) {
         if self.standing == Standing::Undescribed {
             self.standing = Standing::Contradicted;
         }
+        self.to_agree = self.to_agree.saturating_add(AGREE);
+    }
+
+    /// A keyframe had the exact value before it.
+    pub(super) fn agree(&mut self) {
+        self.to_agree = self.to_agree.saturating_sub(1);
     }
 
     pub(super) const fn is_given(&self) -> bool {
-        matches!(self.standing, Standing::Same | Standing::Undescribed)
+        matches!(self.standing, Standing::Same | Standing::Undescribed) && self.to_agree == 0
     }
 
     /// Why no value is exact, if that is for want of trust in a sender that was heard.
@@ -83,6 +103,7 @@ impl Trust {
         match (self.standing, self.own) {
             (Standing::Other(sender), Some(own)) => Some(Withheld::Description { own, sender }),
             (Standing::Contradicted, _) => Some(Withheld::Contradicted),
+            (Standing::Same, _) if self.to_agree > 0 => Some(Withheld::Contradicted),
             _ => None,
         }
     }

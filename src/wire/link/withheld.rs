@@ -21,23 +21,22 @@ pub enum Withheld {
     /// The code has sub-timesteps, whose length is unknown: see
     /// [`with_slot_ticks`](super::Receiver::with_slot_ticks).
     SlotTicks,
-    /// The sub-timesteps of a sample are longer than the link's period: one of the three numbers is not the sender's.
+    /// The sub-timesteps of a sample are longer than the shortest period of a clock within the tolerance, by more than half of
+    /// one: a number is not the sender's, or they leave no room for a clock that runs fast.
     Slots {
         /// How many sub-timesteps a sample has.
         slots: u32,
         /// The length of one, in µs.
         slot_ticks: u32,
-        /// The link's period, in µs.
+        /// The shortest period, in µs: the link's, less the clock's tolerance.
         period: u32,
     },
-    /// The samples' clock is not known well enough, after as long as it was since the last heartbeat, to tell
-    /// sub-timesteps apart: the sender must call [`keyframe_into`](crate::Bank::keyframe_into) more often, or the receiver
-    /// be told of a better clock, by [`with_clock_tolerance`](super::Receiver::with_clock_tolerance).
+    /// The samples' clock is not known well enough, after as long as it was since the last event or heartbeat, to count
+    /// samples or tell sub-timesteps apart: the sender must call [`keyframe_into`](crate::Bank::keyframe_into) more often, or
+    /// the receiver be told of a better clock, by [`with_clock_tolerance`](super::Receiver::with_clock_tolerance).
     Clock,
     /// The code is never exact after a start or a loss: the error fades.
     Always,
-    /// No fingerprint has come since the sender started, or since the receiver joined it.
-    Unknown,
     /// The sender has other schemes, parameters, channels or [labels](super::Receiver::with_label) than the receiver. No
     /// value is exact until a sender with the receiver's own starts.
     Description {
@@ -46,8 +45,9 @@ pub enum Withheld {
         /// The fingerprint of the sender.
         sender: Fingerprint,
     },
-    /// The sender has no fingerprint, and a keyframe had another value than the exact one before it: the sender has other
-    /// schemes or parameters, or lost items without telling. No value is exact until a sender starts.
+    /// A keyframe had another value than the exact one before it, though nothing was lost: two banks have the same
+    /// addresses, the sender lost items without telling, or it has no fingerprint and other schemes. No value is exact until
+    /// a sender starts or, if it has the receiver's own fingerprint, until 256 keyframes agree for each that did not.
     Contradicted,
 }
 
@@ -66,14 +66,13 @@ impl fmt::Display for Withheld {
             Self::SlotTicks => write!(f, "the length of the sub-timesteps is not given"),
             Self::Slots { slots, slot_ticks, period } => write!(
                 f,
-                "{slots} sub-timesteps of {slot_ticks} µs are longer than the link's period of {period} µs"
+                "{slots} sub-timesteps of {slot_ticks} µs are longer than a period of {period} µs, the shortest that the clock's tolerance allows"
             ),
             Self::Clock => write!(
                 f,
-                "heartbeats are too far apart for sub-timesteps as short as these, with a clock known this well"
+                "events and heartbeats are too far apart to count samples or sub-timesteps, with a clock known this well"
             ),
             Self::Always => write!(f, "the error of this code fades, and is never 0"),
-            Self::Unknown => write!(f, "no fingerprint of the sender's schemes yet"),
             Self::Description { own, sender } => write!(
                 f,
                 "the sender's schemes have the fingerprint {sender}, the receiver's {own}: they differ in code, parameters, sample type, order or label"
@@ -81,7 +80,7 @@ impl fmt::Display for Withheld {
             Self::Contradicted => {
                 write!(
                     f,
-                    "a keyframe contradicts the value before it: the sender has other parameters"
+                    "a keyframe contradicts the value before it: the sender has other parameters, or banks that share addresses"
                 )
             }
         }
